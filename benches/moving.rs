@@ -1,5 +1,5 @@
-//! One step of one instance in a living scene: what the recording thread spends on the change, and on the frame that shows it.
-//! The change of samples/assembly.step should take less than a millisecond.
+//! Times one step of one instance in a scene that is drawn already: the call that moves the instance, and the call that
+//! records the frame after it. In samples/assembly.step the move should take less than a millisecond.
 //!
 //! `cargo bench --features headless --bench moving -- [FILE ...]`
 
@@ -52,7 +52,7 @@ fn row(file: &Path) -> String {
         unsafe { renderer.record(cmd, &input) }.expect("recorded");
         let recorded = begin.elapsed();
         engine.submit(slot).expect("submitted");
-        // the first frames upload the scene and learn how large its lists are
+        // the first frames upload the scene and size its lists
         if step >= 10 {
             changes.push(changed.as_secs_f64() * 1e3);
             records.push(recorded.as_secs_f64() * 1e3);

@@ -3,9 +3,9 @@
     pip install "ray[data]" selvedge
     python examples/ray_dataset.py FOLDER OUT --views iso front top --size 256 256 --workers 2
 
-Each worker has a renderer of its own, on a GPU or a CPU. A file is one shard, OUT/shards/NAME-HASH.parquet with a row a view,
-which appears whole or not at all; so a worker that dies costs the file that it had in hand, which another one draws again, and
-every file is there once. OUT/manifest.parquet has a row a file: SHA-256, shard, status, error, counts, seconds.
+Each worker has a renderer of its own, on a GPU or a CPU. Each file becomes one shard, OUT/shards/NAME-HASH.parquet, with
+a row for each view. A shard appears whole or not at all. If a worker dies, another worker draws its file again, so every
+file has one shard. OUT/manifest.parquet has a row for each file: SHA-256, shard, status, error, counts, seconds.
 """
 
 import argparse
@@ -22,7 +22,7 @@ OUTPUTS = ["depth", "normal", "face"]
 
 
 class Draw:
-    """What a worker does with files, one after another."""
+    """A worker: draws files one after another with its own renderer."""
 
     def __init__(self, out, views, size):
         self.out, self.views, self.size = Path(out), views, size
@@ -54,7 +54,7 @@ class Draw:
         columns = {"view": self.views, "width": [self.size[0]] * len(pictures), "height": [self.size[1]] * len(pictures)}
         for name in OUTPUTS:
             columns[name] = [getattr(picture, name).tobytes() for picture in pictures]
-        # files of one name and content in several folders are several files
+        # the hash includes the path: files of one name and content in several folders get a shard each
         place = hashlib.sha256(f"{file}\0{digest}".encode()).hexdigest()[:16]
         shard = self.out / "shards" / f"{file.stem}-{place}.parquet"
         beside = shard.with_suffix(f".{os.getpid()}.part")
@@ -64,7 +64,7 @@ class Draw:
 
 
 def run(files, out, views, size, workers, draw=Draw):
-    """Draws the files with so many workers; returns the manifest."""
+    """Draws the files with `workers` workers; returns the manifest."""
     import ray
 
     out = Path(out)
@@ -72,7 +72,7 @@ def run(files, out, views, size, workers, draw=Draw):
     jobs = ray.data.from_items([{"file": str(file)} for file in files], override_num_blocks=len(files))
     settings = {"fn_constructor_args": (str(out), list(views), tuple(size)), "concurrency": workers, "num_cpus": 1}
     rows = jobs.map_batches(draw, batch_size=1, **settings).take_all()
-    for left in (out / "shards").glob("*.part"):  # of workers that died
+    for left in (out / "shards").glob("*.part"):  # workers that died leave these behind
         left.unlink()
     manifest = pa.Table.from_pylist(sorted(rows, key=lambda row: row["file"]))
     pq.write_table(manifest, out / "manifest.parquet")

@@ -85,8 +85,10 @@ pub(crate) struct Frame<'a> {
     /// This slot's constants and transforms, written by the host.
     pub constants: &'a Buffer,
     pub views: &'a TexelBuffer,
-    /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight, and how many items those are.
-    pub in_sight: (&'a Buffer, u32),
+    /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight.
+    pub in_sight: &'a Buffer,
+    /// How many items are in sight.
+    pub items_in_sight: u32,
     /// Constants and transforms for each of a pixel's samples, where there are several.
     pub samples: &'a [ViewBuffers],
     /// What the trim table is made of, where that is not this view.
@@ -98,7 +100,7 @@ pub(crate) struct Frame<'a> {
     pub keeps: bool,
     /// So is the trim table.
     pub keeps_table: bool,
-    /// Patches are drawn only where all that they are drawn from had room.
+    /// Pass `gate` runs: if a list overflowed before the first drawing, that drawing has no patches.
     pub counts_first: bool,
     /// Columns and rows of the pixels that operands without equations may be in.
     pub shell_pixels: &'a [Range<u32>; 2],
@@ -237,22 +239,22 @@ impl Frame<'_> {
             written = Access::COMPUTE_WRITE;
         }
         if let Some(linear) = &stages.linear {
-            let (resolved, test) = ((&linear.resolved, written), self.trim_test());
+            let (resolved, test) = (&linear.resolved, self.trim_test());
             match &stages.smooth_trims {
                 Some(smooth_trims) => {
-                    times.scope(cmd, "coverage", || smooth_trims.record(self, cmd, resolved, &test));
+                    times.scope(cmd, "coverage", || smooth_trims.record(self, cmd, resolved, written, &test));
                 }
-                None => times.scope(cmd, "borders", || {
+                None => {
                     if let Some(smooth_borders) = &stages.smooth_borders {
-                        smooth_borders.record(self, cmd, resolved, &test);
+                        times.scope(cmd, "borders", || smooth_borders.record(self, cmd, resolved, written, &test));
                         written = Access::COMPUTE_WRITE;
                     }
-                    linear.show(self, cmd, written);
-                }),
+                    times.scope(cmd, "show", || linear.show(self, cmd, written));
+                }
             }
         }
         if let (Some(layers), Some(solids)) = (&stages.transparency, self.solids()) {
-            times.scope(cmd, "layers", || layers.record(self, cmd, &solids, (drawing, written)));
+            times.scope(cmd, "layers", || layers.record(self, cmd, &solids, drawing, written));
         }
         let counters = &stages.common.counters;
         barrier::buffers(cmd, &[(counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, Access::TRANSFER_READ)]);

@@ -233,9 +233,9 @@ pub struct SceneSettings {
     pub samples: Samples,
     /// Which borders are smooth. Costs far less than [`samples`](Self::samples), of which there must be one.
     pub smooth: Smooth,
-    /// Ambient occlusion: what lies close to other things gets less of the sky's light. The radius, in units of the model, beyond
-    /// which nothing is close; `None` for none. It changes colours alone, of the styles that show light. There must be one
-    /// sample a pixel.
+    /// Ambient occlusion: points close to other surfaces get less of the sky's light. The radius, in units of the
+    /// model: surfaces farther away have no effect. `None`: no ambient occlusion. It changes only colours, and only in
+    /// styles that show light. It needs [`Samples::One`].
     pub ambient: Option<f64>,
     /// Frames may have an image of thickness: rays are followed through all solids.
     pub thickness: bool,

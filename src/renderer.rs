@@ -76,17 +76,16 @@ pub struct Renderer {
     /// Of the source: as it is, or what was cut out of it.
     loaded: Option<Loaded>,
     slots: Vec<Slot>,
-    /// The slot recorded last.
-    last: Option<usize>,
-    /// The slot recorded before that one.
-    before: Option<usize>,
+    /// Slots that frames were recorded into, the last one at the end.
+    order: Vec<usize>,
     /// The next frame reads back what this pixel shows.
     pick: Option<(u32, u32)>,
-    /// No frame is drawn in part: it counts before it draws. Else the first one alone, and those after buffers were made.
+    /// Every frame checks that its lists had room before it draws patches. If `false`, only the first frame does, and
+    /// each frame after buffers were made.
     pub(crate) counts_first: bool,
-    /// A frame never reached the GPU, and what it would have copied is not there: the source is loaded anew.
+    /// A frame never reached the GPU, so its copies are missing there: the next frame loads the source anew.
     stale: bool,
-    /// What frames draw into whose targets are larger than their picture.
+    /// The images for frames whose targets are larger than their picture.
     viewport: Option<Viewport>,
 }
 
@@ -124,7 +123,7 @@ impl Loaded {
     }
 }
 
-/// Bytes of one list: the largest are read as texels.
+/// Bytes of the largest list. The largest lists are read as texels, so both limits bound them.
 fn range(device: &Device) -> u32 {
     let limits = device.limits();
     let texels = u64::from(limits.max_texel_buffer_elements) * TexelBuffer::LEAST_BYTES;
@@ -173,8 +172,7 @@ impl Renderer {
             source: None,
             loaded: None,
             slots,
-            last: None,
-            before: None,
+            order: Vec::new(),
             pick: None,
             counts_first: false,
             stale: false,
@@ -185,9 +183,9 @@ impl Renderer {
     /// Records one frame: compute, draws, and the picture into the targets.
     ///
     /// # Errors
-    /// [`RenderError`]; the renderer goes on, as if the call had not been, unless the device is lost. After
-    /// [`RenderError::Gpu`] the command buffer may hold copies from buffers that are gone: reset it. After the others it is
-    /// as it was.
+    /// [`RenderError`]. The renderer is as before the call, unless the device is lost. After [`RenderError::Gpu`] reset
+    /// the command buffer: it may hold copies from buffers that no longer exist. After other errors it is as before the
+    /// call.
     ///
     /// # Panics
     /// When no model was uploaded, the slot does not exist, or the targets are not those of
@@ -211,7 +209,7 @@ impl Renderer {
         self.noting(recorded)
     }
 
-    /// The same of an input that is right.
+    /// [`Self::record`] of an input that was checked.
     ///
     /// # Safety
     /// See [`Self::record`].
@@ -261,7 +259,8 @@ impl Renderer {
             capacities: loaded.capacities,
             constants: &slot.constants,
             views,
-            in_sight: (in_sight, slot.items_in_sight),
+            in_sight,
+            items_in_sight: slot.items_in_sight,
             samples: &slot.samples,
             table_view: slot.table.as_ref(),
             centres: slot.centres.solids(),
@@ -307,7 +306,8 @@ impl Renderer {
         slot.capacities = Some(loaded.capacities);
         slot.size = input.camera.size;
         (slot.bands, slot.solid_bytes) = (loaded.bands(), loaded.solid_bytes());
-        self.before = self.last.replace(input.slot);
+        self.order.retain(|slot| *slot != input.slot);
+        self.order.push(input.slot);
         Ok(())
     }
 
@@ -374,7 +374,7 @@ impl Renderer {
     /// Keeps `what` until every frame in flight has finished. They finish in the order in which they
     /// were recorded, so it goes with the slot recorded last; at once when that one has finished.
     fn retire(&mut self, what: Retired) {
-        if let Some(slot) = self.last.map(|last| &mut self.slots[last]).filter(|slot| slot.recorded) {
+        if let Some(slot) = self.order.last().map(|last| &mut self.slots[*last]).filter(|slot| slot.recorded) {
             slot.retired.push(what);
         }
     }

@@ -1,4 +1,4 @@
-//! `tools/gpu_check`, unpacked by itself, with stand-ins for the program and the tests: what it reports, and its status.
+//! The report and the exit status of `tools/gpu_check`, run with shell scripts in place of the program and the tests.
 #![cfg(unix)]
 
 use std::fs;

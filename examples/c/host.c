@@ -3,7 +3,7 @@
 //     cc -std=c11 host.c $(pkg-config --cflags --libs selvedge) -lvulkan -o host
 //     ./host part.step 640 480
 //
-// The host clears its image to blue, lets the model be drawn into the middle of it, reads it back, and counts pixels.
+// The host clears its image to blue, records the model into the middle of the image, reads it back and counts pixels.
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@
 #define FORMAT VK_FORMAT_R8G8B8A8_UNORM
 #define BORDER 16u
 
-// A failed call names itself; what was made before is freed by `finish`.
+// Prints a failed call and returns; `finish` frees the objects that exist by then.
 #define VK(call)                                                                     \
     do {                                                                             \
         VkResult result = (call);                                                    \
@@ -107,7 +107,7 @@ static int make_device(Host* h)
     if (choose(h) != 0) {
         return 1;
     }
-    // the host's own wishes would stand in these structs
+    // a host sets the features that it needs itself in these structs, too
     VkPhysicalDeviceFeatures core = { 0 };
     VkPhysicalDeviceVulkan13Features v13 = { .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES };
     VkPhysicalDeviceVulkan12Features v12 = { .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES };
@@ -242,7 +242,7 @@ static void barrier(const Host* h, Use before, Use after)
     vkCmdPipelineBarrier(h->commands, before.stage, after.stage, 0, 0, NULL, 0, NULL, 1, &image);
 }
 
-// One frame, waited for: the host's blue, and the model in a rectangle of it.
+// Draws one frame and waits for it: the host's blue, and the model in a rectangle of the image.
 static int frame(const Host* h)
 {
     const VkCommandBufferBeginInfo begin = {
@@ -294,7 +294,7 @@ static int frame(const Host* h)
     return 0;
 }
 
-// Pixels that are not the host's blue: within the rectangle, and beside it.
+// Counts the pixels that are not the host's blue, within the rectangle and outside of it.
 static int count(const Host* h)
 {
     void* bytes = NULL;
@@ -331,11 +331,11 @@ static int run(Host* h, const char* path)
             return 1;
         }
         SELVEDGE(selvedge_host_report(h->renderer, 0, &report));
-    } while (!report.complete); // the next frame has the room that this one lacked
+    } while (!report.complete); // if a list was too short, the next frame has room for all of it
     return count(h);
 }
 
-// The renderer first: it was lent what follows.
+// Frees the renderer first: it uses the device.
 static void finish(Host* h)
 {
     selvedge_host_free(h->renderer);

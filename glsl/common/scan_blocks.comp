@@ -20,6 +20,6 @@ void main() {
         if (first + i < count) offsets[first + i] = offset;
         offset += mine[i];
     }
-    // There may be more workgroups than blocks: of the last row, or of arguments written for a longer list.
+    // There may be more workgroups than blocks: the last row is full, or the arguments were written for a longer list.
     if (gl_LocalInvocationIndex == 0 && block < block_count()) sums[block] = block_sum;
 }

@@ -53,8 +53,8 @@ const float FOLD_BESIDE = 0.25;
 const float FOLD_COSINE = 0.2;
 // From the centre of the pixel that sees the face.
 const float FOLD_REACH_PX = 1.5;
-// A step that leads farther leads to no fold within reach: steps are twice as long as the way to one, which is the square of
-// the way on the surface.
+// A longer step ends the search: no fold is within reach. Near a fold the distance in the picture is the square of the
+// distance on the surface, so a step is twice as long as the way that is left.
 const float FOLD_FAR_PX = 16.0;
 // Neighbours whose (u, v) differ by no more, of the patch, are on one sheet.
 const float SAME_PLACE = 0.05;
@@ -84,7 +84,7 @@ bool find_fold(Face face, int n, View view, vec2 uv, vec2 pixel, out Sample s) {
     ivec2 place = place_of(face, n);
     Patch patch_ = patch_at(patch_in(face, place));
     vec2 moved = vec2(1e9);
-    bool lost = false; // in the loop's condition: what refine.glsl says of loops that are left
+    bool lost = false; // tested by the loop's condition, not by a `break`: see refine.glsl
     for (uint i = 0u; i <= FOLD_STEPS && !lost; ++i) {
         Net net = net_of(patch_);
         s = sample_at(patch_, net, view, uv, pixel);

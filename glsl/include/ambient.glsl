@@ -1,5 +1,5 @@
-// Points that pixels see, for pass `ambient`. Needs scene.glsl, view.glsl, `frame` and `float depth_at(ivec2)`, which is UNSEEN
-// where nothing is seen.
+// The points that pixels see, and the surfaces they lie on, for passes `ambient_find` and `ambient_write`. Needs
+// scene.glsl, view.glsl, `frame`, and `float depth_at(ivec2)`, which returns UNSEEN for a pixel of the background.
 #ifndef AMBIENT_GLSL
 #define AMBIENT_GLSL
 
@@ -7,7 +7,7 @@
 
 bool in_picture(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(frame.size))); }
 
-// Depth of a pixel; UNSEEN beside the picture.
+// Depth of a pixel; UNSEEN outside the picture.
 float depth_beside(ivec2 at) { return in_picture(at) ? depth_at(at) : UNSEEN; }
 
 // The point that a pixel sees, in model axes.
@@ -16,10 +16,11 @@ vec3 point_at(ivec2 at, float depth) {
     return ray.o + depth * ray.d;
 }
 
-// What is linear in the picture along a plane.
+// A function of the depth that is linear in the picture along a plane.
 float linear_depth(float depth) { return frame.perspective != 0u ? 1.0 / depth : depth; }
 
-// How far two pixels in a row are from the plane that goes on through a third; UNSEEN where the first sees nothing.
+// How far the second neighbour along an axis lies off the line through this pixel and the first, in linear depth. If
+// the second sees nothing: how far the first lies off this pixel. If the first sees nothing: UNSEEN.
 float bend(ivec2 at, ivec2 axis, float here) {
     float first = depth_beside(at + axis);
     float second = depth_beside(at + 2 * axis);
@@ -28,7 +29,7 @@ float bend(ivec2 at, ivec2 axis, float here) {
     return abs(second >= UNSEEN ? step_ : linear_depth(second) - linear_depth(first) - step_);
 }
 
-// On which side of a pixel, along an axis, its surface goes on: 1 or -1; 0 where nothing is seen on either.
+// The side of a pixel, along an axis, on which its surface continues: 1 or -1; 0 if both neighbours see nothing.
 int like_beside(ivec2 at, ivec2 axis, float depth) {
     float here = linear_depth(depth);
     float after = bend(at, axis, here);

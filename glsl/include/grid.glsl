@@ -1,5 +1,5 @@
-// Arguments of a dispatch of so many workgroups, in rows as long as the device takes: thread.glsl numbers them. Needs the
-// frame's constants. Twin of src/twin/grid.rs.
+// Arguments of a dispatch of `groups` workgroups, in rows as long as the device takes. thread.glsl numbers the
+// workgroups. Needs the frame's constants. Twin: src/twin/grid.rs.
 #ifndef GRID_GLSL
 #define GRID_GLSL
 

@@ -1,7 +1,7 @@
-// Placed patches in sight, numbered without gaps: those of placed parts that are out of sight have no threads, and no places
-// in lists. Needs the frame's constants, and IN_SIGHT_BINDING. Twin: src/twin/in_sight.rs.
+// Numbers the items of the placed parts in sight without gaps. An item out of sight has no thread, and no place in
+// lists. Needs the frame's constants, and IN_SIGHT_BINDING. Twin: src/twin/in_sight.rs.
 //
-//   items   0 1 2 3 4 5 6 7 8 9 …        parts that are seen: runs of items that follow one another
+//   items   0 1 2 3 4 5 6 7 8 9 …        parts in sight: runs of consecutive items
 //   runs        └─┘     └───┘
 //   place       0 1     2 3 4            ItemRun: first place, first item
 #ifndef IN_SIGHT_GLSL

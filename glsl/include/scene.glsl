@@ -147,7 +147,7 @@ bool is_drawn(uint tau) { return tau != 0u && (tau & TAU_HIDDEN) == 0u; }
 // One frame's view.
 struct Frame {
     vec2 size;          // pixels
-    float focal;        // pixels per unit slope, the most; parallel view: pixels per model unit
+    float focal;        // the larger of focal_px
     float slant;        // largest stretch of a pixel towards the picture's corners, >= 1
     float near;
     float far;
@@ -159,7 +159,7 @@ struct Frame {
     float table_density; // pixels a model unit that the trim table is for, whatever the view; 0: of what this one shows
     uint fixed_factor;  // of every patch; 0: what the bound asks for
     uint items_in_sight; // placed patches of placed parts that are in sight
-    uint run_count;     // of such items that follow one another
+    uint run_count;     // runs of consecutive items in sight (in_sight.glsl)
     uint cell_count;
     uint bin_count;     // of all strips of all placed faces
     uint curve_count;
@@ -188,7 +188,7 @@ struct Frame {
     uint samples;       // of each pixel's colour
     uint style;         // STYLE_*
     uint most_groups;   // workgroups in one row of a dispatch
-    vec2 focal_px;      // as `focal`, across and down
+    vec2 focal_px;      // across and down: pixels per unit slope; parallel view: pixels per model unit
     vec2 principal_px;  // where the view axis is seen
 };
 
@@ -251,10 +251,10 @@ struct Factors {
     uint splits; // sub-patches along u | along v << 16; powers of two
 };
 
-// Items in sight that follow one another (in_sight.glsl).
+// A run of consecutive items in sight (in_sight.glsl).
 struct ItemRun {
-    uint place; // of the first among all in sight
-    uint item;
+    uint place; // of its first item, among all items in sight
+    uint item;  // the first
 };
 
 struct SubPatch {

@@ -1,6 +1,6 @@
-// Numbers of workgroups and threads where a dispatch has more workgroups than one row of it takes: then it has several rows
-// of as many each (Commands::dispatch, grid.glsl), and more workgroups than there is work for. Workgroups have one dimension;
-// their size stands before this is included.
+// Numbers workgroups and threads across the rows of a dispatch. A dispatch of more workgroups than one row takes has
+// several equal rows (Commands::dispatch, grid.glsl), so the last row may have workgroups without work. Workgroups have
+// one dimension; their size is declared before this file is included.
 #ifndef THREAD_GLSL
 #define THREAD_GLSL
 

@@ -1,22 +1,24 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `ambient_find`: how much of the sky around each pixel's point is hidden by what else the picture shows within the radius. One thread a pixel. Source: J. Jiménez, X. Wu, A. Pesce, A. Jarabo, Practical Realtime Strategies for Accurate
-// Indirect Occlusion (SIGGRAPH course 2016), whose integral over a slice is exact.
+// Pass `ambient_find`: the share of the sky over each pixel's point that other points of the picture, within the
+// radius, hide. One thread a pixel. Source: J. Jiménez, X. Wu, A. Pesce, A. Jarabo, Practical Realtime Strategies for
+// Accurate Indirect Occlusion (SIGGRAPH course 2016): the integral over a slice has a closed form.
 //
-//        h0 ╲     ^ v     ╱ h1        a slice through the ray: seen from the point, what is within the radius hides
-//            ╲    │    ╱              all below its horizon. Sky that is left, by the cosine with n, of cos γ + γ sin γ:
+//        h0 ╲     ^ v     ╱ h1        a slice through the ray: surfaces within the radius hide the sky below
+//            ╲    │    ╱              h0 and h1. Of the open sky, |n'| (cos γ + γ sin γ), there is left
 //      ▟▙     ╲   │ ╱   ▟▙               |n'| (a(h0) + a(h1)),  a(h) = (cos γ + 2 h sin γ - cos(2 h - γ)) / 4
-//    ▟█▀▀▀▀▀▀▀▀▀▀▀●▀▀▀▀▀▀▀█▙          n' is n in the slice, γ its angle from v
+//    ▟█▀▀▀▀▀▀▀▀▀▀▀●▀▀▀▀▀▀▀█▙          n' is n projected into the slice, γ the angle from v to n'
 //
-// A pixel takes SLICES slices; the sixteen pixels of a square of four take different ones, and pass `ambient_write` their mean.
+// A pixel takes SLICES slices. The sixteen pixels of a square of 4 x 4 take different slices; pass `ambient_write`
+// takes their mean.
 #include "scene.glsl"
 #include "view.glsl"
 #include "shade.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(binding = 1, rgba32f) readonly uniform image2D resolved;  // linear colour, depth; UNSEEN where nothing is
+layout(binding = 1, rgba32f) readonly uniform image2D resolved;  // linear colour, depth; UNSEEN at the background
 layout(binding = 2, rg32f) writeonly uniform image2D ambient;    // hidden share of the sky, depth
 
 layout(scalar, push_constant) uniform Push { float radius; } push; // in units of the model
@@ -28,15 +30,17 @@ float depth_at(ivec2 at) { return imageLoad(resolved, at).a; }
 const float PI = 3.14159265;
 const int SLICES = 2;
 const int HORIZON_STEPS = 4; // in each direction
-// The radius in the picture is at most this share of its height: farther steps would miss what lies between.
+// The radius in the picture is at most this share of its height: longer steps would jump over small surfaces.
 const float MOST_HEIGHT = 0.2;
-// What lies farther than this share of the radius counts less and less.
+// Beyond this share of the radius the weight of a point falls, to 0 at the radius.
 const float FADES = 0.75;
 
+// a(h) of the figure, in a slice whose normal has the angle `g`.
 float sky_below(float h, float g) { return 0.25 * (cos(g) + 2.0 * h * sin(g) - cos(2.0 * h - g)); }
 
-// Sine of the largest elevation over the tangent plane of what the picture shows in one direction. By that, not by the angle with
-// the ray: pixels lie beside the slice by a part of a pixel, those of a plane on it all the same.
+// Sine of the largest elevation over the tangent plane, of the points along one direction of the picture. The centres
+// of pixels lie up to half a pixel beside the slice. That changes their angles with the ray, but it leaves the points
+// of a plane on the plane.
 float elevation(ivec2 at, vec3 p, vec3 n, vec2 step_px, float first) {
     float highest = 0.0;
     for (int i = 0; i < HORIZON_STEPS; ++i) {
@@ -66,10 +70,10 @@ float hidden_at(ivec2 at, vec3 p, vec3 n, vec3 v, float reach_px) {
         vec3 within = n - axis * dot(n, axis);
         float size = max(length(within), 1e-6);
         float g = sign(dot(across, within)) * acos(clamp(dot(within, v) / size, 0.0, 1.0));
-        // in the slice, directions at an angle from n' have its cosine times |n'| as the sine of their elevation
+        // a direction of the slice at an angle a from n' has the sine |n'| cos a of its elevation
         float before = acos(min(elevation(at, p, n, -reach_px * direction, first) / size, 1.0));
         float after = acos(min(elevation(at, p, n, reach_px * direction, first) / size, 1.0));
-        // exactly 0 where nothing rises: the sky of two slices alone would not be 1
+        // the open sky minus the sky that is left: exactly 0 on a plane, where the sky of two slices alone is not 1
         sum += size * (cos(g) + g * sin(g) - sky_below(g - before, g) - sky_below(g + after, g));
     }
     return clamp(sum / float(SLICES), 0.0, 1.0);

@@ -1,16 +1,17 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `ambient_write`: what is hidden from the sky is darker. The mean of a square of four by four pixels has each of the slices of
-// pass `ambient_find` once; pixels off the plane through the own one count less.
+// Pass `ambient_write`: darkens each pixel by the hidden share of its sky. The share is the mean over a square of 4 x 4
+// pixels, which holds each slice of pass `ambient_find` once. Pixels off the plane through this one have less weight.
+// One thread a pixel.
 #include "scene.glsl"
 #include "view.glsl"
 #include "shade.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(binding = 1, rg32f) readonly uniform image2D ambient;  // hidden share of the sky, depth; UNSEEN where nothing is
-layout(binding = 2, rgba32f) uniform image2D resolved;        // linear colour, depth
+layout(binding = 1, rg32f) readonly uniform image2D ambient; // hidden share of the sky, depth; UNSEEN at the background
+layout(binding = 2, rgba32f) uniform image2D resolved;       // linear colour, depth
 
 layout(scalar, push_constant) uniform Push { float radius; } push;
 
@@ -18,12 +19,12 @@ float depth_at(ivec2 at) { return imageLoad(ambient, at).y; }
 
 #include "ambient.glsl"
 
-// How dark it is where no sky is seen: 1 is black.
+// Share of the colour that a wholly hidden sky takes away: 1 is black.
 const float STRENGTH = 0.75;
-// Pixels this share of the radius off the plane do not count.
+// Pixels farther off the plane than this share of the radius have no weight.
 const float OFF = 0.1;
 
-// How much the depth changes from pixel to pixel.
+// How much the depth changes from one pixel to the next along an axis; 0 if both neighbours see nothing.
 float slope(ivec2 at, ivec2 axis, float depth) {
     int way = like_beside(at, axis, depth);
     return way == 0 ? 0.0 : float(way) * (depth_at(at + way * axis) - depth);

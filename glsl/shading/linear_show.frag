@@ -1,7 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `linear_show`: pixels as pass `resolve`, and those that change its colours, left them, into the host's colour.
+// Pass `linear_show`: writes the linear colours of pass `resolve`, as later passes have changed them, to the host's
+// colour.
 #include "scene.glsl"
 #include "view.glsl"
 

@@ -22,7 +22,7 @@ layout(scalar, binding = 6) readonly buffer SeenBins { uint seen_bins[]; }; // w
 
 const uint GROUP = 128u;        // threads of a workgroup in passes cross and sort
 const uint SCAN_BLOCK = 1024u;  // rows of a workgroup in the prefix sum
-const uint MOST_NUMBERED = 0x80000000u; // numbers of threads behind the last do not wrap
+const uint MOST_NUMBERED = 0x80000000u; // the threads that fill the last row have numbers of 32 bits too
 
 void main() {
     uint strip = thread_number();
@@ -31,7 +31,7 @@ void main() {
     uvec2 seen = SCENE_HAS_BINS ? seen_range(seen_bins[strip]) : uvec2(0u, 1u);
     strips[strip] = StripRows(first_row, (strip_starts[strip + 1u] - first_row) / seen.y, seen.x, seen.y);
     if (strip_starts[strip + 1u] < first_row) {
-        // more than 32 bits count
+        // the sum of the rows exceeds 32 bits
         atomicMax(counters.wanted_rows, 0xffffffffu);
         atomicOr(counters.failed, FAILED_ROWS);
     }

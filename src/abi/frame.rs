@@ -126,7 +126,7 @@ pub struct GapCandidate {
     pub word: [u32; 2],
 }
 
-/// Items in sight that follow one another.
+/// A run of consecutive items in sight: its first item, and that item's place among all items in sight.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
 pub struct ItemRun {

@@ -18,7 +18,7 @@ pub(crate) struct Counts {
     pub wide_strips: u32,
     pub curves: u32,
     pub face_instances: u32,
-    /// Something beside patches reads the views of placed parts that are out of sight.
+    /// A pass reads the views of all placed parts, not only of those in sight.
     pub views_all: bool,
     /// Patches may lie behind others.
     pub hides: bool,
@@ -110,7 +110,8 @@ impl Counts {
         Lists { size, has_fragments: self.has_fragments(), limits: self.limits(range) }
     }
 
-    /// Whether numbers tell all of them apart, and one storage buffer of `range` bytes holds what each of them has.
+    /// Checks that 32 bits number all of them, and that a storage buffer of `range` bytes holds the largest list of
+    /// each.
     pub(crate) fn check(self, range: u32) -> Result<(), TooMany> {
         let border_cells = if self.operand_patches { size_of::<BorderCells>() } else { 0 };
         let word = size_of::<u32>();
@@ -145,13 +146,14 @@ pub struct TooMany {
     pub count: u32,
     /// How many there may be.
     pub most: u32,
-    /// Where memory is what is lacking: bytes that all of them take in one buffer, and the most that the device binds.
+    /// If a buffer is too small: the bytes that all of them take in one buffer, and the most bytes that the device
+    /// binds.
     pub bytes: Option<(u64, u64)>,
     /// What to ask for in its place.
     pub help: &'static str,
 }
 
-/// Why no more can be drawn, as [`TooMany`] says it.
+/// The reason within the message of [`TooMany`].
 struct Why<'a>(&'a Option<(u64, u64)>);
 
 impl fmt::Display for Why<'_> {

@@ -1,4 +1,5 @@
-//! A picture in a rectangle of larger targets: it is drawn into images of its own size, and copied.
+//! A picture in a rectangle of larger targets. The frame is drawn into images of the picture's size, which are then
+//! copied.
 //!
 //! ```text
 //!    host's target                    own image                        host's target
@@ -8,8 +9,8 @@
 //!   └─────────────┘                                                  └─────────────┘
 //! ```
 //!
-//! The passes are those of a whole target, so the pixels are the same bit for bit; nothing is written beside the rectangle.
-//! Cost: a copy of the rectangle, two where the host's picture is kept.
+//! The passes are those of a whole target, so the pixels are the same bit for bit. Pixels outside the rectangle are not
+//! written. Cost: one copy of the rectangle for each target, two if the host's picture is kept.
 
 use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageAccess, ImageInfo, Pool, barrier};
 use ash::vk;
@@ -17,7 +18,7 @@ use ash::vk;
 /// A host's target and the image that is drawn into in its place.
 pub(crate) type Pair<'a> = (&'a Image, &'a Image);
 
-/// The place of one target.
+/// The image that is drawn into in place of one target.
 ///
 /// # Errors
 /// See [`Image::new`].
@@ -33,12 +34,12 @@ fn is_depth(image: &Image) -> bool {
     !image.range().aspect_mask.contains(vk::ImageAspectFlags::COLOR)
 }
 
-/// What draws into the image.
+/// The access that draws into the image.
 fn drawn(image: &Image) -> Access {
     if is_depth(image) { Access::DEPTH_WRITE } else { Access::COLOUR_WRITE }
 }
 
-/// Before the frame: the images may be drawn into, and hold the host's picture where it is kept.
+/// Before the frame: prepares the images for drawing. If the host's picture is kept, copies it into them.
 pub(crate) fn begin(cmd: &Commands<'_>, pairs: &[Pair<'_>], corner: (u32, u32), keep: bool) {
     for &(target, own) in pairs {
         let before = Access::TRANSFER_READ.discarded(); // the copy of the frame before
@@ -58,7 +59,7 @@ pub(crate) fn begin(cmd: &Commands<'_>, pairs: &[Pair<'_>], corner: (u32, u32), 
     }
 }
 
-/// After the frame: the rectangle of each target holds what was drawn.
+/// After the frame: copies each image into the rectangle of its target.
 pub(crate) fn end(cmd: &Commands<'_>, pairs: &[Pair<'_>], corner: (u32, u32)) {
     for &(target, own) in pairs {
         barrier::images(

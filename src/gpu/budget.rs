@@ -1,21 +1,21 @@
-//! How much memory may be taken: what the host says, else what the driver says of each heap.
+//! Refuses an object that exceeds the memory budget: the host's budget, or else the driver's budget of each heap.
 //!
 //! ```text
 //!   the host's budget      all of the engine's memory on this device  + the new object  <=  budget
-//!   else, of the heap that the object would come from:
-//!     VK_EXT_memory_budget   what the process uses there              + the new object  <=  heapBudget
+//!   else, of the heap with the most room among those of the object's memory types:
+//!     VK_EXT_memory_budget   the process's memory in that heap        + the new object  <=  heapBudget
 //!     without it             all of the engine's memory               + the new object  <=  size of the heap
 //! ```
 //!
-//! The driver's figures are read anew for each object: other programs take memory, too. The heap is that of the first memory
-//! type that the allocator looks for; where that type has no room the allocator may take another, so only a device whose
-//! heaps all lack room is refused.
+//! The driver's figures are read anew for each object, because other programs take memory too. The allocator may try
+//! several memory types, so an object is refused only if none of their heaps has room. The allocator takes memory in
+//! blocks: the figures count whole blocks, and an object may find room in a block that is already taken.
 
 use super::{BudgetOwner, Device, GpuError, MemoryLocation};
 use ash::vk;
 use vk::MemoryPropertyFlags as Kind;
 
-/// Heaps of a device, and what may be taken of them.
+/// Heaps of a device, and the host's budget.
 pub(super) struct Heaps {
     instance: ash::Instance,
     physical: vk::PhysicalDevice,
@@ -24,7 +24,7 @@ pub(super) struct Heaps {
     most: Option<u64>,
 }
 
-/// What is left, and of how much.
+/// Bytes that are left, of `most`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Room {
     left: u64,
@@ -64,7 +64,7 @@ impl Heaps {
             Some(most) => (Room { left: most.saturating_sub(taken), most }, BudgetOwner::Host),
             None => match self.of_heaps(types, location, taken) {
                 Some(room) => (room, BudgetOwner::Heap),
-                None => return Ok(()), // the allocator says that there is no such memory
+                None => return Ok(()), // there is no such memory: the allocator returns the error
             },
         };
         if bytes <= room.left {

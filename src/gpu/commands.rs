@@ -67,8 +67,8 @@ impl<'a> Commands<'a> {
         }
     }
 
-    /// Starts at least `groups` workgroups: in x, or where those are more than the device takes in x, in as many rows of
-    /// that many as they need. The shader numbers them by `glsl/include/thread.glsl`, and leaves out those that are too many.
+    /// Starts at least `groups` workgroups. They are one row in x; if the device takes fewer in x, they are several
+    /// full rows. The shader numbers workgroups by `glsl/include/thread.glsl` and skips those beyond the last.
     ///
     /// # Panics
     /// When the device does not take so many in x and y.
@@ -203,7 +203,7 @@ impl<'a> Commands<'a> {
         unsafe { self.device.raw().cmd_fill_buffer(self.raw, buffer.handle(), 0, vk::WHOLE_SIZE, word) };
     }
 
-    /// Clears a colour image of whole numbers: [`Access::TRANSFER_WRITE`].
+    /// Clears an image of unsigned integers: [`Access::TRANSFER_WRITE`].
     pub fn clear(&self, image: &Image, word: u32) {
         let colour = vk::ClearColorValue { uint32: [word; 4] };
         let range =
@@ -272,8 +272,8 @@ impl<'a> Commands<'a> {
         }
     }
 
-    /// Copies a rectangle of `size` pixels, every aspect, between images of one format, each with the rectangle's upper left
-    /// pixel: [`Access::TRANSFER_READ`] to [`Access::TRANSFER_WRITE`].
+    /// Copies a rectangle of `size` pixels, in every aspect, between images of one format. Each image comes with the
+    /// upper left pixel of its rectangle. [`Access::TRANSFER_READ`] to [`Access::TRANSFER_WRITE`].
     pub fn copy_rectangle(
         &self,
         (from, from_at): (&Image, (u32, u32)),

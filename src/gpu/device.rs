@@ -30,14 +30,14 @@ pub struct HostDevice<'a> {
     pub debug_names: bool,
     /// The device has the feature `pipelineStatisticsQuery`: the triangle count is measured.
     pub pipeline_statistics: bool,
-    /// The host's cache, which every pipeline is made with; null for none. It outlives the device's last user, and no call
-    /// of the host's merges into it meanwhile.
+    /// The cache that every pipeline is created with; null for none. It must outlive everything made from the device,
+    /// and the host must not merge into it meanwhile.
     pub pipeline_cache: vk::PipelineCache,
-    /// Bytes that the engine may take on this device; `None`: what its heaps have.
+    /// Bytes that the engine may take on this device; `None`: as many as its heaps have.
     pub memory_budget: Option<u64>,
 }
 
-/// Limits to take in place of a device's own where they are lower: tests come to them with little work.
+/// Replaces limits of a device by lower ones, so that tests reach them with small scenes.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LowerLimits {
@@ -84,11 +84,11 @@ struct Inner {
     next_object: AtomicU64,
     pipelines: Mutex<HashMap<Description, Weak<Made>>>,
     pipeline_nanoseconds: AtomicU64,
-    /// The call that told of the device's loss, and its object.
+    /// The call that first returned `VK_ERROR_DEVICE_LOST`, and its object.
     lost: OnceLock<(&'static str, String)>,
-    /// Its handle must not be used any more.
+    /// The device's handle is not valid any more.
     gone: AtomicBool,
-    /// What becomes of each shader: tests imitate other arithmetic.
+    /// Rewrites each shader: tests imitate the arithmetic of other GPUs.
     #[cfg(test)]
     rewriting: OnceLock<Rewriting>,
 }
@@ -171,7 +171,7 @@ impl Device {
 
     /// A call returned `VK_ERROR_DEVICE_LOST`.
     pub(crate) fn set_lost(&self, call: &'static str, resource: &str) {
-        // the first call alone is told
+        // later calls do not replace the first
         let _ = self.0.lost.set((call, resource.to_owned()));
     }
 
@@ -193,18 +193,18 @@ impl Device {
         self.0.rewriting.get().copied()
     }
 
-    /// Its handle is not valid any more: what was made from it frees host memory alone.
+    /// The device's handle is not valid any more: objects made from it free only host memory from now on.
     pub(crate) fn abandon(&self) {
         self.0.gone.store(true, Ordering::Relaxed);
     }
 
-    /// Its handle is not valid any more.
+    /// The device's handle is not valid any more.
     #[cfg(feature = "headless")]
     pub(crate) fn is_gone(&self) -> bool {
         self.living().is_none()
     }
 
-    /// [`GpuError::DeviceLost`] since the first call that told of it.
+    /// [`GpuError::DeviceLost`] of the first call that returned it.
     pub(crate) fn alive(&self) -> Result<(), GpuError> {
         match self.0.lost.get() {
             None => Ok(()),
@@ -212,8 +212,8 @@ impl Device {
         }
     }
 
-    /// Vulkan's functions to free what was made, `None` where its handle is not valid any more. A lost device is not gone:
-    /// its objects are to be destroyed before it (Vulkan 1.3, section 5.2.3, "Lost Device").
+    /// Vulkan's functions, to destroy objects; `None` if the device's handle is not valid any more. The handle of a
+    /// lost device is valid: its objects must be destroyed before it (Vulkan 1.3, section 5.2.3, "Lost Device").
     pub(super) fn living(&self) -> Option<&ash::Device> {
         (!self.0.gone.load(Ordering::Relaxed)).then_some(&self.0.raw)
     }
@@ -300,7 +300,7 @@ impl Device {
         &self.0.heaps
     }
 
-    /// Bytes that the engine may take on this device, where the host said so.
+    /// The host's budget: bytes that the engine may take on this device.
     pub fn memory_budget(&self) -> Option<u64> {
         self.0.heaps.most()
     }

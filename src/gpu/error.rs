@@ -7,11 +7,11 @@ use gpu_allocator::AllocationError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// The device is gone: nothing more can be drawn with it. What was made from it may only be dropped; a new renderer on
-    /// a new device takes the same model.
+    /// The device is lost. Everything made from it may only be dropped. A new renderer on a new device can draw the
+    /// same model.
     #[error("{call} failed for `{resource}`: the device is lost; make a new device and a renderer on it")]
     DeviceLost {
-        /// The function that told it first, as Vulkan spells it.
+        /// The first function that returned it, as Vulkan spells it.
         call: &'static str,
         /// Name of the object that it was called for.
         resource: String,
@@ -23,7 +23,7 @@ pub enum GpuError {
         call: &'static str,
         /// Name of the object that it was called for.
         resource: String,
-        /// Whose memory it is.
+        /// Whose memory ran out.
         memory: MemoryOwner,
     },
     /// A Vulkan function returned another error.
@@ -36,9 +36,10 @@ pub enum GpuError {
         /// What it returned.
         result: vk::Result,
     },
-    /// More than the engine may take: nothing was allocated.
+    /// The object exceeds the memory budget; nothing was allocated.
     #[error(
-        "`{resource}` needs {bytes} bytes, but {left} are left of {most}{of}; give it more, draw a smaller picture or fewer parts at once"
+        "`{resource}` needs {bytes} bytes, but {left} are left of {most}{of}; give it more, draw a smaller picture or \
+         fewer parts at once"
     )]
     OverBudget {
         /// Name of the buffer or image.
@@ -47,12 +48,12 @@ pub enum GpuError {
         bytes: u64,
         /// Bytes that are left.
         left: u64,
-        /// Bytes that there are.
+        /// Bytes of the whole budget.
         most: u64,
-        /// Who says so: the host, or a heap of the device.
+        /// Whose budget it is.
         of: BudgetOwner,
     },
-    /// The allocator has no memory to give, for another reason than the driver's.
+    /// The allocator failed, without an error of the driver.
     #[error("no memory for `{resource}` ({bytes} bytes): {source}")]
     Allocation {
         /// Name of the buffer or image.
@@ -76,7 +77,7 @@ pub enum GpuError {
     },
 }
 
-/// Whose memory ended.
+/// Whose memory ran out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MemoryOwner {
     /// The host's: `VK_ERROR_OUT_OF_HOST_MEMORY`.
@@ -94,12 +95,12 @@ impl std::fmt::Display for MemoryOwner {
     }
 }
 
-/// Who says how much memory there is.
+/// Whose memory budget it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BudgetOwner {
     /// [`HostDevice::memory_budget`](super::HostDevice::memory_budget).
     Host,
-    /// The driver, of a heap.
+    /// The driver's budget of a heap.
     Heap,
 }
 
@@ -113,12 +114,12 @@ impl std::fmt::Display for BudgetOwner {
 }
 
 impl GpuError {
-    /// Nothing more can be drawn with the device.
+    /// The device is lost: nothing more can be drawn with it.
     pub fn is_device_lost(&self) -> bool {
         matches!(self, Self::DeviceLost { .. })
     }
 
-    /// Less may fit: the renderer goes on.
+    /// Memory ran out. The renderer still works, and a smaller picture or model may fit.
     pub fn is_out_of_memory(&self) -> bool {
         matches!(
             self,
@@ -126,7 +127,7 @@ impl GpuError {
         )
     }
 
-    /// What a call returned for an object.
+    /// The error of a call for an object.
     fn of(result: vk::Result, call: &'static str, resource: &str) -> Self {
         let resource = resource.to_owned();
         match result {
@@ -137,8 +138,8 @@ impl GpuError {
         }
     }
 
-    /// Why the allocator gave no memory. It passes on by words alone what `vkAllocateMemory` and `vkMapMemory` returned,
-    /// but for the commonest.
+    /// The error of the allocator. It has a variant for the commonest result of `vkAllocateMemory`; other results, and
+    /// those of `vkMapMemory`, appear only in its text.
     pub(super) fn of_allocator(source: AllocationError, resource: &str, bytes: u64) -> Self {
         let call = match &source {
             AllocationError::FailedToMap(_) => "vkMapMemory",
@@ -147,9 +148,9 @@ impl GpuError {
         let result = match &source {
             AllocationError::OutOfMemory => Some(vk::Result::ERROR_OUT_OF_DEVICE_MEMORY),
             AllocationError::FailedToMap(words) | AllocationError::Internal(words) => {
-                let told =
+                let is_named =
                     |result: &vk::Result| words.contains(&result.to_string()) || words.contains(&format!("{result:?}"));
-                TYPED.into_iter().find(told)
+                TYPED.into_iter().find(is_named)
             }
             _ => None,
         };
@@ -160,7 +161,7 @@ impl GpuError {
     }
 }
 
-/// Results that have an error of their own.
+/// Results with a [`GpuError`] variant of their own.
 const TYPED: [vk::Result; 3] =
     [vk::Result::ERROR_DEVICE_LOST, vk::Result::ERROR_OUT_OF_HOST_MEMORY, vk::Result::ERROR_OUT_OF_DEVICE_MEMORY];
 

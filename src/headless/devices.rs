@@ -1,4 +1,4 @@
-//! What the system's Vulkan devices offer, and what each lacks.
+//! The system's Vulkan devices: their properties, and the requirements that each does not meet.
 
 use super::instance::{Instance, rank};
 use super::{HeadlessError, HeadlessOptions};
@@ -16,13 +16,13 @@ pub struct DeviceSummary {
     pub kind: &'static str,
     /// The driver's name and version.
     pub driver: String,
-    /// The version of Vulkan that it offers.
+    /// The version of Vulkan that it supports.
     pub vulkan: String,
-    /// What the engine needs and it does not have: [`Requirements::missing`]. Empty: the engine runs on it.
+    /// Requirements that it does not meet: [`Requirements::missing`]. If empty, the engine runs on it.
     pub missing: Vec<String>,
-    /// It is taken where no other is named.
+    /// The engine takes it if the user names no device.
     pub is_default: bool,
-    /// What bounds pictures and models.
+    /// Its limits.
     pub limits: DeviceLimits,
 }
 
@@ -35,13 +35,13 @@ pub struct DeviceLimits {
     pub device_memory_bytes: u64,
     /// Bytes of the largest list that a shader writes (`maxStorageBufferRange`).
     pub storage_buffer_bytes: u64,
-    /// Sixteen times the number of texels of a list (`maxTexelBufferElements`): bytes of the largest one that is read so.
+    /// Bytes of the largest list that is read as texels of sixteen bytes: 16 times `maxTexelBufferElements`.
     pub texel_buffer_bytes: u64,
     /// Width and height of the largest picture, pixels.
     pub picture_px: u32,
     /// Segments of a side of a sub-patch (`maxTessellationGenerationLevel`).
     pub tessellation_level: u32,
-    /// Vertices of one tessellated draw, where the driver bounds them.
+    /// Vertices of one tessellated draw; `None`: no bound.
     pub tessellated_vertices: Option<u32>,
     /// Workgroups of one dispatch along x.
     pub workgroups: u32,
@@ -49,9 +49,9 @@ pub struct DeviceLimits {
     pub subgroup_sizes: [u32; 2],
     /// The driver counts triangles.
     pub counts_triangles: bool,
-    /// The GPU tells the time that a pass takes.
+    /// The GPU measures the time of a pass.
     pub has_timestamps: bool,
-    /// The driver tells how much memory is left (`VK_EXT_memory_budget`).
+    /// The driver reports how much memory is left (`VK_EXT_memory_budget`).
     pub tells_budget: bool,
 }
 
@@ -139,7 +139,7 @@ fn of(instance: &Instance, physical: vk::PhysicalDevice, chosen: Option<vk::Phys
     (rank(plain.device_type), summary)
 }
 
-/// What a device lacks, in words.
+/// The missing requirements in words.
 pub(super) fn lacks(missing: &[String]) -> String {
     let list = missing.join(", ");
     if missing.iter().any(|what| what == "feature tessellation_shader") {
@@ -150,7 +150,7 @@ pub(super) fn lacks(missing: &[String]) -> String {
 }
 
 impl DeviceSummary {
-    /// What it lacks, in words; `None`: nothing.
+    /// Its missing requirements in words; `None`: it meets all.
     pub fn lacks(&self) -> Option<String> {
         (!self.missing.is_empty()).then(|| lacks(&self.missing))
     }
@@ -164,8 +164,8 @@ mod tests {
     fn missing_tessellation_is_explained_in_one_sentence() {
         let words = |what: &[&str]| lacks(&what.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>());
         assert_eq!(words(&["feature maintenance4"]), "feature maintenance4");
-        let told = words(&["feature tessellation_shader", "feature maintenance4"]);
-        assert!(told.starts_with("feature tessellation_shader, feature maintenance4 (surfaces are drawn by"), "{told}");
+        let both = words(&["feature tessellation_shader", "feature maintenance4"]);
+        assert!(both.starts_with("feature tessellation_shader, feature maintenance4 (surfaces are drawn by"), "{both}");
     }
 
     /// The tests run on a device: it is listed, one is the default, and its limits are those that the renderer sees.

@@ -65,7 +65,7 @@ impl Instance {
         if layer_settings {
             enabled.push(ash::ext::layer_settings::NAME.as_ptr());
         }
-        // devices on top of another API are listed only then
+        // without it the loader lists no devices on top of another API
         let portability = extensions.iter().any(|name| name == ash::khr::portability_enumeration::NAME);
         let mut flags = vk::InstanceCreateFlags::empty();
         if portability {
@@ -98,7 +98,7 @@ impl Instance {
         Ok(this)
     }
 
-    /// It runs on top of another API.
+    /// The device runs on top of another API.
     pub(super) fn is_portable(&self, physical: vk::PhysicalDevice) -> bool {
         // SAFETY: the device belongs to this instance.
         let all = unsafe { self.raw.enumerate_device_extension_properties(physical) }.unwrap_or_default();

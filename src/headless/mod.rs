@@ -40,8 +40,8 @@ pub struct HeadlessOptions {
     pub device: Option<String>,
     /// Validation and synchronisation validation, collected in [`HeadlessDevice::messages`].
     pub validation: bool,
-    /// Where compiled pipelines are kept from one run to the next: a file for each device and driver; `None`: nowhere. A
-    /// damaged or foreign file is ignored.
+    /// The folder that keeps compiled pipelines from one run to the next, in a file for each device and driver; `None`:
+    /// none are kept. A file that is damaged or of another device is ignored.
     pub pipeline_folder: Option<PathBuf>,
     /// See [`HostDevice::memory_budget`].
     pub memory_budget: Option<u64>,
@@ -95,7 +95,7 @@ pub enum HeadlessError {
 }
 
 impl HeadlessError {
-    /// What failed of Vulkan or its memory.
+    /// The error of Vulkan or of memory within.
     pub fn gpu(&self) -> Option<&GpuError> {
         match self {
             Self::Gpu(error) => Some(error),
@@ -141,7 +141,7 @@ impl HeadlessDevice {
         Self::on_entry(entry, options, lower)
     }
 
-    /// As [`new`](Self::new), on another Vulkan than the system's: a test's double of the driver.
+    /// As [`new`](Self::new), on another Vulkan loader than the system's: tests pass a double of the driver.
     #[doc(hidden)]
     pub fn of_entry(entry: ash::Entry, options: &HeadlessOptions) -> Result<Self, HeadlessError> {
         Self::on_entry(entry, options, LowerLimits::NONE)
@@ -162,7 +162,7 @@ impl HeadlessDevice {
         let Some(queue_family) = family else { return Err(HeadlessError::NoDevice) };
         let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(queue_family).queue_priorities(&[1.0])];
         let mut extensions: Vec<_> = Requirements::DEVICE_EXTENSIONS.iter().map(|name| name.as_ptr()).collect();
-        // to be enabled where it is there (VUID-VkDeviceCreateInfo-pProperties-04451)
+        // a device with this extension must have it enabled (VUID-VkDeviceCreateInfo-pProperties-04451)
         extensions.extend(instance.is_portable(physical).then_some(ash::khr::portability_subset::NAME.as_ptr()));
         let create = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
@@ -235,8 +235,8 @@ impl HeadlessDevice {
         queue.submit(&self.parts.device, record).inspect_err(|error| self.device().note(error))
     }
 
-    /// Keeps the pipelines compiled so far in the file of [`HeadlessOptions::pipeline_folder`]; so does the drop, which tells
-    /// no error.
+    /// Writes the pipelines compiled so far to their file in [`HeadlessOptions::pipeline_folder`]. The drop does so
+    /// too, and ignores errors.
     ///
     /// # Errors
     /// Of the file system, or of the driver.
@@ -265,7 +265,7 @@ impl HeadlessDevice {
 impl Drop for HeadlessDevice {
     fn drop(&mut self) {
         if !self.parts.device.is_lost() {
-            let _ = self.save_pipelines(); // they are compiled again next time
+            let _ = self.save_pipelines(); // on an error the next run compiles them again
         }
         if self.parts.device.is_last() && !self.parts.device.is_gone() {
             // SAFETY: dropped once, here; nothing made from the device lives.
@@ -388,12 +388,13 @@ impl Queue {
         self.wait(device).map(|()| result)
     }
 
-    /// Waits until the GPU has finished; where even that fails, whatever it uses stays for it.
+    /// Waits until the GPU has finished. If that fails and the device is not lost, nothing that the GPU may use is
+    /// freed.
     fn wait(&self, device: &Device) -> Result<(), GpuError> {
         // SAFETY: the fence was submitted.
         let waited = unsafe { self.device.wait_for_fences(&[self.fence], true, u64::MAX) };
         let waited = match waited {
-            // The frame goes on without us. Another call to wait by may need less.
+            // The GPU is still running. Another way to wait may need less memory.
             Err(vk::Result::ERROR_OUT_OF_HOST_MEMORY | vk::Result::ERROR_OUT_OF_DEVICE_MEMORY) => {
                 // SAFETY: the lock keeps others away from the queue.
                 unsafe { self.device.queue_wait_idle(self.queue) }.named("vkQueueWaitIdle", "headless")

@@ -1,14 +1,14 @@
-//! What a driver compiled, kept in a file from one run to the next.
+//! Keeps compiled pipelines in a file from one run to the next.
 //!
 //! ```text
 //!   8 bytes      8 bytes         48 bytes                                               the rest
 //!   SELVEDGE │ checksum of │ vendor, device, driver version, cache UUID, driver UUID │ the driver's data
-//!            │ what follows│ 4       4       4 and 4 of 0    16           16          │
+//!            │ the rest    │ 4       4       4, and 4 zeros  16          16           │
 //! ```
 //!
-//! A file of another device or driver, a damaged one, and one that is not ours are ignored: pipelines are then compiled
-//! as without it. It is written beside its place and renamed, so that no reader sees half of it, and of two writers the last
-//! one stays. The checksum is that of Rust's standard hasher: a file from before a change of that is damaged to us.
+//! A file that is damaged, foreign, or of another device or driver is ignored: the pipelines are compiled as without
+//! it. The file is written under another name and renamed, so no reader sees half of it. Of two writers the last one
+//! wins. Rust's standard hasher computes the checksum: if that hasher changes, older files count as damaged.
 
 use ash::vk;
 use std::fs::File;
@@ -18,20 +18,20 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 const MAGIC: &[u8; 8] = b"SELVEDGE";
-/// Bytes of what tells a device and its driver.
+/// Bytes that identify a device and its driver.
 pub(super) const IDENTITY: usize = 48;
-/// Drivers keep some ten kilobytes a pipeline.
+/// The most bytes that are read of a file. Drivers keep some ten kilobytes a pipeline.
 const MOST_BYTES: u64 = 1 << 28;
 
-/// Where one device's pipelines are kept, and what the file held.
+/// The file of one device's pipelines.
 pub(super) struct PipelineFile {
     path: PathBuf,
     identity: [u8; IDENTITY],
-    /// The checksum of what was read, or written last.
+    /// The checksum of the data that was read, or written last.
     known: Option<u64>,
 }
 
-/// The device and its driver.
+/// Identifies a device and its driver.
 pub(super) fn identity(instance: &ash::Instance, physical: vk::PhysicalDevice) -> [u8; IDENTITY] {
     let mut ids = vk::PhysicalDeviceIDProperties::default();
     let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut ids);
@@ -53,7 +53,8 @@ fn checksum(bytes: &[u8]) -> u64 {
 }
 
 impl PipelineFile {
-    /// Of a device, in a folder that need not be there. Returns the driver's data, none where the file has none for it.
+    /// Opens the file of a device, in a folder that need not exist. Returns the driver's data, empty if the file has
+    /// none.
     pub(super) fn open(folder: &Path, identity: [u8; IDENTITY]) -> (Self, Vec<u8>) {
         let path = folder.join(format!("pipelines-{:016x}", checksum(&identity)));
         let data = read(&path, &identity).unwrap_or_default();
@@ -61,7 +62,7 @@ impl PipelineFile {
         (Self { path, identity, known }, data)
     }
 
-    /// Keeps the driver's data, unless the file holds it already.
+    /// Writes the driver's data, unless it is the data that was read or written last.
     pub(super) fn write(&mut self, data: &[u8]) -> io::Result<()> {
         let sum = checksum(data);
         if self.known == Some(sum) {
@@ -90,7 +91,7 @@ impl PipelineFile {
     }
 }
 
-/// The driver's data of a file; `None` where it is missing, damaged or another device's.
+/// The driver's data of a file; `None` if the file is missing, damaged or of another device.
 fn read(path: &Path, identity: &[u8; IDENTITY]) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path).ok()?.take(MOST_BYTES).read_to_end(&mut bytes).ok()?;
@@ -159,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_cannot_be_is_told() {
+    fn a_folder_that_cannot_be_made_is_an_error() {
         let file = folder("file");
         std::fs::write(&file, b"a file").unwrap();
         let (mut within, none) = PipelineFile::open(&file, [1; IDENTITY]);

@@ -37,7 +37,7 @@ struct TargetImages {
     numbers: Option<[(Image, ReadBack); 3]>,
 }
 
-/// Whoever waits for a whole picture has no use for a part of one.
+/// Draws whole pictures only: a frame whose lists overflow draws no patches.
 fn renderer(device: &Device, formats: TargetFormats) -> Result<Renderer, GpuError> {
     let mut renderer = Renderer::on(device, formats, 1)?;
     renderer.counts_first = true;

@@ -104,7 +104,8 @@ fn each_image_stands_by_itself() {
     assert!(messages.is_empty(), "{messages:?}");
 }
 
-/// Many bicubic patches, as tall as many pixels: several sub-patches each, where there is room for one and 256 more.
+/// 128 bicubic patches that are many pixels tall. Each has several sub-patches; a first frame has room for one each,
+/// and 256 more.
 fn tall() -> Model {
     let height = [[0.0, 1.0, -1.0, 0.0], [1.0, 3.0, 0.0, -1.0], [-1.0, 0.0, -3.0, 1.0], [0.5, -1.0, 1.0, 0.0]];
     let at = |i: usize, j: usize| DVec4::new(i as f64, j as f64, 20.0 * height[j][i], 1.0);
@@ -118,7 +119,7 @@ fn tall() -> Model {
     model
 }
 
-/// Frames without room count what they need and draw no patch; the one that has it draws the picture.
+/// A frame without room counts its lists and draws no patch. The frame that has room draws the picture.
 #[test]
 fn no_picture_is_drawn_twice() {
     let (model, device) =

@@ -1,21 +1,21 @@
-//! Another GPU's arithmetic, imitated: quotients and roots as wrong as Vulkan allows.
+//! Imitates the arithmetic of other GPUs: shaders are rewritten so that quotients and roots are slightly wrong.
 //!
-//! Vulkan grants a quotient 2.5 units in the last place, a root three and more (Vulkan 1.3, appendix A, "Precision and
-//! Operation of SPIR-V Instructions"), and correct rounding to sums and products. So of passes whose arithmetic is `precise`,
-//! which forbids contraction, other GPUs differ by these alone. Each quotient and root of a module is multiplied here by
-//! `1 + EPS` or `1 - EPS`, one to two units in the last place.
+//! Vulkan allows a quotient to be 2.5 units in the last place off, and a root three and more (Vulkan 1.3, appendix A,
+//! "Precision and Operation of SPIR-V Instructions"). Sums and products are correctly rounded. `precise` forbids
+//! contraction, so in a pass whose arithmetic is `precise` GPUs differ in quotients and roots. Here each of those is
+//! multiplied by `1 + EPS` or `1 - EPS`, which is one to two units in the last place.
 
 /// 2⁻²³.
 const EPS: f32 = f32::EPSILON;
 
-/// What becomes of quotients and roots.
+/// How quotients and roots are changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Imitation {
-    /// All are larger.
+    /// All become larger.
     Up,
-    /// All are smaller.
+    /// All become smaller.
     Down,
-    /// One after another larger and smaller.
+    /// They become larger and smaller in turn, in the order of the module.
     Mixed,
 }
 
@@ -32,7 +32,7 @@ impl Imitation {
     }
 }
 
-// of the SPIR-V specification, section 3.42
+// Opcodes: SPIR-V specification, section 3.42.
 const EXT_INST: u32 = 12;
 const TYPE_FLOAT: u32 = 22;
 const TYPE_VECTOR: u32 = 23;
@@ -65,14 +65,14 @@ fn opcode(instruction: &[u32]) -> u32 {
     instruction[0] & 0xffff
 }
 
-/// The type, of single precision, of a quotient or root.
+/// The type of an instruction that is a quotient or root of single precision.
 fn granted(instruction: &[u32], sizes: &[(u32, u32)]) -> Option<u32> {
     let is_root = opcode(instruction) == EXT_INST && ROOTS.contains(&instruction[4]);
     let kind = (is_root || opcode(instruction) == F_DIV).then(|| instruction[1])?;
     sizes.iter().any(|(id, _)| *id == kind).then_some(kind)
 }
 
-/// A module whose quotients and roots are multiplied by the two factors in turn.
+/// The module with its quotients and roots multiplied by the two factors in turn.
 fn rewritten(words: &[u32], factors: [f32; 2]) -> Vec<u32> {
     let mut bound = words[3];
     let mut fresh = || {
@@ -126,7 +126,7 @@ fn rewritten(words: &[u32], factors: [f32; 2]) -> Vec<u32> {
     all
 }
 
-/// Sums that a driver may contract with a product, and dot products, which it may round as it likes.
+/// Counts sums that a driver may contract with a product, and dot products, whose rounding is not specified.
 fn contracted(words: &[u32]) -> usize {
     let is_held = |id: u32| instructions(words).any(|i| opcode(i) == DECORATE && (i[1], i[2]) == (id, NO_CONTRACTION));
     let is_product = |i: &[u32]| opcode(i) == F_MUL || PRODUCTS.contains(&opcode(i));
@@ -140,7 +140,7 @@ fn contracted(words: &[u32]) -> usize {
     instructions(words).filter(|i| contracts(i)).count()
 }
 
-/// Passes that are compared with their twins leave nothing to the driver but quotients and roots.
+/// In these passes, which are compared with their twins, no driver may contract sums with products.
 #[test]
 fn compared_passes_are_not_contracted() {
     use crate::shaders::*;
@@ -167,7 +167,7 @@ fn compared_passes_are_not_contracted() {
     for (name, shader) in compared {
         assert_eq!(contracted(shader.words), 0, "{name} is not `precise`");
     }
-    // drawing is not compared bit by bit: the count sees what it is to see
+    // this pass is not compared bit for bit: it shows that the count finds contractions
     assert!(contracted(GAP_FILL_TABLE_COMP.words) > 10);
 }
 

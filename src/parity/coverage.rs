@@ -235,7 +235,7 @@ mod parity {
         Ok(())
     }
 
-    /// Within what quotients and roots may make of it; see `twin::coverage`.
+    /// Within the error that quotients and roots may cause: `twin::coverage`.
     fn is_near(gpu: [u32; 4], twin: [u32; 4], pixel: &Pixel) -> bool {
         let bound = Bound::of(pixel.along);
         let number = |words: [u32; 4], i: usize| f32::from_bits(words[i]);
@@ -299,7 +299,7 @@ mod parity {
         }
     }
 
-    /// A pixel moved by as much as changes its share by little more than the bound.
+    /// A pixel is moved so that its share changes by little more than the bound.
     #[test]
     fn a_little_more_than_the_bound_is_seen() {
         let random = &mut Random::new(25);
@@ -308,7 +308,7 @@ mod parity {
         let size = 2f64.powf(random.range(-8.0, -7.0));
         let along = [[(1.0 / size) as f32, 0.0], [0.0, (1.0 / size) as f32]];
         let bound = Bound::of(along);
-        // half covered by the side u = 0.25: one pixel's way covers all of it
+        // the side u = 0.25 halves the pixel; a move by half a pixel covers all of it
         let pixel = |way: f32| Pixel { uv: [0.25 + way * size as f32, 0.5], along };
         for gpu in Gpu::all() {
             let least = if gpu.is_exact() { 1e-3 } else { 1.5 * bound.share };

@@ -1,5 +1,5 @@
-//! Parity of the pass `cross`, both roles, and so of `curve.glsl`: exact, the rows as sets. Where the GPU divides otherwise,
-//! within the bound of `twin::cross`, and the lowest bit, which holds the direction.
+//! Parity of the pass `cross`, both roles, and so of `curve.glsl`: exact, the rows as sets. If the GPU rounds quotients
+//! otherwise: within the bound of `twin::cross`, plus the lowest bit, which holds the direction.
 
 use super::Case;
 use super::chain::{Chain, UNTOUCHED};
@@ -58,7 +58,7 @@ fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> Left {
     }
 }
 
-/// The GPU gets `given`; the twins' results for the case that is expected are in `chain`.
+/// The GPU gets `given`; `chain` has the twins' results for `expected`.
 fn compare(gpu: &Gpu, given: &Case, (expected, chain): (&Case, &Chain)) -> Result<(), Mismatch> {
     let counted = on_gpu(gpu, given, chain, false);
     same("row counts", &counted.row_counts, &chain.row_counts)?;
@@ -93,7 +93,8 @@ fn bounds(chain: &Chain, used: usize, case: &Case) -> Vec<f32> {
     all.take(used).collect()
 }
 
-/// `u` within its bound; directions in order, but for intercepts nearer to one another than that.
+/// `u` is within its bound. Directions are equal in order, except of intercepts that may change places within their
+/// bounds.
 fn near(gpu: &[u32], twin: &[u32], bounds: &[f32]) -> Result<(), Mismatch> {
     assert_eq!((gpu.len(), bounds.len()), (twin.len(), twin.len()), "intercepts");
     let off = |i: usize| (u_of(gpu[i]) - u_of(twin[i])).abs();
@@ -124,8 +125,8 @@ fn rows_sorted(chain: &Chain, mut intercepts: Vec<u32>) -> Vec<u32> {
     intercepts
 }
 
-/// The loops a little higher, by no simple share of their domains: no scan line then touches a flat border, or where a loop
-/// turns back. There another arithmetic may count two crossings more or less, as the picture may have either.
+/// Moves the loops up a little, by no simple share of their domains. Then no scan line touches a flat border, or a loop
+/// where it turns back. There another arithmetic may count two crossings more or less, and both pictures are right.
 fn nudged(mut case: Case) -> Case {
     const BY: f32 = 3.77e-4;
     for curve in &mut case.data.curves {
@@ -181,15 +182,16 @@ fn a_difference_is_seen() {
     }
 }
 
-/// Imitations are another arithmetic, within the bounds, which are small beside what is wrong. They err everywhere at once,
-/// so an intercept beside a border of bins may be counted in another row: intercepts alone are compared.
+/// Imitations change intercepts, by no more than the bounds, and most bounds are small. An imitation changes all
+/// quotients at once, so an intercept next to a border of bins may be counted in another row: only intercepts are
+/// compared.
 #[test]
 fn other_arithmetic_makes_other_intercepts() {
     let case = &nudged(cases().remove(0));
     let chain = Chain::new(case);
     let twin = rows_sorted(&chain, chain.intercepts.clone());
     let bounds = bounds(&chain, twin.len(), case);
-    // rows at ends of chords and along flat ones are the rest
+    // the others are of rows at ends of chords, and along flat chords
     let narrow = bounds.iter().filter(|bound| **bound < 1e-4).count();
     assert!(10 * narrow > 9 * bounds.len(), "{narrow} of {} bounds are small", bounds.len());
     for gpu in Gpu::all().into_iter().filter(|gpu| !gpu.is_exact()) {

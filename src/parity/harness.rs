@@ -3,6 +3,7 @@
 use super::Case;
 use super::arithmetic::Imitation;
 use crate::bindings::Bounded;
+use crate::frame::tessellation::split;
 use crate::gpu::{
     Access, Binding, Buffer, Commands, ComputeInfo, Device, Pipeline, Pool, ReadBack, Resource, Texel, TexelBuffer,
     Uploads, barrier,
@@ -45,7 +46,7 @@ impl Gpu {
         Self { watched, is_exact }
     }
 
-    /// The device as it is, and where its arithmetic is exact, others imitated by it.
+    /// The device as it is; if its arithmetic is exact, also imitations of other GPUs on it.
     pub(super) fn all() -> Vec<Self> {
         let mut all = vec![Self::new()];
         if all[0].is_exact {
@@ -54,7 +55,7 @@ impl Gpu {
         all
     }
 
-    /// With the quotients and roots of another GPU.
+    /// A device whose shaders have the quotients and roots of another GPU.
     pub(super) fn imitating(imitation: Imitation) -> Self {
         let gpu = Self { is_exact: false, ..Self::new() };
         gpu.device().rewrite(imitation.rewriting());
@@ -209,7 +210,7 @@ impl SceneBuffers {
         }
     }
 
-    /// As passes that say how finely patches are divided read them.
+    /// The bindings of passes that bound the segments of patches.
     pub(super) fn bounded<'a>(
         &'a self,
         taus: &'a Buffer,
@@ -229,6 +230,29 @@ impl SceneBuffers {
             cones,
             points: &self.points,
             in_sight: &self.in_sight,
+        }
+    }
+
+    /// The bindings of pass `split`. `counts`: of sub-patches, and of vertices.
+    pub(super) fn split<'a>(
+        &'a self,
+        taus: &'a Buffer,
+        factors: &'a Buffer,
+        counts: [&'a Buffer; 2],
+        links: Option<&'a Buffer>,
+    ) -> split::Bindings<'a> {
+        split::Bindings {
+            frame: &self.frame,
+            face_instances: &self.face_instances,
+            faces: &self.faces,
+            patches: &self.patches,
+            items: &self.items,
+            taus,
+            factors,
+            sub_patch_counts: counts[0],
+            vertex_counts: counts[1],
+            in_sight: &self.in_sight,
+            links,
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Parity of the passes over items where some placed parts are out of sight: the twins do all items, and of those in sight the
-//! passes make the same; of the others they write nothing. Exact.
+//! Parity of passes `bound`, `split` and `emit` where some placed parts are out of sight. The twins compute all items.
+//! For items in sight the passes write the same, and for the others nothing. Exact.
 
 use super::Case;
 use super::chain::{Chain, UNTOUCHED, UNTOUCHED_SUB_PATCH};
@@ -33,19 +33,19 @@ fn two_thirds(mut case: Case) -> Case {
     case
 }
 
-/// Of all items those in sight, in the order of their places.
+/// The values of the items in sight, in the order of their places.
 fn gathered<T: Copy>(case: &Case, all: &[T]) -> Vec<T> {
     (0..case.frame.items_in_sight).map(|place| all[item_at(&case.runs, place) as usize]).collect()
 }
 
-/// Of all items those in sight, the others `untouched`.
+/// The values of all items, with `untouched` for those out of sight.
 fn masked<T: Copy>(case: &Case, all: &[T], untouched: T) -> Vec<T> {
     let mut left = vec![untouched; all.len()];
     (0..case.frame.items_in_sight).map(|place| item_at(&case.runs, place) as usize).for_each(|i| left[i] = all[i]);
     left
 }
 
-/// `given`: what the GPU gets; `case`: what the twins do, and which items are in sight.
+/// The GPU gets `given`, the twins get `case`, which also says which items are in sight.
 fn compare(gpu: &Gpu, given: &Case, case: &Case) -> Result<(), Mismatch> {
     let all = Chain::new(&Case {
         frame: Frame { items_in_sight: case.data.items.len() as u32, ..case.frame },
@@ -67,19 +67,7 @@ fn compare(gpu: &Gpu, given: &Case, case: &Case) -> Result<(), Mismatch> {
         ["sub-patch counts", "vertex counts"].map(|name| gpu.upload(name, &vec![UNTOUCHED; 2 * total]));
     let links = (!case.data.links.is_empty()).then(|| gpu.upload("links", &case.data.links));
     let pass = split::Split::new(gpu.device(), links.is_some()).unwrap();
-    let bindings = split::Bindings {
-        frame: &s.frame,
-        face_instances: &s.face_instances,
-        faces: &s.faces,
-        patches: &s.patches,
-        items: &s.items,
-        taus: &taus,
-        factors: &factors,
-        sub_patch_counts: &sub_patch_counts,
-        vertex_counts: &vertex_counts,
-        in_sight: &s.in_sight,
-        links: links.as_ref(),
-    };
+    let bindings = s.split(&taus, &factors, [&sub_patch_counts, &vertex_counts], links.as_ref());
     gpu.run(|cmd| pass.record(cmd, &bindings, n));
     same("factors", &gpu.read(&factors, total), &masked(case, &all.split.factors, untouched))?;
     let counts = |all: &[u32]| [gathered(case, &all[..total]), gathered(case, &all[total..])].concat();
@@ -109,7 +97,7 @@ fn compare(gpu: &Gpu, given: &Case, case: &Case) -> Result<(), Mismatch> {
         in_sight: &s.in_sight,
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, n));
-    // the twin has those in sight alone, and numbers them by their places
+    // the twin gets only the items in sight, and numbers them by their places
     let (mut twin_list, mut twin_draws, mut twin_counters) = (list, empty, zero);
     twin::emit::emit(
         &case.frame,
@@ -153,7 +141,7 @@ fn a_difference_is_seen() {
     gpu.finish();
 }
 
-/// Each place has its item, as counted by hand.
+/// Each place has the item that was counted by hand.
 #[test]
 fn places_have_the_items_of_their_runs() {
     let runs = [(0, 3), (2, 9), (3, 20)].map(|(place, item)| ItemRun { place, item });

@@ -36,7 +36,7 @@ fn parity() {
             let (mut heights, seen) = (density.strip_heights, density.seen_bins);
             compare(&gpu, &case.frame, &seen, &heights, &heights).unwrap();
             heights[0] = 1e6; // more than a strip can have
-            // as many as it can have; where a quotient errs, they may be one too many
+            // as many as it can have; a wrong quotient may make them one too many
             heights[1] = if gpu.is_exact() { 65536.0 } else { 65534.5 } * case.frame.row_px;
             compare(&gpu, &case.frame, &seen, &heights, &heights).unwrap();
         }

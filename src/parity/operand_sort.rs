@@ -106,7 +106,7 @@ fn parity() {
                 Case { frame: Frame { fragment_capacity: case.frame.fragment_capacity / 2, ..case.frame }, ..case };
             compare(&gpu, &less, &less).unwrap();
         }
-        // of more than can be counted: half of the pixels are told, and the band
+        // more than 32 bits count: half of the pixels are marked, and the band
         let whole = case(&mut random, 3);
         let wraps = |(i, start): (usize, u32)| {
             if i >= whole.starts.len() / 2 { start.wrapping_sub(900) } else { start | 1 << 31 }

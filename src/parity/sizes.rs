@@ -44,7 +44,7 @@ fn parity() {
             let chain = Chain::new(&case);
             let starts = [chain.strip_starts.as_slice(), chain.segment_starts.as_slice()];
             compare(&gpu, &case.frame, &chain.density.seen_bins, starts, starts).unwrap();
-            // more than one row of a dispatch holds, and more than can be numbered
+            // more segments than one row of a dispatch holds, and more than 32 bits number
             for segments in [9_000_000, MOST_SEGMENTS + 1] {
                 let mut many = chain.segment_starts.clone();
                 *many.last_mut().unwrap() = segments;

@@ -109,14 +109,14 @@ fn parity() {
                     compare(&gpu, &Frame { band_top, band_height, ..room }, &rects, &rects).unwrap();
                 }
             }
-            // too little room: what fits is there, the rest is told
+            // too little room: the lists hold what fits, and the counters report the rest
             let tight = Frame { block_leaf_capacity: 3, tile_leaf_capacity: 2, ..frame };
             compare(&gpu, &tight, &rects, &rects).unwrap();
             let mut other = rects.clone();
             other[0] = twin::solid_rects::NOWHERE;
             assert_eq!(compare(&gpu, &room, &other, &rects).unwrap_err().buffer, "block counts");
         }
-        // so many in one block that a driver may end the loop over them: either right or told of
+        // so many in one block that a driver may end the loop over them: the lists are right, or the counters report it
         let frame = Frame { size: [32.0, 16.0], band_height: 4096, leaf_count: 300_000, ..Frame::default() };
         let room = Frame { block_leaf_capacity: 1 << 20, tile_leaf_capacity: 1 << 20, ..frame };
         let rect = |n: u32| {

@@ -5,7 +5,7 @@ use super::harness::{Gpu, Mismatch, SceneBuffers, same};
 use super::shapes::cases;
 use super::{Case, Random, cages};
 use crate::abi::Factors;
-use crate::frame::tessellation::split::{Bindings, Split};
+use crate::frame::tessellation::split::Split;
 use crate::model::Camera;
 use crate::twin;
 use glam::DVec3;
@@ -19,19 +19,7 @@ fn compare(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<()
     let vertex_counts = gpu.upload("vertex counts", &vec![UNTOUCHED; 2 * n]);
     let links = (!case.data.links.is_empty()).then(|| gpu.upload("links", &case.data.links));
     let pass = Split::new(gpu.device(), links.is_some()).unwrap();
-    let bindings = Bindings {
-        frame: &s.frame,
-        face_instances: &s.face_instances,
-        faces: &s.faces,
-        patches: &s.patches,
-        items: &s.items,
-        taus: &taus,
-        factors: &factors,
-        sub_patch_counts: &sub_patch_counts,
-        vertex_counts: &vertex_counts,
-        in_sight: &s.in_sight,
-        links: links.as_ref(),
-    };
+    let bindings = s.split(&taus, &factors, [&sub_patch_counts, &vertex_counts], links.as_ref());
     gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
     let twin = twin::split::split(&case.frame, &case.scene(), expected);
     same("factors", &gpu.read(&factors, n), &twin.factors)?;

@@ -25,7 +25,7 @@ pub(super) fn background(input: &FrameInput<'_>, formats: &TargetFormats) -> [f3
     [encoded(r), encoded(g), encoded(b), opacity]
 }
 
-/// What every shader of the frame reads. `table`: where there is one; and which placed parts are in sight.
+/// The constants that every shader of the frame reads. `table`: the view of the trim table, if it is not this view.
 pub(super) fn constants(
     device: &Device,
     loaded: &Loaded,
@@ -80,12 +80,12 @@ pub(super) fn constants(
     seen_by(camera, frame)
 }
 
-/// How far from a pixel's centre its samples lie, along each axis.
+/// How far samples lie from their pixel's centre, along either axis.
 fn spread_px(counts: Counts) -> f64 {
     counts.samples.offsets().iter().flatten().fold(0.0, |far, x| x.abs().max(far))
 }
 
-/// How far pass `bound` looks beside the picture and around a patch: `glsl/include/bound.glsl`.
+/// The margins of pass `bound` around the picture and around a patch: `glsl/include/bound.glsl`.
 pub(super) fn reach(counts: Counts, tolerance_px: f64) -> Reach {
     let budget = Budget::of(tolerance_px);
     let skirt = if counts.trim.is_some() { budget.gap_radius } else { 0.0 };

@@ -6,7 +6,7 @@ use crate::model::{CameraError, ModelError};
 use crate::picture::{BadEdges, FrameSettings};
 
 impl RenderError {
-    /// What failed of Vulkan or its memory.
+    /// The error of Vulkan or of memory within.
     pub fn gpu(&self) -> Option<&GpuError> {
         if let Self::Gpu(error) = self { Some(error) } else { None }
     }
@@ -40,10 +40,10 @@ pub enum RenderError {
     /// [`Smooth::Trims`](crate::picture::Smooth::Trims) beside something that it does not go with.
     #[error("smooth trims do not go with {0}")]
     SmoothTrims(&'static str),
-    /// [`ambient`](crate::picture::SceneSettings::ambient) that is no radius.
+    /// [`ambient`](crate::picture::SceneSettings::ambient) is not a radius.
     #[error("the radius of ambient occlusion must be finite and above 0, not {0}")]
     AmbientRadius(f64),
-    /// [`ambient`](crate::picture::SceneSettings::ambient) beside several samples.
+    /// [`ambient`](crate::picture::SceneSettings::ambient) with several samples a pixel.
     #[error("ambient occlusion does not go with several samples a pixel")]
     AmbientSamples,
     /// [`edges`](crate::picture::SceneSettings::edges) that cannot be drawn.
@@ -62,7 +62,7 @@ pub enum RenderError {
         /// Its height.
         height: u32,
     },
-    /// A target that does not hold the rectangle at [`Targets::corner`](super::Targets::corner).
+    /// A target does not contain the rectangle at [`Targets::corner`](super::Targets::corner).
     #[error("the target `{name}` is {width} x {height}: a picture of {} x {} at {}, {} is not within it",
         .size.0, .size.1, .corner.0, .corner.1)]
     TargetCorner {

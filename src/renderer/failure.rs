@@ -1,33 +1,36 @@
-//! What becomes of a renderer when a device, or a frame, is lost.
+//! What a renderer does after the loss of a device or of a frame.
 //!
 //! ```text
 //!   a call returns DEVICE_LOST ─▶ every later call returns GpuError::DeviceLost; drop frees handles and host memory
-//!   the handle itself is gone  ─▶ abandon: drop frees host memory alone
-//!   a frame was not submitted  ─▶ discard: what it would have copied is copied again by the next one
+//!   the handle is not valid    ─▶ abandon: drop frees only host memory
+//!   a frame was not submitted  ─▶ discard: the next frame loads the model anew
 //! ```
 
+use super::pick::SlotPick;
 use super::{Loaded, RenderError, Renderer};
 
 impl Renderer {
     /// A call of the host's own returned `VK_ERROR_DEVICE_LOST`: every later call returns
-    /// [`GpuError::DeviceLost`](crate::gpu::GpuError::DeviceLost). The renderer's own calls are noted by themselves.
+    /// [`GpuError::DeviceLost`](crate::gpu::GpuError::DeviceLost). The host need not report errors of the renderer's
+    /// calls.
     ///
-    /// Its drop then makes no call but those that free handles. Vulkan allows them on a lost device, and demands them before
+    /// The drop of the renderer then only frees handles. Vulkan allows that on a lost device, and demands it before
     /// `vkDestroyDevice` (1.3, section 5.2.3, "Lost Device").
     pub fn device_lost(&mut self) {
         self.device.set_lost("a call of the host", "device");
     }
 
-    /// The device's handle is not valid any more: nothing of this renderer makes a Vulkan call from here on, and its drop
-    /// frees host memory alone.
+    /// The device's handle is not valid any more. From now on the drop of the renderer makes no Vulkan call and frees
+    /// only host memory.
     pub fn abandon(&mut self) {
         self.device_lost();
         self.device.abandon();
     }
 
-    /// The frame recorded last, into `slot`, never reached the GPU: the host reset its command buffer, or the submission
-    /// failed. The next [`record`](Self::record) loads the model anew, with every edit and change so far, because the GPU
-    /// does not have what the frame would have copied.
+    /// The frame recorded last, into `slot`, never reached the GPU: the host reset its command buffer, or the
+    /// submission failed. The next [`record`](Self::record) loads the model anew, with every edit and change so far,
+    /// because the GPU does not have what the frame would have copied. It also reads back the pixel of a
+    /// [`pick`](Self::pick) that the frame would have read back.
     ///
     /// # Panics
     /// When the slot does not exist.
@@ -36,9 +39,9 @@ impl Renderer {
         discarded.recorded = false;
         discarded.capacities = None;
         self.stale = self.source.is_some();
-        if self.last == Some(slot) {
-            self.last = self.before.take().filter(|before| *before != slot);
-        }
+        let asked = discarded.pick.as_mut().and_then(SlotPick::take_back);
+        self.pick = self.pick.or(asked);
+        self.order.retain(|other| *other != slot);
         // frames in flight may use what it replaced
         let retired = std::mem::take(&mut self.slots[slot].retired);
         retired.into_iter().for_each(|what| self.retire(what));

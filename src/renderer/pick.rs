@@ -20,6 +20,13 @@ pub(super) struct SlotPick {
     asked: Option<Asked>,
 }
 
+impl SlotPick {
+    /// The pixel of a frame that never reached the GPU.
+    pub(super) fn take_back(&mut self) -> Option<(u32, u32)> {
+        self.asked.take().map(|asked| asked.at)
+    }
+}
+
 struct Asked {
     at: (u32, u32),
     camera: Camera,

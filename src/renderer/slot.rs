@@ -25,10 +25,11 @@ const SCOPES: u32 = 17;
 pub(super) struct Slot {
     pub(super) constants: Buffer,
     pub(super) views: Option<TexelBuffer>,
-    /// [`ItemRun`](abi::ItemRun)s of the items in sight, and how many items those are.
+    /// [`ItemRun`](abi::ItemRun)s of the items in sight.
     pub(super) in_sight: Option<Buffer>,
+    /// How many items are in sight.
     pub(super) items_in_sight: u32,
-    /// The same for each of a pixel's samples, where there are several.
+    /// Constants and views for each of a pixel's samples, where there are several.
     pub(super) samples: Vec<ViewBuffers>,
     /// What the trim table is made of, where that is another view.
     pub(super) table: Option<ViewBuffers>,
@@ -201,7 +202,7 @@ fn view_bytes(loaded: &Loaded) -> u64 {
     (loaded.data.placements.len() * size_of::<abi::View>()) as u64
 }
 
-/// Of placed parts that are out of sight nothing is read, but by what reads all.
+/// Writes the views of the placed parts in sight, or of all parts if a pass reads all.
 fn write_views(buffer: &mut TexelBuffer, loaded: &Loaded, pixels: DMat4, in_sight: &InSight) {
     if loaded.counts.views_all {
         return buffer.write(0, &loaded.data.views(pixels));

@@ -7,7 +7,7 @@ use crate::gpu::{Attachment, Image};
 use crate::picture::Outputs;
 use ash::vk;
 
-/// Images that there may be in [`Targets`].
+/// The most images of [`Targets`].
 pub(super) const TARGETS: usize = 10;
 
 /// Formats of the images that the host will pass to [`Renderer::record`](super::Renderer::record).
@@ -25,8 +25,8 @@ pub struct TargetFormats {
     pub outputs: Outputs,
 }
 
-/// The host's images for one frame, all of the camera's size, or with a `corner` larger: [`Image::borrowed`] makes them
-/// of Vulkan handles.
+/// The host's images for one frame. All have the camera's size; with a `corner` they may be larger. [`Image::borrowed`]
+/// makes them from Vulkan handles.
 ///
 /// Barriers around the frame are the host's: what it did before must be ordered before
 /// [`Access::COLOUR_WRITE`](crate::gpu::Access::COLOUR_WRITE) and
@@ -42,8 +42,8 @@ pub struct Targets<'a> {
     /// The length of each pixel's ray within solids, between near and far plane and in model units: Boolean solids and
     /// closed parts, where several overlap counted once; 0 where there is none. `R32_SFLOAT`.
     pub thickness: Option<&'a Image>,
-    /// The column and row of all images at which the upper left pixel of the picture goes, in a rectangle of the camera's
-    /// size; beside it nothing is written. The images then have the usage `TRANSFER_DST`, and `TRANSFER_SRC` where
+    /// The column and row of the picture's upper left pixel, in all images. Pixels outside the rectangle of the
+    /// camera's size are not written. The images need the usage `TRANSFER_DST`, and `TRANSFER_SRC` if
     /// [`background`](crate::picture::FrameSettings::background) is `None`. `None`: the picture is the whole image.
     pub corner: Option<(u32, u32)>,
 }
@@ -95,7 +95,7 @@ impl<'a> Targets<'a> {
         [Some(self.colour), self.depth, self.thickness, depth, face, uv, normal, edge, part, instance]
     }
 
-    /// Others in their place, by their number in [`Targets::all`]; they are whole images.
+    /// These targets with other, whole images in place of theirs. `other` gets the number in [`Targets::all`].
     pub(super) fn replaced<'b>(&self, other: impl Fn(usize, &Image) -> Option<&'b Image>) -> Targets<'b>
     where
         'a: 'b,
@@ -117,7 +117,7 @@ impl<'a> Targets<'a> {
         [edge, part, instance]
     }
 
-    /// They have the size of the picture, or hold its rectangle.
+    /// Checks that they have the size of the picture, or contain its rectangle.
     ///
     /// # Panics
     /// When they are not those of `formats`.

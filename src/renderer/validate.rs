@@ -17,7 +17,7 @@ pub(super) fn check_smooth_trims(data: &SceneData, settings: SceneRequest) -> Re
     refused.map_or(Ok(()), |what| Err(RenderError::SmoothTrims(what)))
 }
 
-/// Ambient occlusion has a radius, and one sample.
+/// The radius of ambient occlusion is finite and positive, and a pixel has one sample.
 pub(super) fn check_ambient(settings: SceneSettings) -> Result<(), RenderError> {
     match settings.ambient {
         Some(radius) if !(radius.is_finite() && radius > 0.0) => Err(RenderError::AmbientRadius(radius)),

@@ -1,4 +1,4 @@
-//! The images that a frame draws into where its targets are larger than its picture.
+//! The images that a frame draws into if its targets have a corner.
 
 use super::targets::TARGETS;
 use super::{RenderError, Renderer, Retired, Targets};
@@ -18,7 +18,7 @@ impl Viewport {
         self.size == size && (0..TARGETS).all(|nth| all[nth].is_none() || self.images[nth].is_some())
     }
 
-    /// In place of the host's.
+    /// The host's targets with these images in their place.
     pub(super) fn targets<'a>(&'a self, host: &Targets<'a>) -> Targets<'a> {
         host.replaced(|nth, _| self.images[nth].as_ref())
     }
@@ -30,7 +30,7 @@ impl Viewport {
 }
 
 impl Renderer {
-    /// Makes the images that these targets want, and lets go of those that none wants.
+    /// Makes the images for these targets. Retires the old ones if they do not fit, or if the targets have no corner.
     pub(super) fn make_viewport(&mut self, targets: &Targets<'_>, size: (u32, u32)) -> Result<(), RenderError> {
         let wanted = targets.corner.is_some();
         if self.viewport.as_ref().is_some_and(|own| wanted && own.suffices(targets, size)) {

@@ -95,7 +95,7 @@ pub(crate) struct SceneData {
     pub ambient: Option<f64>,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
-    /// Of each placement: its patches.
+    /// Of each placement: the box of its patches.
     pub(super) boxes: Vec<PlacedBox>,
     /// Of each placement: nobody sees it; empty where all are seen.
     pub(super) hidden: Vec<bool>,

@@ -28,7 +28,7 @@ pub(crate) struct EdgeData {
     pub items: Vec<abi::EdgeItem>,
     /// Of each face of the scene.
     pub face_keys: Vec<u32>,
-    /// Of each part of the model.
+    /// The edges of each part of the model.
     pub(super) found: KnownEdges,
 }
 

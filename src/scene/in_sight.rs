@@ -1,15 +1,16 @@
-//! Which placed parts a view may see: the GPU is told of their patches alone.
+//! Finds the placed parts that a view may see. The passes over patches run only for the items of those parts.
 //!
 //! ```text
-//!   part ─▶ box of its patches ──placement, camera──▶ beside the picture, before the near plane, behind the far one?
-//!                                                     no pixel's centre within reach?    ─▶ out of sight
-//!   in sight: runs of items that follow one another (abi::ItemRun), and the views of those parts
+//!   part ─▶ box of its patches ──placement, camera──▶ outside the picture, before the near plane, behind the far
+//!                                                     plane, or no pixel's centre within reach?  ─▶ out of sight
+//!   in sight: runs of consecutive items (abi::ItemRun), and the views of those parts
 //! ```
 //!
-//! A part's box holds those of its patches, and reaches farther than they do for pass `bound`. So that would leave out each
-//! patch of a part that is left out here, and the picture is the same bit for bit.
+//! The box of a part contains the boxes of its patches, and its margins are wider than those of pass `bound`. So that
+//! pass would cull every patch of a part that is out of sight, and the picture is the same bit for bit.
 //!
-//! Cost: a product of matrices and some sums a placed part, in double precision, on all cores where there are many.
+//! Cost: a product of matrices and some sums for each placed part, in double precision; on all cores if there are many
+//! parts.
 
 use super::data::SceneData;
 use super::view::view;
@@ -19,48 +20,49 @@ use glam::{DAffine3, DMat4, DVec3, DVec4};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Placed parts that one thread looks at.
+/// Placed parts of one task.
 const CHUNK: usize = 2048;
-/// Pixels that the picture is wider than for pass `bound`: some of single precision's, of large parts.
+/// Pixels by which the picture is wider on each side than in pass `bound`, for the rounding there in single precision.
 const SPARE_PX: f64 = 1.0;
-/// Pixels that boxes reach farther: twice what that pass adds for the rounding of a vertex.
+/// Pixels by which boxes reach farther: twice as many as pass `bound` adds for the rounding of a vertex.
 const ROUNDING_PX: f64 = 0.03125;
-/// Of what single precision makes of a depth, relative to what is added up for it.
+/// Error of a depth in single precision, relative to the sum of the magnitudes of its terms.
 const SINGLE_ROUNDING: f64 = 1e-5;
 
-/// The patches of a placed part.
+/// The box of the patches of a placed part, and its items.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PlacedBox {
-    /// Of a box of all of them, part coordinates.
+    /// Centre and half size of the box, part coordinates.
     centre: DVec3,
     half: DVec3,
-    /// Items, from the first on.
+    /// First item, and number of items; 0 of a part without patches.
     first: u32,
     count: u32,
-    /// It bounds an operand, which the far plane does not cut off.
+    /// The part is an operand, which the far plane does not cut off.
     is_operand: bool,
 }
 
-/// How far pass `bound` looks.
+/// The margins of pass `bound`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reach {
-    /// Pixels beside the picture.
+    /// Pixels around the picture.
     pub beside_px: f64,
-    /// Pixels around the box of a patch, where something of it may be drawn.
+    /// Pixels around the box of a patch in which the patch may be drawn.
     pub beyond_px: f64,
 }
 
-/// What a view may see.
+/// The placed parts and items that a view may see.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct InSight {
-    /// Placed parts with patches, by number.
+    /// Numbers of the placed parts with patches, ascending.
     pub parts: Vec<u32>,
+    /// Their items.
     pub runs: Vec<ItemRun>,
-    /// Of all runs.
+    /// How many items all runs have.
     pub items: u32,
 }
 
-/// Boxes of all placed parts of a scene.
+/// The boxes of all placed parts of a scene.
 pub(super) fn boxes(data: &SceneData) -> Vec<PlacedBox> {
     let mut boxes = vec![PlacedBox::default(); data.instances.len()];
     let mut known: HashMap<(u32, usize), (DVec3, DVec3)> = HashMap::new();
@@ -89,7 +91,8 @@ pub(super) fn boxes(data: &SceneData) -> Vec<PlacedBox> {
     boxes
 }
 
-/// A linear function of a box: its value at the centre, how far others are from it, and what is added up for it.
+/// A linear function over a box: its value at the centre, its largest difference from that, and the sum of the
+/// magnitudes of its terms.
 #[derive(Clone, Copy)]
 struct Range {
     middle: f64,
@@ -105,7 +108,7 @@ impl PlacedBox {
         Range { middle: linear.dot(self.centre) + row.w, reach, terms }
     }
 
-    /// Whether pass `bound` may find a patch of the box in the picture.
+    /// Whether pass `bound` may keep a patch of the box.
     fn is_in_sight(&self, pixels: DMat4, placement: DAffine3, camera: &Camera, reach: Reach) -> bool {
         let (margin, beyond) = (reach.beside_px + SPARE_PX, reach.beyond_px + ROUNDING_PX);
         let rows = (pixels * DMat4::from(placement)).transpose();
@@ -141,7 +144,7 @@ impl PlacedBox {
 }
 
 impl SceneData {
-    /// What a camera may see of the placed parts.
+    /// The placed parts and items that a camera may see.
     pub(crate) fn in_sight(&self, camera: &Camera, reach: Reach) -> InSight {
         let pixels = camera.pixel_matrix();
         let is_in_sight = |n: &usize| {

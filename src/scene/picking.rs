@@ -24,7 +24,8 @@ const THERE_PX: f64 = 1e-9;
 /// Of the domain, the longest step.
 const LONGEST_STEP: f64 = 0.25;
 
-/// Of a ray and a normal: at steeper faces an edge may lie that much farther away beside the pixel.
+/// The least cosine of a ray with a normal that is used. The depth of a face changes by one over the cosine from a
+/// pixel to the next; this bounds it.
 const LEAST_COSINE: f64 = 0.05;
 
 /// What a pixel shows.
@@ -47,8 +48,9 @@ pub struct Hit {
     pub uv: Option<DVec2>,
     /// The point, model coordinates.
     pub point: DVec3,
-    /// Index into [`Edges::edges`](crate::model::Edges::edges) of the part: the edge of the face that a line along it covers
-    /// here, in scenes with [`edges`](crate::picture::SceneSettings::edges); `None` elsewhere and of meshes.
+    /// The edge of the face whose line covers the pixel, in scenes with
+    /// [`edges`](crate::picture::SceneSettings::edges): an index into [`Edges::edges`](crate::model::Edges::edges) of
+    /// the part. `None` if there is none, and on meshes.
     pub edge: Option<usize>,
     /// Unit outward normal of the face or the triangle, model coordinates; `None` of Boolean solids, and where there is
     /// none.
@@ -75,7 +77,7 @@ pub(crate) struct Picking {
     isolated: Vec<(Mesh, u32)>,
     /// Number of the primitive of each side, then of each triangle of operands.
     sides: Vec<u32>,
-    /// Of the model's parts, and how they are drawn, in scenes with lines.
+    /// The edges of the model's parts, and how they are drawn; in scenes with lines.
     edges: Option<(KnownEdges, EdgeSettings)>,
 }
 
@@ -159,8 +161,8 @@ impl Picking {
         }
     }
 
-    /// The edge of the hit's face that is nearest to the pixel, within half a line and half the pixel, and beside the hit: what
-    /// lies behind the face is farther from the eye than its slope explains.
+    /// The edge of the hit's face that is nearest to the pixel, within half a line's width and half a pixel. Its point
+    /// must not be farther behind the hit than the slope of the face explains.
     fn edge(&self, of: &Picked<'_>, hit: &Hit) -> Option<usize> {
         let (known, settings) = self.edges.as_ref()?;
         let (instance, part, face) = (hit.instance?, hit.part?, hit.face?);

@@ -11,8 +11,8 @@ pub(crate) fn view(pixels: DMat4, placement: DAffine3) -> abi::View {
     abi::View { x: row(rows.x_axis), y: row(rows.y_axis), depth: row(rows.z_axis), w: row(rows.w_axis) }
 }
 
-/// Pixels per unit slope (or per model unit), of the longer focal length, and the largest stretch towards the picture's
-/// corners.
+/// The larger of the two numbers of pixels per unit slope (or per model unit), and the largest stretch towards the
+/// picture's corners.
 pub(crate) fn focal_and_slant(camera: &Camera) -> (f64, f64) {
     let focal = camera.focal_px().max_element();
     if !camera.is_perspective() {
@@ -23,13 +23,13 @@ pub(crate) fn focal_and_slant(camera: &Camera) -> (f64, f64) {
     (focal, (1.0 + corner * corner).sqrt())
 }
 
-/// How far the picture, so many pixels wider on each side, reaches from the view axis at a depth of 1, or in model units: to
-/// the farther one of two sides.
+/// How far the picture, `margin_px` wider on each side, reaches from the view axis to the farther of two opposite
+/// sides: at a depth of 1, or in a parallel view in model units.
 pub(crate) fn half_slopes(camera: &Camera, margin_px: f64) -> DVec2 {
     (farthest_sides(camera) + margin_px) / camera.focal_px()
 }
 
-/// Pixels from the view axis to the farther one of left and right, and of top and bottom.
+/// Pixels from the view axis to the farther of left and right, and to the farther of top and bottom.
 fn farthest_sides(camera: &Camera) -> DVec2 {
     let size = DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1));
     let principal = camera.principal_px();

@@ -51,7 +51,8 @@ const ROUNDING: f64 = 1e-9;
 /// What is trimmed lies in the ball, and in the boxes.
 pub(super) fn view_cell(camera: &Camera, margin_px: f64, ball: &Ball, boxes: &[Bounds]) -> Option<Camera> {
     let (focal, _) = focal_and_slant(camera);
-    // a table's picture is around its axis: off the middle, it is as wide as the wider side wants on both
+    // a table's picture is symmetric about the axis: if the axis is off the middle, both sides get the wider one's
+    // width
     let half = half_slopes(camera, margin_px);
     let size = DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1));
     let own = (size + 2.0 * margin_px) / camera.focal_px();

@@ -21,13 +21,13 @@
 //! whole pixel.
 
 //! ```text
-//!   what another GPU may make of it, whose quotients and roots err by d = 2.5 * 2^-23 and 2 d:
+//!   error on another GPU, whose quotients are off by d = 2.5 * 2^-23 and whose roots by 2 d:
 //!     way      of a border's point: 4 d pixels to a domain     quotient of the point, slide along the arc, clipping
 //!     share    2 way + 4 d       a pixel has two pixels of border; `swept` is an eighth of a quotient, at 16 ends
 //!     outward  32 way + 32 d     16 chords of two ends
 //! ```
 //!
-//! The arithmetic is `precise`: nothing is contracted, and quotients and roots alone differ.
+//! The arithmetic is `precise`: nothing is contracted, and only quotients and roots differ.
 
 use super::exact::Exact;
 pub use crate::abi::constants::coverage::{CHORDS, MOST_CELLS};
@@ -44,13 +44,13 @@ pub struct Cover {
     pub cut: bool,
 }
 
-/// How far another GPU's [`Cover`] may be off.
+/// Error bounds of a [`Cover`] on another GPU.
 #[cfg(test)]
 #[derive(Clone, Copy, Debug)]
 pub struct Bound {
     /// Of the share.
     pub share: f32,
-    /// Of either number of `outward`; whether a border shorter than this cuts the pixel is open.
+    /// Of either number of `outward`. A shorter border may or may not count as cutting the pixel.
     pub outward: f32,
 }
 

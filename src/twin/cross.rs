@@ -11,16 +11,17 @@
 //! A scan line has a row in each bin that is seen (`bins.rs`).
 //!
 //! ```text
-//!   what another GPU may make of u:   point + min(|Δu|, |Δu / Δv| (line + 2 point)) + 2 d |Δu|
-//!     d      a quotient's error: 2.5 units in the last place, 2.5 * 2^-23
-//!     point  of a chord's end: 0 at the curve's ends; else 2 d along a straight line, (3 degree + 2) d
-//!     line   of a scan line's v: two quotients of numbers up to 1, 2.5 d
+//!   error of u on another GPU:   point + min(|Δu|, |Δu / Δv| (line + 2 point)) + 2 d |Δu|
+//!     d      error of a quotient: 2.5 units in the last place, 2.5 * 2^-23
+//!     point  error of a chord's end: 0 if the curve has one chord; else 2 d along a straight line, (3 degree + 2) d
+//!     line   error of a scan line's v: two quotients of numbers up to 1, 2.5 d
 //! ```
 //!
-//! The arithmetic is `precise`: nothing is contracted, and quotients alone differ. Of an inner point of a curve these are the
-//! parameter, the quotients of its binomials, and that of the weight. Its speed and the spread of its control points are
-//! taken as one and a half domains. `u` is kept between the chord's ends, so it errs by no more than their distance. A scan
-//! line nearer to a chord's end than `line + point` may cross the chord beside it instead: `u` is anywhere along that one.
+//! The arithmetic is `precise`: nothing is contracted, and only quotients differ. An inner point of a curve depends on
+//! the quotients of its parameter, of its binomials and of its weight. The curve's speed and the spread of its control
+//! points are taken as one and a half domains. `u` is clamped to the chord, so its error is at most the chord's width.
+//! If a scan line is nearer to a chord's end than `line + point`, it may cross the next chord instead, and `u` has no
+//! bound.
 //!
 //! An intercept is `u` as order-preserving bits, its lowest bit the direction: 1 upwards. In which
 //! order a row receives its intercepts is left to the GPU; the rows compare as sets.
@@ -66,7 +67,7 @@ pub fn insert(
     });
 }
 
-/// Row, intercept, and how far from it another GPU's may be; infinite where another chord may have it.
+/// Row, intercept, and the error bound of the intercept on another GPU; infinite if another chord may have it.
 #[cfg(test)]
 pub fn bounded(
     frame: &Frame,
@@ -86,12 +87,12 @@ pub fn bounded(
     all
 }
 
-/// Of a quotient, relative: 2.5 units in the last place (Vulkan 1.3, appendix A, "Precision and Operation of SPIR-V
-/// Instructions").
+/// Relative error of a quotient: 2.5 units in the last place (Vulkan 1.3, appendix A, "Precision and Operation of
+/// SPIR-V Instructions").
 #[cfg(test)]
 const QUOTIENT_ERROR: f32 = 2.5 * f32::EPSILON;
 
-/// Of an inner point of a curve, in its domain.
+/// Error of an inner point of a curve, in its domain.
 #[cfg(test)]
 fn point_error(degree: u32) -> f32 {
     if degree == 1 { 2.0 * QUOTIENT_ERROR } else { (3 * degree + 2) as f32 * QUOTIENT_ERROR }
@@ -134,7 +135,7 @@ struct Chord {
     strips: f32,
     bins: u32,
     rows: StripRows,
-    /// How far another GPU may have its ends.
+    /// Error of its ends on another GPU.
     #[cfg(test)]
     point_error: f32,
 }

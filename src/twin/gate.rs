@@ -1,8 +1,8 @@
-//! Twin of the pass `gate`: where something that is drawn from had no room, no patch is drawn.
+//! Twin of the pass `gate`: if a list of this frame overflowed, no patch is drawn.
 
 use crate::abi::Counters;
 
-/// The counters behind the pass.
+/// The counters after the pass.
 pub fn gate(counters: Counters) -> Counters {
     let drawn = if counters.failed == 0 { 1 } else { 0 };
     let (plain_draws, trimmed_draws) = (drawn * counters.plain_draws, drawn * counters.trimmed_draws);

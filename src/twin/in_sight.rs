@@ -1,4 +1,4 @@
-//! Twin of `glsl/include/in_sight.glsl`: placed patches in sight, numbered without gaps.
+//! Twin of `glsl/include/in_sight.glsl`: the items in sight, numbered without gaps.
 
 use crate::abi::ItemRun;
 

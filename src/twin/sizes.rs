@@ -29,7 +29,7 @@ pub fn sizes(frame: &Frame, strip_starts: &[u32], segment_starts: &[u32], counte
     }
     counters.clamps += u32::from(segments > MOST_SEGMENTS);
     counters.rows = wanted.min(frame.row_capacity);
-    // more than 32 bits count
+    // the sum of the rows exceeds 32 bits
     counters.wanted_rows = if wrapped { u32::MAX } else { wanted };
     counters.segments = segments.min(MOST_SEGMENTS);
     let groups = |threads: u32, group: u32| grid_of(frame, threads.div_ceil(group));

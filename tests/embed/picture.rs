@@ -176,8 +176,8 @@ fn smooth_trims_blend_with_what_the_host_drew() {
     assert_eq!(host.shutdown(), [""; 0]);
 }
 
-/// A picture in a rectangle of larger targets is that of a whole target, bit for bit, before a background and among what the
-/// host drew; beside the rectangle the host's colour and depth stay.
+/// A picture in a rectangle of larger targets equals the picture in whole targets, bit for bit: with a background, and
+/// over what the host drew. Outside the rectangle the host's colour and depth stay.
 #[test]
 fn a_rectangle_of_a_larger_target_holds_the_same_picture() {
     let host = Host::new();

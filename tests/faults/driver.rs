@@ -1,13 +1,16 @@
-//! A double of the Vulkan driver, put in place of the loader's one entry point: it counts calls and living handles, and
-//! lets one call fail.
+//! A double of the Vulkan driver, in place of the loader's vkGetInstanceProcAddr. It counts calls, lists living handles
+//! and makes one call fail.
 //!
 //! ```text
 //!   engine ── ash ── vkGetInstanceProcAddr ─▶ double ──through──▶ the system's driver
 //!                                               └──null────▶ handles by number, memory of the test's own, no picture
 //! ```
 //!
-//! A failed call is not passed on, as if the driver had not made it. Of a device that is lost, waiting ends: the double
-//! waits before it tells so.
+//! A call that shall fail is not passed on to the driver. One call is the exception: vkWaitForFences waits before it
+//! returns that the device is lost, so that the GPU has finished when handles are destroyed.
+//!
+//! Handles of the device and of its objects are listed; instances are not, nor are semaphores, events and descriptor
+//! pools.
 
 use ash::vk;
 use ash::vk::Handle;
@@ -17,7 +20,7 @@ use std::mem::transmute;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What shall fail: the `nth` call of a name from 0, and what it returns.
+/// The call that shall fail, the `nth` of its name counted from 0, and the result that it returns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fault {
     pub call: &'static str,
@@ -25,7 +28,7 @@ pub struct Fault {
     pub result: vk::Result,
 }
 
-/// Where a function begins.
+/// The address of a function.
 macro_rules! address {
     ($function:expr) => {
         $function as *const () as usize
@@ -49,7 +52,7 @@ struct State {
 }
 
 static STATE: Mutex<Option<State>> = Mutex::new(None);
-/// Calls of the null driver that cannot fail, but for those that free.
+/// Calls of the null driver that cannot fail, except calls that free.
 static OTHERS: AtomicU32 = AtomicU32::new(0);
 static TURN: Mutex<()> = Mutex::new(());
 
@@ -64,7 +67,8 @@ pub struct Driver {
 }
 
 impl Driver {
-    /// `null`: without a driver below, but for what the device says of itself.
+    /// `null`: the double replaces the device; only queries of the instance and the physical device reach the system's
+    /// driver.
     pub fn new(null: bool) -> Self {
         let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: the system's loader.
@@ -80,13 +84,13 @@ impl Driver {
         Self { _loader: loader, _turn: turn }
     }
 
-    /// What the engine takes for the system's Vulkan.
+    /// The entry point to give to the engine.
     pub fn entry(&self) -> ash::Entry {
         // SAFETY: the double answers as the loader does.
         unsafe { ash::Entry::from_static_fn(ash::StaticFn { get_instance_proc_addr }) }
     }
 
-    /// From now on counts from 0, and lets this call fail.
+    /// Resets the counts, and makes this call fail from now on.
     pub fn plan(&self, fault: Option<Fault>) {
         with(|state| {
             (state.fault, state.injected) = (fault, 0);
@@ -95,28 +99,28 @@ impl Driver {
         OTHERS.store(0, Ordering::Relaxed);
     }
 
-    /// How often a call was made to fail.
+    /// Number of calls that failed by plan.
     pub fn injected(&self) -> u32 {
         with(|state| state.injected)
     }
 
-    /// How often each call that may fail was made, since the last plan.
+    /// Number of calls since the last plan, for each call that may fail.
     pub fn calls(&self) -> BTreeMap<&'static str, u32> {
         with(|state| state.calls.clone())
     }
 
-    /// All calls since the last plan but those that free.
+    /// Number of calls since the last plan, except calls that free.
     pub fn count(&self) -> u32 {
         with(|state| state.calls.values().sum::<u32>()) + OTHERS.load(Ordering::Relaxed)
     }
 
-    /// Kinds of the handles that nobody has destroyed.
+    /// Handles that have not been destroyed: for each one the name of the call that frees it, and `-` for a device.
     pub fn living(&self) -> Vec<&'static str> {
         with(|state| state.living.iter().map(|(kind, _)| *kind).collect())
     }
 }
 
-/// Counts a call, and makes it fail or makes it.
+/// Counts a call, and either makes it or returns the planned failure.
 fn call(name: &'static str, make: impl FnOnce() -> vk::Result) -> vk::Result {
     let failure = with(|state| {
         let made = state.calls.entry(name).or_default();
@@ -160,7 +164,7 @@ type Callbacks = *const vk::AllocationCallbacks<'static>;
 type Create<O, I, H> = unsafe extern "system" fn(O, *const I, Callbacks, *mut H) -> vk::Result;
 type Destroy<O, H> = unsafe extern "system" fn(O, H, Callbacks);
 
-/// Pairs that make a handle and free it.
+/// Pairs of a call that makes a handle and the call that frees it.
 macro_rules! pairs {
     ($($make:ident $free:ident: $owner:ty, $info:ty => $handle:ty, $made_by:literal $freed_by:literal, $bytes:expr;)*) => {
         $(unsafe extern "system" fn $make(owner: $owner, info: *const $info, none: Callbacks, made: *mut $handle) -> vk::Result {
@@ -231,7 +235,7 @@ unsafe extern "system" fn destroy_device(device: vk::Device, none: Callbacks) {
     }
 }
 
-/// Other calls that may fail, and what the null driver does.
+/// Other calls that may fail, each with the work of the null driver.
 macro_rules! calls {
     ($($function:ident $name:literal ($($argument:ident: $type:ty),*) $null:expr;)*) => {
         $(#[allow(clippy::too_many_arguments)] // as many as Vulkan has
@@ -344,7 +348,8 @@ unsafe extern "system" fn destroy_pipeline(device: vk::Device, pipeline: u64, no
 
 unsafe extern "system" fn unmap(_: vk::Device, _: u64) {}
 
-/// What cannot fail: commands, and names. Its caller removes the arguments, on each processor that the tests run on.
+/// Stands for all calls that cannot fail. It ignores the arguments of its caller, which the C calling conventions of
+/// x86-64 and AArch64 permit.
 unsafe extern "system" fn nothing() -> i32 {
     OTHERS.fetch_add(1, Ordering::Relaxed);
     0
@@ -357,7 +362,7 @@ fn function(address: usize) -> Function {
     unsafe { transmute::<usize, Function>(address) }
 }
 
-/// The double of a call, whose original is `original`.
+/// The double's function for a call, if it has one; `original` is the driver's.
 fn double(name: &CStr, original: usize) -> Option<usize> {
     let (name, address) = match name.to_bytes() {
         b"vkDestroyDevice" => ("vkDestroyDevice", address!(destroy_device)),
@@ -386,7 +391,7 @@ unsafe extern "system" fn get_instance_proc_addr(instance: vk::Instance, name: *
         with(|state| state.real.insert("vkGetDeviceProcAddr", original));
         return function(address!(get_device_proc_addr));
     }
-    // functions of devices come by the other way
+    // functions of devices come from get_device_proc_addr
     let of_instance = [c"vkCreateInstance", c"vkEnumeratePhysicalDevices", c"vkCreateDevice"].contains(&name);
     function(if of_instance { double(name, original).unwrap_or(original) } else { original })
 }

@@ -1,4 +1,4 @@
-//! A host that loses its device, or a frame, in ways that the renderer must be told of.
+//! A host that loses its device or does not submit a frame, and reports this to the renderer.
 
 use crate::driver::Driver;
 use crate::shapes;
@@ -60,13 +60,17 @@ impl Host {
     }
 }
 
-/// The renderer, and a target on a loan of its own.
+/// The renderer, a target on the host's device, and a camera.
 fn drawn(host: &Host) -> (Renderer, Image, Camera) {
+    drawn_by(host, 2)
+}
+
+fn drawn_by(host: &Host, slots: usize) -> (Renderer, Image, Camera) {
     let model = shapes::cube();
     let camera = Camera::around(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, SIZE);
     // SAFETY: the host outlives both.
     let (mut renderer, device) =
-        unsafe { (Renderer::new(host.lend(), TargetFormats::new(FORMAT), 2).unwrap(), Device::new(host.lend())) };
+        unsafe { (Renderer::new(host.lend(), TargetFormats::new(FORMAT), slots).unwrap(), Device::new(host.lend())) };
     let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT;
     let target =
         Image::new(&device, &ImageInfo { name: "target", size: SIZE, format: FORMAT, usage, pool: Pool::Transient });
@@ -80,7 +84,8 @@ fn record(renderer: &mut Renderer, target: &Image, camera: &Camera, slot: usize)
     unsafe { renderer.record(vk::CommandBuffer::null(), &input) }
 }
 
-/// Where the handle is gone nothing is called at all; after a loss that the host met, nothing but what frees.
+/// After `device_lost` the renderer makes only calls that free, and frees all handles. After `abandon`, when the
+/// device's handle is gone, it leaves handles alone.
 #[test]
 fn a_device_that_the_host_lost_is_not_touched() {
     for is_gone in [false, true] {
@@ -91,7 +96,9 @@ fn a_device_that_the_host_lost_is_not_touched() {
             record(&mut renderer, &target, &camera, slot).unwrap();
         }
         drop(target);
-        let before = driver.living().len();
+        // the allocator of the test's host frees its memory itself
+        let handles = || driver.living().into_iter().filter(|kind| !["-", "vkFreeMemory"].contains(kind)).count();
+        let before = handles();
         driver.plan(None);
         if is_gone {
             renderer.abandon()
@@ -106,12 +113,12 @@ fn a_device_that_the_host_lost_is_not_touched() {
         assert!(renderer.picked(0).is_none() && renderer.prepare(&camera).is_err());
         drop(renderer);
         assert_eq!(driver.count(), 0, "no call but those that free");
-        let left = driver.living().into_iter().filter(|kind| !["-", "vkFreeMemory"].contains(kind)).count();
-        assert_eq!(left == 0, !is_gone, "{left} of {before} handles");
+        assert_eq!(handles(), if is_gone { before } else { 0 }, "of {before} handles");
     }
 }
 
-/// A frame that was not submitted has copied nothing: the next one copies all of it again.
+/// A frame that was not submitted has copied nothing, so the next frame copies the scene again. The test counts the
+/// buffers that each frame creates.
 #[test]
 fn a_discarded_frame_is_uploaded_again() {
     let driver = Driver::new(true);
@@ -131,4 +138,27 @@ fn a_discarded_frame_is_uploaded_again() {
     assert!(third > first / 2, "the scene is made again: {third} buffers after {first}");
     let fourth = made(&mut renderer, 0);
     assert!(fourth < first / 2, "once: {fourth} buffers");
+}
+
+/// Of three frames in flight two are discarded. The first may still use what they replaced, so nothing of it is freed.
+#[test]
+fn what_frames_in_flight_use_outlives_discarded_frames() {
+    for order in [[1, 2], [2, 1]] {
+        let driver = Driver::new(true);
+        let host = Host::new(&driver);
+        let (mut renderer, target, camera) = drawn_by(&host, 3);
+        for slot in 0..3 {
+            record(&mut renderer, &target, &camera, slot).unwrap();
+        }
+        let handles = |driver: &Driver| driver.living().len();
+        let before = handles(&driver);
+        order.into_iter().for_each(|slot| renderer.discard(slot));
+        // another model takes the place of the first
+        renderer.upload(&shapes::cube()).unwrap();
+        assert!(handles(&driver) >= before, "{order:?}: {} of {before} handles", handles(&driver));
+        // once the first frame has finished, the next frame in its slot frees what it used
+        let kept = handles(&driver);
+        record(&mut renderer, &target, &camera, 0).unwrap();
+        assert!(handles(&driver) < kept, "{order:?}: what the first frame used stays");
+    }
 }

@@ -1,7 +1,7 @@
-//! A driver that fails: every call that may return an error does so once, by a double of the driver (`driver`).
+//! A driver that fails: each call that may return an error does so once. `driver` is a double of the Vulkan driver.
 //!
-//! Under the null driver no picture is drawn, so that each call of the script has its turn. Pictures after a failure are
-//! compared on the system's driver.
+//! The null driver draws nothing, which makes runs fast enough to fail each call of a script in turn. Pictures after a
+//! failure are compared on the system's driver.
 
 mod driver;
 mod host;

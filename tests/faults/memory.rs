@@ -18,7 +18,7 @@ unsafe impl GlobalAlloc for Counting {
         unsafe { System.alloc(layout) }
     }
 
-    // large blocks of the null driver are touched nowhere
+    // the default would write zeros into the null driver's large blocks; the system maps them untouched
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
         BYTES.fetch_add(layout.size() as i64, Ordering::Relaxed);
         // SAFETY: the caller's promise.
@@ -32,7 +32,7 @@ unsafe impl GlobalAlloc for Counting {
     }
 }
 
-/// In use now.
+/// Bytes in use now.
 pub fn bytes() -> i64 {
     BYTES.load(Ordering::Relaxed)
 }

@@ -1,4 +1,4 @@
-//! After a failure the next picture is the right one, bit for bit: nothing of a frame that was not drawn is missing in it.
+//! After a failed frame, colour and depth of the next picture are right, bit for bit.
 
 use crate::driver::{Driver, Fault};
 use crate::shapes;
@@ -40,7 +40,7 @@ fn editable() -> SceneSettings {
     SceneSettings { editable: true, ..SceneSettings::default() }
 }
 
-/// Calls of a run, each with the first, the middle and the last time that it was made.
+/// The first, the middle and the last call of each name in a run.
 fn turns(calls: BTreeMap<&'static str, u32>) -> Vec<(&'static str, u32)> {
     let thrice =
         |(call, count): (_, u32)| BTreeSet::from([0, count / 2, count - 1]).into_iter().map(move |n| (call, n));

@@ -1,4 +1,4 @@
-//! A short script, in which each call fails once.
+//! A short script, run once for each call that may fail.
 
 use crate::driver::{Driver, Fault};
 use crate::{memory, shapes};
@@ -14,8 +14,8 @@ const SIZE: (u32, u32) = (48, 32);
 const RESULTS: [vk::Result; 3] =
     [vk::Result::ERROR_DEVICE_LOST, vk::Result::ERROR_OUT_OF_DEVICE_MEMORY, vk::Result::ERROR_OUT_OF_HOST_MEMORY];
 
-/// Calls whose failure need not be told. The allocator looks for memory of another kind. The queue is waited for in another
-/// way. What was compiled is compiled again next time.
+/// Calls after whose failure the engine may succeed in another way: the allocator tries another kind of memory, the
+/// engine waits for the queue in place of the fence, and pipelines are compiled again by the next device.
 fn may_be_mended(fault: Fault) -> bool {
     match fault.call {
         "vkAllocateMemory" | "vkMapMemory" | "vkGetPipelineCacheData" => true,
@@ -27,7 +27,7 @@ fn may_be_mended(fault: Fault) -> bool {
 struct Script {
     model: Model,
     camera: Camera,
-    /// Of compiled pipelines.
+    /// Where compiled pipelines are stored.
     folder: PathBuf,
 }
 
@@ -66,7 +66,8 @@ impl Script {
         self.frame(renderer)
     }
 
-    /// The whole script; what fails is tried once more where the device lives. Returns the first error.
+    /// Runs the whole script, and returns the first error. A step that fails is tried once more, unless the device is
+    /// lost.
     fn run(&self, driver: &Driver) -> Option<GpuError> {
         let mut first = None;
         let opened = self.open(driver).or_else(|error| {
@@ -79,7 +80,7 @@ impl Script {
             assert!(first.is_none(), "{error} after {first:?}");
             let error = gpu(error);
             if error.is_device_lost() {
-                // poisoned: every call says what was lost by which call, and makes none
+                // the renderer is poisoned: every step returns the first error and makes no call
                 let calls = driver.count();
                 for step in [Self::upload, Self::frame] {
                     let again = step(self, &mut renderer).expect_err("the device is lost");
@@ -115,7 +116,8 @@ fn is_told(error: &GpuError, fault: Fault) -> bool {
     told == fault.result && error.to_string().starts_with(&format!("{} failed for `", fault.call))
 }
 
-/// Create, upload, frame, read back, edit: each call in turn. No crash, no hang, no leak; the error names the call.
+/// Each call of create, upload, frame, read back and edit fails in turn. Nothing crashes, no handle of the device
+/// leaks, and the error names the call.
 #[test]
 fn each_call_fails_once() {
     let script = Script::new("calls");
@@ -145,7 +147,7 @@ fn each_call_fails_once() {
     assert_eq!(tried, 3 * all);
 }
 
-/// Host memory is what it was before, whatever fails.
+/// No host memory leaks when the first call of any name fails.
 #[test]
 fn no_failure_leaks_host_memory() {
     let script = Script::new("memory");
@@ -155,7 +157,7 @@ fn no_failure_leaks_host_memory() {
     for call in driver.calls().into_keys() {
         for result in RESULTS {
             driver.plan(Some(Fault { call, nth: 0, result }));
-            // threads of the pool keep a block now and then: a leak is in every run
+            // threads of the pool keep a block now and then; a leak would show in every run
             let grows = |_| {
                 let before = memory::bytes();
                 script.run(&driver);

@@ -1,4 +1,4 @@
-//! Ambient occlusion: what a wall hides of the sky, and that nothing but colours of light change.
+//! Ambient occlusion: the share of the sky that a wall hides, and that only lit colours change.
 
 use crate::layers::in_glass;
 use crate::shapes;
@@ -12,7 +12,7 @@ use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings,
 use selvedge::renderer::RenderError;
 use std::f64::consts::PI;
 
-/// Of light, where no sky is seen: `STRENGTH` of ambient_write.comp.
+/// Share of the light that is lost where no sky is visible: `STRENGTH` of ambient_write.comp.
 const STRENGTH: f64 = 0.75;
 
 fn settings(ambient: Option<f64>) -> SceneSettings {
@@ -27,16 +27,16 @@ fn draw(model: &Model, scene: SceneSettings, camera: &Camera, style: Style) -> P
     picture
 }
 
-/// Share of the sky, weighted by the cosine, that an endless wall hides from a floor: `x` is how far away it is, of the length
-/// of rays. In a direction `p` from its normal, rays below the elevation acos(x / cos p) meet it; the integral of the squared
-/// sine of that is in closed form.
+/// Share of the sky, weighted by the cosine, that an endless wall hides from a floor. `x` is the distance of the wall
+/// divided by the length of the rays. At the azimuth `p` from the wall's normal, rays below the elevation acos(x / cos
+/// p) meet the wall. The integral of the squared sine of that elevation has this closed form.
 fn hidden_by_wall(x: f64) -> f64 {
     if x >= 1.0 { 0.0 } else { (x.acos() - x * (1.0 - x * x).sqrt()) / PI }
 }
 
-/// The floor beside a wall, as solids and as faces, from above in both projections: what a pixel loses lies between what rays
-/// lose that are as long as the radius, and as long as three quarters of it, where occlusion begins to fade; to a
-/// sixteenth, for of a horizon between two of the four steps a pixel knows the lower one.
+/// The floor beside a wall, as solids, from above in both projections. Occlusion fades from three quarters of the
+/// radius to the radius, so the loss of a pixel lies between the losses for rays of these two lengths. The tolerance is
+/// a sixteenth: a pixel looks at four steps and takes the lower of two horizons.
 #[test]
 fn a_wall_hides_what_it_hides_from_rays() {
     let radius = 1.0;
@@ -73,7 +73,7 @@ fn a_wall_hides_what_it_hides_from_rays() {
     }
 }
 
-/// A floor alone is as light as before, to a step of eight bits: rays along it meet nothing.
+/// A floor alone stays as light as before, to a step of eight bits: nothing hides the sky.
 #[test]
 fn a_floor_sees_all_of_the_sky() {
     let model = folded(Op::Union, vec![block([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0])]);
@@ -95,8 +95,9 @@ fn a_floor_sees_all_of_the_sky() {
     assert!(floor > 2000, "{floor}");
 }
 
-/// Of patches, meshes, solids and glass: the images are as without, bit for bit, and so are colours of styles that show no light;
-/// light gets less in some pixels, and more in none.
+/// Patches, meshes, solids and glass: all images but the colour are the same with and without ambient occlusion, bit
+/// for bit, and so are colours of the style zebra, which shows no light. Some shaded pixels get darker, and none gets
+/// lighter.
 #[test]
 fn nothing_but_light_changes() {
     let mut darker = 0;
@@ -109,7 +110,7 @@ fn nothing_but_light_changes() {
             let same_colour = Picture { colour: before.colour.clone(), stats: before.stats.clone(), ..after.clone() };
             assert_identical(&before, &same_colour, name);
             for (b, a) in before.colour.iter().zip(&after.colour) {
-                // a smooth picture is mixed of half floats
+                // lit colours may round differently by a step of eight bits
                 let off = if style == Style::Zebra { 0 } else { 1 };
                 assert!(
                     (0..3).all(|k| a[k] <= b[k].saturating_add(off)) && a[3].abs_diff(b[3]) <= off,
@@ -123,7 +124,7 @@ fn nothing_but_light_changes() {
     assert!(darker > 2000, "{darker}");
 }
 
-/// Its passes and images are there where it is wanted, and nowhere else.
+/// Its passes and images exist only in scenes that have ambient occlusion.
 #[test]
 fn it_exists_where_it_is_wanted() {
     let of_ambient = |ambient| {
@@ -134,7 +135,7 @@ fn it_exists_where_it_is_wanted() {
         assert_silent(renderer);
         objects.iter().filter(|o| o.starts_with("ambient") || *o == "resolved" || *o == "linear_show").count()
     };
-    // two steps and what takes their colours to the host's; both images
+    // two passes, the pass that writes the host's colour, and two images
     assert_eq!((of_ambient(None), of_ambient(Some(0.1))), (0, 5));
 }
 

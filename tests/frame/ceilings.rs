@@ -1,4 +1,4 @@
-//! No number of threads is too large for one dispatch: what does not fit into one row of workgroups has several.
+//! Dispatches with more workgroups than fit into one row use several rows.
 
 use crate::hidden::crowd;
 use crate::shapes::operands::splines;
@@ -14,14 +14,14 @@ use selvedge::picture::{
 };
 use selvedge::spline::Surface;
 
-/// Three workgroups a row: what a device has 65,535 of or more.
+/// Three workgroups in a row. Devices have 65,535 or more.
 const FEW_GROUPS: LowerLimits = LowerLimits { work_groups: Some(3), ..LowerLimits::NONE };
 
 fn draw(renderer: &mut HeadlessRenderer, camera: &Camera) -> Picture {
     renderer.render(camera, &FrameSettings::default(), Outputs::ALL).unwrap()
 }
 
-/// Every pass that has a thread for each of what the scene or the picture has many of.
+/// Scenes whose passes have a thread for each patch, scan line, pixel, edge or primitive.
 #[test]
 fn several_rows_of_workgroups_draw_the_same() {
     let plain = SceneSettings::default();
@@ -42,7 +42,7 @@ fn several_rows_of_workgroups_draw_the_same() {
         let mut whole = watched_with(&model, settings);
         let mut in_rows = limited(FEW_GROUPS);
         in_rows.upload_with(&model, settings).unwrap();
-        // the second picture knows what lay behind others in the first
+        // the second picture reuses what the first one found to be hidden
         for nth in 0..2 {
             let (a, b) = (draw(&mut whole, &camera), draw(&mut in_rows, &camera));
             assert!(a.face.iter().any(|face| *face != 0), "{name} shows nothing");
@@ -54,7 +54,7 @@ fn several_rows_of_workgroups_draw_the_same() {
     }
 }
 
-/// One under another, the last of which is seen from above.
+/// Copies stacked upwards, so that the last one is seen from above.
 fn stacked(part: Model, count: u32) -> Model {
     let place = |i: u32| DAffine3::from_translation(DVec3::new(0.0, 0.0, 1e-3 * f64::from(i)));
     Model { instances: (0..count).map(|i| shapes::placed(place(i), None)).collect(), ..part }
@@ -65,7 +65,7 @@ fn from_above(model: &Model, height: f64, size: (u32, u32)) -> Camera {
     Camera { projection: Projection::Orthographic { height }, ..above }
 }
 
-/// A flat face of so many patches along each side.
+/// A flat face of `across` by `down` patches.
 fn sheet(across: usize, down: usize) -> Part {
     let knots = |patches: usize| {
         let inner = (0..=patches).map(|k| k as f64);
@@ -77,7 +77,7 @@ fn sheet(across: usize, down: usize) -> Part {
     Part { faces: vec![face], ..Part::default() }
 }
 
-/// More patches than 65,535 workgroups of 64 threads have: all but the last of them are far beside the picture.
+/// More patches than 65,535 workgroups of 64 threads hold. All but the last one are far outside the picture.
 #[test]
 #[ignore = "minutes, and a gigabyte"]
 fn five_million_patches() {
@@ -91,14 +91,15 @@ fn five_million_patches() {
     let mut renderer = watched_with(&model, SceneSettings::default());
     let picture = draw(&mut renderer, &camera);
     assert_eq!(picture.stats.patches, 5_100_001);
-    assert_identical(&picture, &draw(&mut watched_with(&one, SceneSettings::default()), &camera), "alone");
+    let mut alone = watched_with(&one, SceneSettings::default());
+    assert_identical(&picture, &draw(&mut alone, &camera), "alone");
     // all of it from afar
     let whole = perspective(&model, (320, 240));
     assert!(draw(&mut renderer, &whole).face.contains(&2), "nothing is seen of the sheets");
-    assert_silent(renderer);
+    [renderer, alone].into_iter().for_each(assert_silent);
 }
 
-/// More scan lines than 65,535 workgroups of 128 threads have: of plates one under another, the last of which is seen.
+/// More scan lines than 65,535 workgroups of 128 threads hold, in stacked plates of which only the last is visible.
 #[test]
 #[ignore = "minutes, and a gigabyte"]
 fn nine_million_scan_lines() {
@@ -110,7 +111,7 @@ fn nine_million_scan_lines() {
     let mut renderer = watched_with(&model, settings);
     let picture = renderer.render(&camera, &fine, Outputs::ALL).unwrap();
     assert!(picture.stats.trim_rows > 65_535 * 128, "{:?}", picture.stats);
-    // the first stays, so that the model is as large
+    // the first plate stays, so that the model's bounds are the same
     let mut last = model.clone();
     last.instances.drain(1..119);
     let mut alone = watched_with(&last, settings);

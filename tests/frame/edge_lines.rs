@@ -31,7 +31,7 @@ fn with(edges: EdgeSettings) -> SceneSettings {
     SceneSettings { edges: Some(edges), ..SceneSettings::default() }
 }
 
-/// With outlines, as [`faults`] wants it.
+/// The picture that [`faults`] judges.
 pub fn draw_lines(model: &Model, camera: &Camera) -> Picture {
     draw(model, with(lines()), camera)
 }

@@ -1,4 +1,4 @@
-//! Assemblies of which little is in sight: the picture is that of what is in sight alone, bit for bit.
+//! Assemblies most of whose parts are out of sight: the picture equals that of the visible parts alone, bit for bit.
 
 use crate::shapes;
 use crate::support::{assert_identical, assert_silent, watched_with};
@@ -27,32 +27,34 @@ fn block(side: i32) -> Model {
     model
 }
 
-/// Cameras that see all of a block, some of it from within, and a corner; the last has most parts below a pixel.
+/// Views of the whole block, from inside it, of a corner, and from so far away that most parts are smaller than a
+/// pixel.
 fn cameras(model: &Model) -> Vec<Camera> {
     let whole = Camera::around(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, SIZE);
     let middle = model.control_bounds().centre();
     let at = |eye: DVec3, target: DVec3| Camera { eye, target, depth_range: (0.1, 400.0), ..whole };
-    let far = whole.target + 400.0 * (whole.eye - whole.target);
+    let far = whole.target + 20.0 * (whole.eye - whole.target);
     vec![
         whole,
         at(middle + DVec3::new(2.0, -3.0, 4.5), middle + DVec3::X * 40.0),
         at(DVec3::new(-12.0, -9.0, 6.0), DVec3::ZERO),
-        Camera { depth_range: (whole.depth_range.0 * 100.0, whole.depth_range.1 * 1000.0), ..at(far, middle) },
+        Camera { depth_range: (whole.depth_range.0 * 10.0, whole.depth_range.1 * 100.0), ..at(far, middle) },
     ]
 }
 
-/// Of a scene with much besides, whose views follow one another in one renderer, and each view of what it shows alone.
+/// Draws the views one after another with one renderer, and each view again with only the instances near its picture.
 fn check(settings: SceneSettings) {
     let model = block(6);
     let mut renderer = watched_with(&model, settings);
     let mut alone = watched_with(&Model::default(), settings);
     let mut least = usize::MAX;
-    // what is out of sight comes back
+    // the first views come again at the end, so parts that were out of sight return
     let cameras = cameras(&model);
     for (nth, camera) in cameras.iter().chain(&cameras[..2]).enumerate() {
         let first = draw(&mut renderer, camera);
+        assert!(first.face.iter().any(|face| *face != 0), "view {nth} shows nothing");
         assert_identical(&first, &draw(&mut renderer, camera), &format!("view {nth}, again"));
-        // all that a wider picture shows, and nothing else
+        // only the instances that a wider picture shows
         let wider = (SIZE.0 + 64, SIZE.1 + 64);
         let shown = in_front(&model, camera, wider);
         least = least.min(shown.instances.len());
@@ -63,7 +65,7 @@ fn check(settings: SceneSettings) {
     [renderer, alone].into_iter().for_each(assert_silent);
 }
 
-/// The instances whose spheres reach into a picture of that size, around the camera's.
+/// The instances whose bounding cubes reach into a picture of `size`, which extends the camera's picture on all sides.
 fn in_front(model: &Model, camera: &Camera, size: (u32, u32)) -> Model {
     let pixels = camera.pixel_matrix();
     let border = [size.0 - camera.size.0, size.1 - camera.size.1].map(|more| f64::from(more) / 2.0);
@@ -84,7 +86,7 @@ fn in_front(model: &Model, camera: &Camera, size: (u32, u32)) -> Model {
     Model { instances: model.instances.iter().filter(|i| is_seen(i)).cloned().collect(), ..model.clone() }
 }
 
-/// Patches are cut alike whatever else there is, where edits may come.
+/// In an editable scene the split of a patch does not depend on other patches.
 fn exact() -> SceneSettings {
     SceneSettings { trim: TrimWay::Exact, editable: true, ..SceneSettings::default() }
 }
@@ -104,7 +106,7 @@ fn with_smooth_borders() {
     check(SceneSettings { smooth: Smooth::Borders, ..exact() });
 }
 
-/// Moved out of sight and back, hidden and shown.
+/// An instance is moved out of sight and back, then hidden and shown.
 #[test]
 fn what_moves_is_where_it_is() {
     let model = block(4);

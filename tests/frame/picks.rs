@@ -145,8 +145,8 @@ fn a_pick_is_of_its_frame() {
     assert_silent(renderer);
 }
 
-/// Where a line is drawn over a face, the hit has its edge, as the image of edges has it but for pixels between two lines; away
-/// from lines, and without them, it has none.
+/// Where a line is drawn over a face, the hit has an edge. It is the edge of the image of edges, except in pixels
+/// between two lines. Away from lines the hit has no edge.
 #[test]
 fn a_hit_has_the_edge_whose_line_is_there() {
     let lines = EdgeSettings { width: 2.5 * EdgeSettings::HEIGHT / f64::from(SIZE.1), ..EdgeSettings::default() };

@@ -80,7 +80,7 @@ fn more_sub_patches_than_the_first_list_holds() {
     assert_eq!(picture.stats.clamps, 0, "{:?}", picture.stats);
 }
 
-/// What a table has room for, of a device that binds so much: two million scan lines.
+/// A device that binds 16 MiB: its table has room for two million scan lines.
 const LITTLE: LowerLimits = LowerLimits { storage_range: Some(1 << 24), ..LowerLimits::NONE };
 
 fn with_little(model: &Model, settings: SceneSettings) -> HeadlessRenderer {
@@ -89,8 +89,7 @@ fn with_little(model: &Model, settings: SceneSettings) -> HeadlessRenderer {
     renderer
 }
 
-/// So many plates upon each other that a view of a fifth of each has more scan lines than a table has room for, and one of
-/// all of them has few.
+/// A stack of plates. A close view has more scan lines than the table has room for; a view of the whole stack has few.
 fn stack() -> Model {
     let mut model = shapes::plate();
     let place = |i: u32| DVec3::new(0.0, 0.0, -1e-3 * f64::from(i));

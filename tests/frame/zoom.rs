@@ -81,7 +81,7 @@ fn bracket_a_million_times_closer() {
     keeps_the_promise(&sample("bracket.step"), 1e6);
 }
 
-/// The axis lies in a corner, and beside the picture: such views have windows of their own.
+/// Close views whose axis lies in a corner of the picture, and outside of it.
 #[test]
 fn bracket_closer_through_lenses_off_centre() {
     let bracket = sample("bracket.step");

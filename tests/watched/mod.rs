@@ -5,10 +5,10 @@ use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::Model;
 use std::path::Path;
 
-/// A sample of the repository. A missing one fails: its absence is not a pass.
+/// A sample of the repository. The test fails if the file is missing.
 #[allow(dead_code)] // not every binary draws samples
 pub fn sample(name: &str) -> Model {
-    // as cargo runs the test; of a binary that was packed the place where it was built is not there
+    // a packed test binary runs where the source tree does not exist: the environment names the folder
     let root = std::env::var("CARGO_MANIFEST_DIR").unwrap_or_else(|_| env!("CARGO_MANIFEST_DIR").to_owned());
     selvedge_io::import::open(&Path::new(&root).join("samples").join(name)).unwrap().model
 }

@@ -92,11 +92,11 @@ typedef struct SelvedgeVulkan {
     SelvedgeGetInstanceProcAddr get_instance_proc_addr;
     // VkInstance, made for Vulkan 1.3.
     void *instance;
-    // VkPhysicalDevice for which selvedge_vulkan_missing says that nothing is.
+    // VkPhysicalDevice that selvedge_vulkan_missing accepts.
     void *physical_device;
-    // VkDevice with what selvedge_vulkan_features adds, and the extension VK_KHR_push_descriptor.
+    // VkDevice with the features that selvedge_vulkan_features sets, and the extension VK_KHR_push_descriptor.
     void *device;
-    // Family of the command buffers that are recorded into: graphics and compute.
+    // Queue family of the host's command buffers. It supports graphics and compute.
     uint32_t queue_family;
     // Frames in flight; 0: 2.
     uint32_t slots;
@@ -104,9 +104,59 @@ typedef struct SelvedgeVulkan {
     uint32_t colour_format;
     // VkFormat of a depth target of the host's, reversed: 1 near, 0 far. 0: there is none.
     uint32_t depth_format;
-    // Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on, but for SELVEDGE_THICKNESS.
+    // Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on. SELVEDGE_THICKNESS is refused.
     uint32_t outputs;
 } SelvedgeVulkan;
+
+// A picture to be drawn. Zeros and null are the defaults, but for width and height.
+typedef struct SelvedgeView {
+    // sizeof(SelvedgeView)
+    size_t struct_size;
+    // Pixels, 1 to 16384.
+    uint32_t width;
+    // Pixels, 1 to 16384.
+    uint32_t height;
+    // iso, front, right, back, left, top, bottom, or "AZIMUTH,ELEVATION" in degrees: as large as the model fits. Null: iso,
+    // or from `eye` where eye and target differ.
+    const char *standard;
+    // Position of the eye, millimetres.
+    double eye[3];
+    // Point that the eye looks at.
+    double target[3];
+    // Direction that points up in the picture; zeros: 0, 0, 1.
+    double up[3];
+    // Vertical field of view from `eye`, degrees; 0: 35.
+    double fov;
+    // Not 0: a parallel view from `eye`; the height of the picture in millimetres.
+    double ortho;
+    // Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on.
+    uint32_t outputs;
+    // 1, 4 or 8 samples of each pixel's colour; 0: 1.
+    uint32_t samples;
+    // shaded, clay, normals or zebra; null: shaded.
+    const char *style;
+    // A CSS colour, gradient or none; null: gradient.
+    const char *background;
+    // Lines along edges: all, sharp or none; null: none, and all where SELVEDGE_EDGE is among the outputs.
+    const char *edges;
+    // Width of lines in pixels; 0: 1 or more, and more in high pictures.
+    double line_width;
+    // Direction towards a sun that casts shadows; zeros: a studio's light.
+    double sun[3];
+    // Largest distance in pixels between a drawn boundary and the true one, at least 0.1; 0: 0.5.
+    double tolerance;
+    // A calibrated camera in place of `standard` and `eye`, by OpenCV's conventions: fx, fy, cx, cy in pixels of this
+    // picture. The first pixel's centre is 0, 0. Zeros: the camera is not calibrated.
+    double intrinsics[4];
+    // The calibrated camera's rotation from model to camera axes (x right, y down, z ahead), row by row; zeros: the
+    // identity.
+    double rotation[9];
+    // The model's origin in the calibrated camera's axes, millimetres: a point X is seen at K (R X + t).
+    double translation[3];
+    // Radius of ambient occlusion, millimetres. 0: a twenty-fifth of the model's diagonal with one sample, no ambient
+    // occlusion with several. Below 0: no ambient occlusion.
+    double ambient;
+} SelvedgeView;
 
 // An image of the host's; 0 where there is none.
 typedef struct SelvedgeTarget {
@@ -116,20 +166,20 @@ typedef struct SelvedgeTarget {
     uint64_t view;
 } SelvedgeTarget;
 
-// The host's images of one frame, all of one size. Colour images are in layout COLOR_ATTACHMENT_OPTIMAL before and after, the
-// depth target in DEPTH_STENCIL_ATTACHMENT_OPTIMAL. What the host did before is ordered before reads and writes of these
-// attachments, what it does next after them.
+// The host's images of one frame, all of one size. Before and after the frame, colour images are in layout
+// COLOR_ATTACHMENT_OPTIMAL and the depth target is in DEPTH_STENCIL_ATTACHMENT_OPTIMAL. The host's barriers order its
+// earlier work before reads and writes of these attachments, and its later work after them.
 typedef struct SelvedgeTargets {
     // sizeof(SelvedgeTargets)
     size_t struct_size;
-    // Of the images, pixels; 0: those of the view. Larger ones get the picture in a rectangle, and need the usage
-    // TRANSFER_DST, and TRANSFER_SRC where the view has no background.
+    // Width of the images, pixels; if width and height are 0, the images have the size of the view. Larger images get
+    // the picture in a rectangle. They need the usage TRANSFER_DST, and TRANSFER_SRC if the view has no background.
     uint32_t width;
-    // See width.
+    // Height of the images, pixels.
     uint32_t height;
     // Column of the images at which the picture's upper left pixel goes.
     uint32_t x;
-    // Row of it.
+    // Row of the images at which the picture's upper left pixel goes.
     uint32_t y;
     // Of the format that the host gave.
     struct SelvedgeTarget colour;
@@ -157,7 +207,7 @@ typedef struct SelvedgeReport {
     size_t struct_size;
     // 1: a frame was recorded into the slot.
     uint32_t recorded;
-    // 1: it is whole. 0: a list was too short; the next frame recorded into the slot has the room.
+    // 1: the frame is whole. 0: a list was too short; the next frame recorded into the slot has room for all of it.
     uint32_t complete;
     // Places where the frame could not keep the promise of accuracy.
     uint64_t clamps;
@@ -237,70 +287,22 @@ typedef struct SelvedgeRendererOptions {
     uint32_t validation;
 } SelvedgeRendererOptions;
 
-// A picture to be drawn. Zeros and null are the defaults, but for width and height.
-typedef struct SelvedgeView {
-    // sizeof(SelvedgeView)
-    size_t struct_size;
-    // Pixels, 1 to 16384.
-    uint32_t width;
-    // Pixels, 1 to 16384.
-    uint32_t height;
-    // iso, front, right, back, left, top, bottom, or "AZIMUTH,ELEVATION" in degrees: as large as the model fits. Null: iso,
-    // or from `eye` where eye and target differ.
-    const char *standard;
-    // Position of the eye, millimetres.
-    double eye[3];
-    // Point that the eye looks at.
-    double target[3];
-    // Direction that points up in the picture; zeros: 0, 0, 1.
-    double up[3];
-    // Vertical field of view from `eye`, degrees; 0: 35.
-    double fov;
-    // Not 0: a parallel view from `eye`; the height of the picture in millimetres.
-    double ortho;
-    // Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on.
-    uint32_t outputs;
-    // 1, 4 or 8 samples of each pixel's colour; 0: 1.
-    uint32_t samples;
-    // shaded, clay, normals or zebra; null: shaded.
-    const char *style;
-    // A CSS colour, gradient or none; null: gradient.
-    const char *background;
-    // Lines along edges: all, sharp or none; null: none, and all where SELVEDGE_EDGE is among the outputs.
-    const char *edges;
-    // Width of lines in pixels; 0: 1 or more, and more in high pictures.
-    double line_width;
-    // Direction towards a sun that casts shadows; zeros: a studio's light.
-    double sun[3];
-    // Largest distance in pixels between a drawn boundary and the true one, at least 0.1; 0: 0.5.
-    double tolerance;
-    // A calibrated camera in place of `standard` and `eye`, as OpenCV has it: fx, fy, cx, cy, pixels of this picture, the
-    // first pixel's centre being 0, 0. Zeros: none.
-    double intrinsics[4];
-    // Its rotation from model to camera axes (x right, y down, z ahead), row by row; zeros: none is turned.
-    double rotation[9];
-    // The model's origin in its axes, millimetres: a point X is seen at K (R X + t).
-    double translation[3];
-    // Radius of ambient occlusion, millimetres; 0: a twenty-fifth of the model's diagonal, but none with several samples;
-    // below 0: none.
-    double ambient;
-} SelvedgeView;
-
 // A point of a model near a place in a picture.
 typedef struct SelvedgeSnap {
     // sizeof(SelvedgeSnap)
     size_t struct_size;
-    // SELVEDGE_SNAP_VERTEX, SELVEDGE_SNAP_CENTRE or SELVEDGE_SNAP_EDGE; 0: there is none that is seen, and the rest is 0.
+    // SELVEDGE_SNAP_VERTEX, SELVEDGE_SNAP_CENTRE or SELVEDGE_SNAP_EDGE; 0: no point was found, and the other fields
+    // are 0.
     uint32_t kind;
-    // Number of the edge, as in the image of edges; of a vertex, of one that ends there.
+    // Number of the edge, as in the image of edges; for a vertex, the number of an edge that ends there.
     uint32_t edge;
     // Number of the placed body, as in the image of instances.
     uint32_t instance;
     // Millimetres.
     double point[3];
-    // Where it is in the picture, pixels from the upper left corner; the first pixel's centre is 0.5, 0.5.
+    // Position in the picture, pixels from the upper left corner; the first pixel's centre is 0.5, 0.5.
     double pixel[2];
-    // From the place that was given, pixels.
+    // Distance from the given place, pixels.
     double distance_px;
     // Distance from the eye along the view axis, millimetres.
     double depth;
@@ -319,8 +321,8 @@ const char *selvedge_last_error(void);
 // The library's version, as in "0.1.0".
 const char *selvedge_version(void);
 
-// What the physical device lacks: SELVEDGE_STATUS_DEVICE, and selvedge_last_error lists it. Of `vulkan` the function, the
-// instance and the physical device are read.
+// Checks a physical device. If it lacks something, the status is SELVEDGE_STATUS_DEVICE and selvedge_last_error lists
+// what is missing. Only the function, the instance and the physical device of `vulkan` are read.
 //
 // # Safety
 // The handles are alive.
@@ -333,14 +335,15 @@ enum SelvedgeStatus selvedge_vulkan_missing(const struct SelvedgeVulkan *vulkan)
 // Pointers to these structs, or null.
 enum SelvedgeStatus selvedge_vulkan_features(void *core, void *vulkan12, void *vulkan13);
 
-// Takes the host's device on loan.
+// Makes a renderer on the host's device. The host keeps the device.
 //
 // # Safety
 // Pointers are null or point to what they say; the handles are alive until the SelvedgeHost is freed.
 enum SelvedgeStatus selvedge_host_new(const struct SelvedgeVulkan *vulkan, struct SelvedgeHost **host);
 
-// Makes a model what the frames show. Of `view` samples, edges, line_width, ambient and sun count. Nothing waits: what
-// frames in flight use is freed with their slots.
+// Uploads the model that later frames show. Only samples, edges, line_width, ambient and sun of `view` are read, and
+// with edges its height: line_width counts pixels of a picture so high. The call does not wait for the GPU: objects
+// that frames in flight use are freed with their slots.
 //
 // # Safety
 // Pointers are null or point to what they say.
@@ -348,26 +351,29 @@ enum SelvedgeStatus selvedge_host_upload(const struct SelvedgeHost *host,
                                          const struct SelvedgeModel *model,
                                          const struct SelvedgeView *view);
 
-// Records a frame into a VkCommandBuffer of the host's. Of `view` size, camera, style, background and tolerance count; with a
-// null background the host's picture stays where the model is not. The frame recorded before into the slot has finished.
+// Records a frame into a VkCommandBuffer of the host's. Only size, camera, style, background and tolerance of `view`
+// are read. With a null background the host's picture stays where no model is drawn. The frame that was recorded into
+// the slot before has finished.
 //
 // # Safety
-// Pointers are null or point to what they say. `commands` is recording outside rendering, on the host's queue family, and is
-// submitted once; frames are submitted in the order in which they are recorded. After SELVEDGE_STATUS_RENDER it is reset.
+// Pointers are null or point to what they say. `commands` is recording, outside rendering, on the host's queue family,
+// and is submitted once. Frames are submitted in the order in which they are recorded. After SELVEDGE_STATUS_RENDER
+// the host resets `commands`.
 enum SelvedgeStatus selvedge_host_record(const struct SelvedgeHost *host,
                                          void *commands,
                                          uint32_t slot,
                                          const struct SelvedgeView *view,
                                          const struct SelvedgeTargets *targets);
 
-// Fills `report`, whose struct_size is set, with what the frame recorded last into the slot counted; it has finished.
+// Fills `report`, whose struct_size is set, with the counts of the frame that was recorded last into the slot. That
+// frame has finished.
 //
 // # Safety
 // Pointers are null or point to what they say.
 enum SelvedgeStatus selvedge_host_report(const struct SelvedgeHost *host, uint32_t slot, struct SelvedgeReport *report);
 
-// Places an instance anew, counted from 0: part to model coordinates, the columns x, y, z and the translation, millimetres.
-// The next frame shows it; nothing is uploaded again.
+// Moves an instance, counted from 0. `columns` takes part to model coordinates: the columns x, y, z and the
+// translation, millimetres. The next frame shows the new place; the model is not uploaded again.
 //
 // # Safety
 // Pointers are null or point to what they say; `columns` to 12 numbers.
@@ -381,7 +387,7 @@ enum SelvedgeStatus selvedge_host_set_transform(const struct SelvedgeHost *host,
 // The pointer is null or points to what it says.
 enum SelvedgeStatus selvedge_host_set_visible(const struct SelvedgeHost *host, uint64_t instance, uint32_t visible);
 
-// Gives the device back; null is allowed. The GPU has finished all frames.
+// Frees the renderer, and leaves the host's device as it is; null is allowed. The GPU has finished all frames.
 //
 // # Safety
 // What was made here and is used by no other call at the same time.
@@ -475,9 +481,10 @@ enum SelvedgeStatus selvedge_render(const struct SelvedgeRenderer *renderer,
 // What was made here and is used by no other call at the same time.
 void selvedge_renderer_free(struct SelvedgeRenderer *renderer);
 
-// Fills `snap`, whose struct_size is set, with the point of these kinds that the view sees nearest to a place in its picture, and
-// within `radius` pixels of it. `kinds`: SELVEDGE_SNAP_VERTEX | SELVEDGE_SNAP_CENTRE | SELVEDGE_SNAP_EDGE; they go before one
-// another in this order. Of the view only size and camera count. In double precision, without a device.
+// Finds a visible point of the model within `radius` pixels of a place in the view's picture, and fills `snap`, whose
+// struct_size is set. `kinds`: SELVEDGE_SNAP_VERTEX | SELVEDGE_SNAP_CENTRE | SELVEDGE_SNAP_EDGE. A vertex is preferred
+// to a centre, and both to an edge; within a kind the nearest point is taken. An edge offers only its point nearest to
+// the place. Only size and camera of the view are read. The search uses double precision and no device.
 //
 // # Safety
 // Pointers are null or point to what they say.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   host's instance, device ──selvedge_host_new──▶ SelvedgeHost ◀──selvedge_host_upload── SelvedgeModel
-//!       each frame, per slot:  selvedge_host_record(command buffer, view, targets) ─▶ the host submits, waits its fence
+//!       each frame, per slot:  selvedge_host_record(commands, view, targets) ─▶ the host submits, waits for its fence
 //!                              selvedge_host_report(slot) ─▶ complete?
 //! ```
 
@@ -34,11 +34,11 @@ pub struct SelvedgeVulkan {
     pub get_instance_proc_addr: SelvedgeGetInstanceProcAddr,
     /// VkInstance, made for Vulkan 1.3.
     pub instance: *mut c_void,
-    /// VkPhysicalDevice for which selvedge_vulkan_missing says that nothing is.
+    /// VkPhysicalDevice that selvedge_vulkan_missing accepts.
     pub physical_device: *mut c_void,
-    /// VkDevice with what selvedge_vulkan_features adds, and the extension VK_KHR_push_descriptor.
+    /// VkDevice with the features that selvedge_vulkan_features sets, and the extension VK_KHR_push_descriptor.
     pub device: *mut c_void,
-    /// Family of the command buffers that are recorded into: graphics and compute.
+    /// Queue family of the host's command buffers. It supports graphics and compute.
     pub queue_family: u32,
     /// Frames in flight; 0: 2.
     pub slots: u32,
@@ -46,7 +46,7 @@ pub struct SelvedgeVulkan {
     pub colour_format: u32,
     /// VkFormat of a depth target of the host's, reversed: 1 near, 0 far. 0: there is none.
     pub depth_format: u32,
-    /// Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on, but for SELVEDGE_THICKNESS.
+    /// Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on. SELVEDGE_THICKNESS is refused.
     pub outputs: u32,
 }
 
@@ -60,22 +60,22 @@ pub struct SelvedgeTarget {
     pub view: u64,
 }
 
-/// The host's images of one frame, all of one size. Colour images are in layout COLOR_ATTACHMENT_OPTIMAL before and after, the
-/// depth target in DEPTH_STENCIL_ATTACHMENT_OPTIMAL. What the host did before is ordered before reads and writes of these
-/// attachments, what it does next after them.
+/// The host's images of one frame, all of one size. Before and after the frame, colour images are in layout
+/// COLOR_ATTACHMENT_OPTIMAL and the depth target is in DEPTH_STENCIL_ATTACHMENT_OPTIMAL. The host's barriers order its
+/// earlier work before reads and writes of these attachments, and its later work after them.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct SelvedgeTargets {
     /// sizeof(SelvedgeTargets)
     pub struct_size: usize,
-    /// Of the images, pixels; 0: those of the view. Larger ones get the picture in a rectangle, and need the usage
-    /// TRANSFER_DST, and TRANSFER_SRC where the view has no background.
+    /// Width of the images, pixels; if width and height are 0, the images have the size of the view. Larger images get
+    /// the picture in a rectangle. They need the usage TRANSFER_DST, and TRANSFER_SRC if the view has no background.
     pub width: u32,
-    /// See width.
+    /// Height of the images, pixels.
     pub height: u32,
     /// Column of the images at which the picture's upper left pixel goes.
     pub x: u32,
-    /// Row of it.
+    /// Row of the images at which the picture's upper left pixel goes.
     pub y: u32,
     /// Of the format that the host gave.
     pub colour: SelvedgeTarget,
@@ -105,7 +105,7 @@ pub struct SelvedgeReport {
     pub struct_size: usize,
     /// 1: a frame was recorded into the slot.
     pub recorded: u32,
-    /// 1: it is whole. 0: a list was too short; the next frame recorded into the slot has the room.
+    /// 1: the frame is whole. 0: a list was too short; the next frame recorded into the slot has room for all of it.
     pub complete: u32,
     /// Places where the frame could not keep the promise of accuracy.
     pub clamps: u64,
@@ -113,7 +113,7 @@ pub struct SelvedgeReport {
 
 /// A renderer on the host's device. One thread uses it at a time.
 pub struct SelvedgeHost {
-    // dropped in this order: the allocator last, for the renderer frees its memory
+    // fields are dropped in this order: the renderer returns its memory to the allocator, which comes last
     renderer: Mutex<Renderer>,
     model: Mutex<Option<Arc<Model>>>,
     formats: TargetFormats,
@@ -153,7 +153,7 @@ const NO_TARGETS: SelvedgeTargets = SelvedgeTargets {
     instance: NO_TARGET,
 };
 
-// SAFETY: each begins with its size and consists of numbers and pointers; of the function pointer null is `None`
+// SAFETY: each begins with its size and consists of numbers and pointers; a null function pointer is `None`
 unsafe impl Sized for SelvedgeVulkan {}
 // SAFETY: as above
 unsafe impl Sized for SelvedgeTargets {}
@@ -187,8 +187,8 @@ impl SelvedgeVulkan {
     }
 }
 
-/// What the physical device lacks: SELVEDGE_STATUS_DEVICE, and selvedge_last_error lists it. Of `vulkan` the function, the
-/// instance and the physical device are read.
+/// Checks a physical device. If it lacks something, the status is SELVEDGE_STATUS_DEVICE and selvedge_last_error lists
+/// what is missing. Only the function, the instance and the physical device of `vulkan` are read.
 ///
 /// # Safety
 /// The handles are alive.
@@ -235,7 +235,7 @@ pub unsafe extern "C" fn selvedge_vulkan_features(
     })
 }
 
-/// Takes the host's device on loan.
+/// Makes a renderer on the host's device. The host keeps the device.
 ///
 /// # Safety
 /// Pointers are null or point to what they say; the handles are alive until the SelvedgeHost is freed.
@@ -297,7 +297,7 @@ pub unsafe extern "C" fn selvedge_host_new(
     })
 }
 
-/// The images that a host can give.
+/// The images that a host asks for.
 fn outputs(bits: u32) -> Result<Outputs, Failure> {
     let outputs = selvedge_session::Image::outputs(crate::picture::images(bits)?);
     if outputs.thickness {
@@ -322,8 +322,9 @@ impl SelvedgeHost {
     }
 }
 
-/// Makes a model what the frames show. Of `view` samples, edges, line_width, ambient and sun count. Nothing waits: what
-/// frames in flight use is freed with their slots.
+/// Uploads the model that later frames show. Only samples, edges, line_width, ambient and sun of `view` are read, and
+/// with edges its height: line_width counts pixels of a picture so high. The call does not wait for the GPU: objects
+/// that frames in flight use are freed with their slots.
 ///
 /// # Safety
 /// Pointers are null or point to what they say.
@@ -345,12 +346,14 @@ pub unsafe extern "C" fn selvedge_host_upload(
     })
 }
 
-/// Records a frame into a VkCommandBuffer of the host's. Of `view` size, camera, style, background and tolerance count; with a
-/// null background the host's picture stays where the model is not. The frame recorded before into the slot has finished.
+/// Records a frame into a VkCommandBuffer of the host's. Only size, camera, style, background and tolerance of `view`
+/// are read. With a null background the host's picture stays where no model is drawn. The frame that was recorded into
+/// the slot before has finished.
 ///
 /// # Safety
-/// Pointers are null or point to what they say. `commands` is recording outside rendering, on the host's queue family, and is
-/// submitted once; frames are submitted in the order in which they are recorded. After SELVEDGE_STATUS_RENDER it is reset.
+/// Pointers are null or point to what they say. `commands` is recording, outside rendering, on the host's queue family,
+/// and is submitted once. Frames are submitted in the order in which they are recorded. After SELVEDGE_STATUS_RENDER
+/// the host resets `commands`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn selvedge_host_record(
     host: *const SelvedgeHost,
@@ -414,7 +417,8 @@ pub unsafe extern "C" fn selvedge_host_record(
     })
 }
 
-/// Fills `report`, whose struct_size is set, with what the frame recorded last into the slot counted; it has finished.
+/// Fills `report`, whose struct_size is set, with the counts of the frame that was recorded last into the slot. That
+/// frame has finished.
 ///
 /// # Safety
 /// Pointers are null or point to what they say.
@@ -439,8 +443,8 @@ pub unsafe extern "C" fn selvedge_host_report(
     })
 }
 
-/// Places an instance anew, counted from 0: part to model coordinates, the columns x, y, z and the translation, millimetres.
-/// The next frame shows it; nothing is uploaded again.
+/// Moves an instance, counted from 0. `columns` takes part to model coordinates: the columns x, y, z and the
+/// translation, millimetres. The next frame shows the new place; the model is not uploaded again.
 ///
 /// # Safety
 /// Pointers are null or point to what they say; `columns` to 12 numbers.
@@ -481,7 +485,7 @@ pub unsafe extern "C" fn selvedge_host_set_visible(
     })
 }
 
-/// Gives the device back; null is allowed. The GPU has finished all frames.
+/// Frees the renderer, and leaves the host's device as it is; null is allowed. The GPU has finished all frames.
 ///
 /// # Safety
 /// What was made here and is used by no other call at the same time.

@@ -3,12 +3,13 @@
 //! ```text
 //!   selvedge_open ──▶ SelvedgeModel ────┐
 //!   selvedge_renderer_new ──▶ SelvedgeRenderer ──selvedge_render──▶ SelvedgePicture ──▶ SelvedgeImage: pointer, size, kind
-//!   selvedge_host_new, of the host's Vulkan device ──▶ SelvedgeHost ──selvedge_host_record──▶ the host's command buffer
+//!   selvedge_host_new on the host's device ──▶ SelvedgeHost ──selvedge_host_record──▶ the host's command buffer
 //! ```
 //!
-//! Every call that may fail returns a `SelvedgeStatus`; `selvedge_last_error` has the sentence. No panic crosses the border. Every struct begins with its size as the caller knows it, so that a
-//! program built against an older header runs with a newer library: fields that it does not know have their defaults.
-//! `include/selvedge.h` is made from these files by cbindgen.
+//! Every call that may fail returns a `SelvedgeStatus`; `selvedge_last_error` has the sentence. No panic crosses the
+//! border. Every struct begins with its size as the caller knows it, so that a program built against an older header
+//! runs with a newer library: fields that it does not know have their defaults. `include/selvedge.h` is made from these
+//! files by cbindgen.
 #![warn(missing_docs)]
 
 mod border;

@@ -15,7 +15,7 @@ pub struct SelvedgeModel {
     summary: CString,
     /// File and message of each warning.
     warnings: Vec<(CString, CString)>,
-    /// Made when it is first asked.
+    /// Made by the first call that snaps.
     pub(crate) snapper: OnceLock<Snapper>,
 }
 

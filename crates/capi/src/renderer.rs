@@ -71,15 +71,16 @@ pub struct SelvedgeView {
     pub sun: [f64; 3],
     /// Largest distance in pixels between a drawn boundary and the true one, at least 0.1; 0: 0.5.
     pub tolerance: f64,
-    /// A calibrated camera in place of `standard` and `eye`, as OpenCV has it: fx, fy, cx, cy, pixels of this picture, the
-    /// first pixel's centre being 0, 0. Zeros: none.
+    /// A calibrated camera in place of `standard` and `eye`, by OpenCV's conventions: fx, fy, cx, cy in pixels of this
+    /// picture. The first pixel's centre is 0, 0. Zeros: the camera is not calibrated.
     pub intrinsics: [f64; 4],
-    /// Its rotation from model to camera axes (x right, y down, z ahead), row by row; zeros: none is turned.
+    /// The calibrated camera's rotation from model to camera axes (x right, y down, z ahead), row by row; zeros: the
+    /// identity.
     pub rotation: [f64; 9],
-    /// The model's origin in its axes, millimetres: a point X is seen at K (R X + t).
+    /// The model's origin in the calibrated camera's axes, millimetres: a point X is seen at K (R X + t).
     pub translation: [f64; 3],
-    /// Radius of ambient occlusion, millimetres; 0: a twenty-fifth of the model's diagonal, but none with several samples;
-    /// below 0: none.
+    /// Radius of ambient occlusion, millimetres. 0: a twenty-fifth of the model's diagonal with one sample, no ambient
+    /// occlusion with several. Below 0: no ambient occlusion.
     pub ambient: f64,
 }
 
@@ -202,7 +203,7 @@ impl SelvedgeView {
         }
     }
 
-    /// How a model is uploaded; lines are drawn where the image of edges is wanted.
+    /// How a model is uploaded. Where the view names no edges, lines are drawn if the image of edges is wanted.
     ///
     /// # Safety
     /// As [`SelvedgeView::job`].
@@ -243,7 +244,7 @@ impl SelvedgeView {
         Ok(FrameSettings { tolerance_px, style, ..FrameSettings::default() })
     }
 
-    /// The same over the host's picture, or over a colour.
+    /// The settings of a host's frame: over the host's picture, or over a colour.
     ///
     /// # Safety
     /// As [`SelvedgeView::job`].
@@ -283,6 +284,9 @@ impl SelvedgeView {
             return alone
                 .then_some(Viewpoint::Pinhole(pinhole))
                 .ok_or_else(|| argument("intrinsics exclude standard, eye, fov and ortho"));
+        }
+        if self.rotation != [0.0; 9] || self.translation != [0.0; 3] {
+            return Err(argument("rotation and translation are those of a camera with intrinsics"));
         }
         if self.standard.is_null() && self.eye != self.target {
             let lens = match (self.fov, self.ortho) {

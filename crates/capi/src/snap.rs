@@ -22,17 +22,18 @@ const BITS: [u32; 3] = [SELVEDGE_SNAP_VERTEX, SELVEDGE_SNAP_CENTRE, SELVEDGE_SNA
 pub struct SelvedgeSnap {
     /// sizeof(SelvedgeSnap)
     pub struct_size: usize,
-    /// SELVEDGE_SNAP_VERTEX, SELVEDGE_SNAP_CENTRE or SELVEDGE_SNAP_EDGE; 0: there is none that is seen, and the rest is 0.
+    /// SELVEDGE_SNAP_VERTEX, SELVEDGE_SNAP_CENTRE or SELVEDGE_SNAP_EDGE; 0: no point was found, and the other fields
+    /// are 0.
     pub kind: u32,
-    /// Number of the edge, as in the image of edges; of a vertex, of one that ends there.
+    /// Number of the edge, as in the image of edges; for a vertex, the number of an edge that ends there.
     pub edge: u32,
     /// Number of the placed body, as in the image of instances.
     pub instance: u32,
     /// Millimetres.
     pub point: [f64; 3],
-    /// Where it is in the picture, pixels from the upper left corner; the first pixel's centre is 0.5, 0.5.
+    /// Position in the picture, pixels from the upper left corner; the first pixel's centre is 0.5, 0.5.
     pub pixel: [f64; 2],
-    /// From the place that was given, pixels.
+    /// Distance from the given place, pixels.
     pub distance_px: f64,
     /// Distance from the eye along the view axis, millimetres.
     pub depth: f64,
@@ -58,9 +59,10 @@ impl SelvedgeSnap {
     }
 }
 
-/// Fills `snap`, whose struct_size is set, with the point of these kinds that the view sees nearest to a place in its picture, and
-/// within `radius` pixels of it. `kinds`: SELVEDGE_SNAP_VERTEX | SELVEDGE_SNAP_CENTRE | SELVEDGE_SNAP_EDGE; they go before one
-/// another in this order. Of the view only size and camera count. In double precision, without a device.
+/// Finds a visible point of the model within `radius` pixels of a place in the view's picture, and fills `snap`, whose
+/// struct_size is set. `kinds`: SELVEDGE_SNAP_VERTEX | SELVEDGE_SNAP_CENTRE | SELVEDGE_SNAP_EDGE. A vertex is preferred
+/// to a centre, and both to an edge; within a kind the nearest point is taken. An edge offers only its point nearest to
+/// the place. Only size and camera of the view are read. The search uses double precision and no device.
 ///
 /// # Safety
 /// Pointers are null or point to what they say.

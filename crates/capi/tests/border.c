@@ -106,6 +106,7 @@ static int views(const SelvedgeRenderer* renderer, const SelvedgeModel* model)
     BAD((bad.eye[0] = 9.0, bad.fov = 20.0, bad.ortho = 2.0), "exclude");
     BAD((bad.intrinsics[0] = 9.0, bad.standard = "iso"), "exclude");
     BAD(bad.intrinsics[0] = 9.0, "fx and fy above 0");
+    BAD(bad.translation[2] = 9.0, "with intrinsics");
     BAD((bad.intrinsics[0] = bad.intrinsics[1] = 9.0, bad.rotation[0] = 2.0), "no rotation");
     BAD((bad.intrinsics[0] = bad.intrinsics[1] = 9.0, bad.intrinsics[2] = 2e4), "principal point");
 
@@ -178,7 +179,7 @@ static int images(const SelvedgeRenderer* renderer, const SelvedgeModel* model)
     return 0;
 }
 
-// by OpenCV's formula: from 9 mm over the ground, where the top's corners are seen, and nothing beside them
+// The eye is 9 mm above the ground and sees only the block's top. OpenCV's formula says which pixels show it.
 static int calibrated(const SelvedgeRenderer* renderer, const SelvedgeModel* model)
 {
     const SelvedgeView view = {
@@ -207,7 +208,7 @@ static int calibrated(const SelvedgeRenderer* renderer, const SelvedgeModel* mod
     return 0;
 }
 
-// the block is a mesh and has no edges of faces; a STEP file's have
+// The block is a mesh, and edges of meshes have no points to snap to: a STEP file is opened.
 static int snaps(const char* path)
 {
     SelvedgeModel* model = NULL;

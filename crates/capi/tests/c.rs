@@ -23,7 +23,7 @@ fn compiled(source: &Path, into: &Path) -> PathBuf {
     linked(source, into, &[])
 }
 
-/// With further libraries.
+/// Compiles the program and links it with further libraries.
 fn linked(source: &Path, into: &Path, beside: &[&str]) -> PathBuf {
     let program = into.join(source.file_stem().expect("a name"));
     let libraries = libraries();
@@ -119,7 +119,7 @@ fn the_host_records_into_its_own_command_buffer() {
     assert!(String::from_utf8_lossy(&refused.stderr).contains("none.step"));
 }
 
-/// What a host may get wrong is told before a frame.
+/// Null handles, null pointers and wrong sizes are refused; no device is made.
 #[test]
 fn a_host_is_told_what_it_got_wrong() {
     let into = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,5 @@
-// Calls of a host with what must not be given to them: a status and a sentence, never a crash. No device is made.
+// Calls with null pointers, null handles and wrong sizes return a status and a sentence, and do not crash. No device is
+// made.
 
 #include <assert.h>
 #include <stdio.h>

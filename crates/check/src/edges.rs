@@ -82,12 +82,12 @@ impl<'a> EdgeTracer<'a> {
         Ok(Self { model, tracer, parts: Cow::Owned(parts) })
     }
 
-    /// With edges that were found before, those of each of the model's parts.
+    /// A tracer with edges that were found before: `parts` has the edges of each of the model's parts.
     pub fn with(model: &'a Model, tracer: &'a Tracer, parts: &'a [Edges]) -> Self {
         Self { model, tracer, parts: Cow::Borrowed(parts) }
     }
 
-    /// Instance and part of all that is placed.
+    /// Instance and part of each placed body.
     pub(super) fn placed(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.tracer.placed.iter().map(|placed| (placed.instance, placed.part))
     }

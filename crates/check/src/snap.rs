@@ -1,14 +1,16 @@
-//! Points of a model to snap to: what lies near a pixel, and is seen.
+//! Points of a model to snap to: visible points near a pixel.
 //!
 //! ```text
-//!    vertex   an edge's end             ●──────     nearer in the picture than the radius; not behind a face
-//!    centre   of a round edge       ( · )           of an edge of which something is seen
-//!    edge     its point nearest to the pixel  ──•──
+//!    vertex   an edge's end                   ●──────   exact rays see the point
+//!    centre   of a round edge                  ( · )    exact rays see a point of the edge
+//!    edge     its point nearest to the pixel  ──•──     exact rays see the point
 //! ```
 //!
-//! Vertices go before centres, and both before edges; within a kind the nearest one is taken that exact rays see. Edges of
-//! meshes have no points. Accuracy: that of the edges, [`Edges::deviation`]; of the rays, that of [`EdgeTracer`]. Cost: the boxes
-//! of all edges, and a ray for each candidate that is hidden.
+//! Every candidate lies within the radius in the picture. A vertex is preferred to a centre, and both to an edge;
+//! within a kind the nearest visible candidate is taken. An edge has one candidate: if its nearest point is hidden, its
+//! other points are not searched. Edges of meshes have no points. Accuracy: points are within [`Edges::deviation`] of
+//! the edges; rays are as exact as those of [`EdgeTracer`]. Cost: the boxes of all edges; a ray for each candidate up
+//! to the first visible one, and up to 16 rays for a centre.
 
 use super::{EdgeTracer, Probe, Visibility};
 use crate::model::{Camera, Edge, Edges};
@@ -31,7 +33,7 @@ pub enum SnapKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Snap {
-    /// What it is.
+    /// The kind of the point.
     pub kind: SnapKind,
     /// Index into [`Model::instances`](crate::model::Model::instances).
     pub instance: usize,
@@ -39,24 +41,25 @@ pub struct Snap {
     pub part: usize,
     /// Index into [`Edges::edges`] of the part: the edge, or one that ends at the vertex.
     pub edge: usize,
-    /// Index into [`Edges::vertices`] of the part, of a vertex.
+    /// Index into [`Edges::vertices`] of the part, for a vertex only.
     pub vertex: Option<usize>,
     /// The point, model coordinates.
     pub point: DVec3,
-    /// Where it is in the picture.
+    /// Position in the picture.
     pub pixel: DVec2,
-    /// From the pixel that was given, pixels.
+    /// Distance from the given pixel, pixels.
     pub distance_px: f64,
     /// Distance from the eye along the view axis, model units.
     pub depth: f64,
 }
 
-/// Points of a round edge of which one must be seen.
+/// Points of a round edge that are tested; its centre counts if one of them is visible.
 const LOOKS: u32 = 16;
 
 impl EdgeTracer<'_> {
-    /// The point of these kinds nearest to `pixel` that the camera sees within `radius_px` of it. Positions in the picture have
-    /// the first pixel's centre at (0.5, 0.5). `None`: there is none, or the radius is no number above 0.
+    /// The preferred visible point of these kinds within `radius_px` of `pixel`. The first pixel's centre is (0.5,
+    /// 0.5). `None` if there is no such point, if the radius is not a finite number above 0, or if `pixel` is not
+    /// finite.
     pub fn snap(&self, camera: &Camera, pixel: DVec2, radius_px: f64, kinds: &[SnapKind]) -> Option<Snap> {
         if !(radius_px > 0.0 && radius_px.is_finite() && pixel.is_finite()) {
             return None;
@@ -123,7 +126,7 @@ impl Candidate {
     }
 }
 
-/// Those of one edge; `on_edge` finds the point that is nearest.
+/// The candidates of one edge; `on_edge` finds its point nearest to the pixel.
 fn candidates(
     edge: &Edge,
     edges: &Edges,

@@ -31,8 +31,7 @@ use glam::DVec3;
 use selvedge::picture::{Levels, Samples, Smooth, SolidWay, Style, TrimWay};
 use selvedge_io::import::Import;
 use selvedge_session::{Ambient, Backdrop, Directions};
-use std::path::PathBuf;
-use std::str::FromStr;
+use std::{path::PathBuf, str::FromStr};
 
 /// Told at the end of every help text.
 const STATUSES: &str = "Exit status: 0 done; 1 a picture breaks the accuracy promise, or some of many files failed; 2 wrong usage, a file that cannot \
@@ -121,8 +120,8 @@ pub struct LookArgs {
     /// the eye blue) or zebra (stripes of a striped room, reflected: they break where surfaces do)
     #[arg(long, value_name = "STYLE", default_value = "shaded")]
     pub style: Style,
-    /// Ambient occlusion: what lies close to other things is darker. The radius beyond which nothing is close, in units of the
-    /// model; auto is a twenty-fifth of its diagonal. Without it auto, but none with several samples
+    /// Ambient occlusion darkens corners and contacts. RADIUS is the reach of the occlusion in units of the model; auto is a
+    /// twenty-fifth of the model's diagonal. The default is auto for one sample a pixel, and none for several
     #[arg(long, value_name = "RADIUS|auto|none")]
     pub ao: Option<Ambient>,
 }
@@ -176,7 +175,8 @@ pub struct RenderArgs {
     /// --edges: number of the edge whose line covers the pixel, 0 is none), part and instance (u32, H x W, counted from 1, 0 is none)
     #[arg(long, value_name = "IMAGE=FILE.npy")]
     pub aov: Vec<Aov>,
-    /// Write statistics as JSON, of the same frame drawn once more; what the driver compiles for the first one stands apart, as `first_frame`, and `objects` are the pipelines, buffers and images that exist
+    /// Write statistics of a second drawing of the same frame as JSON. `first_frame` has what the driver compiled for the
+    /// first one; `objects` lists the pipelines, buffers and images that exist
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
     /// Write the camera as JSON: eye, target, up, fovy in degrees (or ortho: half the height), size

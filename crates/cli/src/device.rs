@@ -1,7 +1,7 @@
-//! Which device draws, and what devices there are.
+//! The device that draws, and `selvedge devices`, which lists all of them.
 //!
-//! Compiled pipelines are kept where the XDG Base Directory Specification 0.8 has what can be made again:
-//! `$XDG_CACHE_HOME/selvedge`, else `~/.cache/selvedge`.
+//! Compiled pipelines are stored in the user's cache folder of the XDG Base Directory Specification 0.8:
+//! `$XDG_CACHE_HOME/selvedge`, or `~/.cache/selvedge`.
 
 use crate::Outcome;
 use crate::args::DevicesArgs;
@@ -10,7 +10,7 @@ use anyhow::Result;
 use selvedge::headless::{DeviceSummary, HeadlessOptions, devices};
 use std::path::PathBuf;
 
-/// The device of this part of a name.
+/// Options of the device whose name contains `name`.
 pub fn options(name: Option<&str>, validation: bool) -> HeadlessOptions {
     let folder = |name: &str| std::env::var_os(name).map(PathBuf::from);
     let pipeline_folder = cache(folder("XDG_CACHE_HOME"), folder("HOME"));
@@ -18,7 +18,7 @@ pub fn options(name: Option<&str>, validation: bool) -> HeadlessOptions {
 }
 
 fn cache(cache_home: Option<PathBuf>, home: Option<PathBuf>) -> Option<PathBuf> {
-    // relative ones are invalid, and ignored
+    // the specification calls relative paths invalid: they are ignored
     let absolute = cache_home.filter(|folder| folder.is_absolute());
     let folder = absolute.or_else(|| home.filter(|home| home.is_absolute()).map(|home| home.join(".cache")))?;
     Some(folder.join("selvedge"))

@@ -126,7 +126,8 @@ pub struct Session {
 /// What the first frame took: drivers compile for it, and for no other one.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct FirstFrame {
-    /// The driver's time for the pipelines of the scene, each by itself, though several are made at once.
+    /// Sum of the driver's times for each pipeline of the scene. Pipelines are made in parallel, so the wall time is
+    /// less.
     pub pipelines_ms: f64,
     /// From the call to the picture in host memory, with what the driver compiles when it first runs a shader.
     pub wall_ms: f64,
@@ -145,7 +146,7 @@ pub struct Measured {
 #[derive(Debug, Serialize)]
 pub struct Object {
     pub name: String,
-    /// Of memory; 0 for a pipeline.
+    /// Bytes of device memory; 0 for a pipeline.
     pub bytes: u64,
 }
 

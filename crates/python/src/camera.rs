@@ -37,10 +37,10 @@ impl Camera {
 
     /// A calibrated camera as OpenCV has it: a point X of the model is seen at K (R X + t).
     ///
-    /// K: (3, 3), [[fx, 0, cx], [0, fy, cy], [0, 0, 1]] in pixels of the picture that is drawn. The first pixel's centre is
-    /// (0, 0); with first_pixel=0.5 it is (0.5, 0.5). fx and fy differ by no more than a factor of two, and the principal
-    /// point lies within 16384 pixels of the picture.
-    /// R: (3, 3), a rotation from model to camera axes. t: three numbers, millimetres.
+    /// K: (3, 3), [[fx, 0, cx], [0, fy, cy], [0, 0, 1]] in pixels of the picture that is drawn. The first pixel's
+    /// centre is (0, 0); with first_pixel=0.5 it is (0.5, 0.5). fx and fy differ by no more than a factor of two, and
+    /// the principal point lies within 16384 pixels of the picture. R: (3, 3), a rotation from model to camera axes. t:
+    /// three numbers, millimetres.
     #[staticmethod]
     #[pyo3(signature = (K, R, t, first_pixel = 0.0))]
     #[allow(non_snake_case)] // the names that users know

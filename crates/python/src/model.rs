@@ -159,14 +159,15 @@ impl Model {
         Ok(self.edges.get_or_try_init(py, made)?.clone_ref(py))
     }
 
-    /// The point of the model to snap to that a view shows near a place in its picture.
+    /// A visible point of the model near a place in a view's picture, to snap to.
     ///
-    /// at: (x, y) in pixels from the upper left corner; the first pixel's centre is (0.5, 0.5). size, view, camera: as in
-    /// Renderer.render. radius: pixels. kinds: of "vertex" (an edge's end), "centre" (of a round edge) and "edge"; they go
-    /// before one another in this order.
+    /// at: (x, y) in pixels from the upper left corner; the first pixel's centre is (0.5, 0.5). size, view, camera: as
+    /// in Renderer.render. radius: pixels. kinds: some of "vertex" (an edge's end), "centre" (of a round edge) and
+    /// "edge"; without it all. A vertex is preferred to a centre, and both to an edge. An edge offers only its point
+    /// nearest to the place.
     ///
-    /// A dict: kind, point (millimetres), pixel, distance_px, depth, instance (place in Model.instances) and edge
-    /// (Edge.number); None where there is nothing that is seen. In double precision, without a device.
+    /// Returns a dict: kind, point (millimetres), pixel, distance_px, depth, instance (place in Model.instances) and
+    /// edge (Edge.number); or None if no visible point is near. The search uses double precision and no device.
     #[allow(clippy::too_many_arguments)] // keywords of Python
     #[pyo3(signature = (at, radius = 8.0, view = None, size = (1920, 1080), *, camera = None, kinds = None))]
     fn snap<'py>(

@@ -147,7 +147,7 @@ def test_a_view_snaps_to_vertices_centres_and_edges(bracket):
     size = (320, 240)
     seen = [bracket.snap((x, y), 3.0, size=size, camera=camera) for x in range(4, 320, 8) for y in range(4, 240, 8)]
     kinds = {found["kind"] for found in seen if found}
-    assert "edge" in kinds and None in seen
+    assert kinds == {"vertex", "centre", "edge"} and None in seen
     low, high = bracket.bounds
     for found in filter(None, seen):
         assert found["distance_px"] <= 3.0 and 1 <= found["edge"] <= len(bracket.edges)
@@ -156,7 +156,7 @@ def test_a_view_snaps_to_vertices_centres_and_edges(bracket):
         if found["kind"] == "vertex":
             ends = bracket.edges[found["edge"] - 1].ends
             assert min(np.linalg.norm(ends - found["point"], axis=1)) < 1e-9
-            # the same pixel again: the point itself
+            # from the point's own pixel the same point is found
             again = bracket.snap(found["pixel"], 1.0, size=size, camera=camera, kinds=["vertex"])
             assert again["point"] == found["point"] and again["distance_px"] < 1e-9
     for arguments, told in (
@@ -168,4 +168,6 @@ def test_a_view_snaps_to_vertices_centres_and_edges(bracket):
         with pytest.raises(ValueError, match=told):
             bracket.snap((5.0, 5.0), **arguments)
     with pytest.raises(TypeError):
+        bracket.snap(5.0)
+    with pytest.raises(ValueError, match="length 2"):
         bracket.snap("here")

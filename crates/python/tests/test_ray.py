@@ -1,6 +1,6 @@
 """examples/ray_dataset.py with local Ray: two workers, forty files, one worker killed in the middle.
 
-Needs `pip install "ray[data]"`; without it this is skipped, and told.
+Needs `pip install "ray[data]"`; without it pytest reports the test as skipped.
 """
 
 import importlib.util
@@ -19,7 +19,7 @@ FILES, VIEWS, SIZE = 40, ["iso", "top"], (48, 32)
 
 
 def block(k):
-    """A box whose sides no other one has."""
+    """A box whose size no other box has."""
     x, y, z = 1.0 + 0.1 * k, 2.0 + 0.05 * k, 3.0
     corner = [(0, 0, 0), (x, 0, 0), (x, y, 0), (0, y, 0), (0, 0, z), (x, 0, z), (x, y, z), (0, y, z)]
     sides = ["1 4 3 2", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"]

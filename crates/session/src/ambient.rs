@@ -1,26 +1,26 @@
-//! Ambient occlusion as people ask for it: by a radius, by a share of the model, or not at all.
+//! Settings of ambient occlusion: a radius, a share of the model's diagonal, or none.
 
 use selvedge::model::Model;
 use selvedge::picture::Samples;
 use std::str::FromStr;
 
-/// Share of the model's diagonal that is the radius where nobody says another.
+/// The radius of [`Ambient::Auto`] as a share of the model's diagonal.
 const SHARE: f64 = 0.04;
 
-/// How much of what lies close hides the sky.
+/// The radius within which surfaces hide the sky from each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ambient {
-    /// None is drawn.
+    /// No ambient occlusion.
     None,
-    /// What lies within a twenty-fifth of the model's diagonal.
+    /// A twenty-fifth of the model's diagonal.
     Auto,
-    /// What lies within a radius in units of the model.
+    /// A radius in units of the model.
     Radius(f64),
 }
 
 impl Ambient {
-    /// [`SceneSettings::ambient`](selvedge::picture::SceneSettings::ambient) of a model: as it is said; else
-    /// [`Auto`](Self::Auto), but that it does not go with several samples.
+    /// [`SceneSettings::ambient`](selvedge::picture::SceneSettings::ambient) of a model. If `said` is `None`, it is
+    /// [`Auto`](Self::Auto) with one sample and none with several. A model without a size has none.
     pub fn radius(said: Option<Self>, samples: Samples, model: &Model) -> Option<f64> {
         let usual = if samples == Samples::One { Self::Auto } else { Self::None };
         match said.unwrap_or(usual) {
@@ -53,6 +53,8 @@ impl FromStr for Ambient {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use selvedge::glam::{DAffine3, DVec3};
+    use selvedge::model::{Instance, Mesh, Part};
 
     #[test]
     fn a_radius_is_a_length() {
@@ -64,11 +66,17 @@ mod tests {
         }
     }
 
+    /// The diagonal of a triangle is that of its box, 6 x 6 x 8.
     #[test]
     fn what_is_said_counts() {
-        let model = Model::default();
+        let corners = vec![DVec3::ZERO, DVec3::X * 6.0, DVec3::new(6.0, 6.0, 8.0)];
+        let part = Part { meshes: vec![Mesh::new(1, corners, vec![[0, 1, 2]], vec![]).unwrap()], ..Part::default() };
+        let placed = Instance { part: 0, transform: DAffine3::IDENTITY, colour: None, name: String::new() };
+        let model = Model { parts: vec![part], instances: vec![placed], ..Model::default() };
         assert_eq!(Ambient::radius(Some(Ambient::Radius(2.0)), Samples::Four, &model), Some(2.0));
         assert_eq!(Ambient::radius(None, Samples::Four, &model), None);
-        assert_eq!(Ambient::radius(None, Samples::One, &model), None, "a model without a size has no share of it");
+        let radius = Ambient::radius(None, Samples::One, &model).unwrap();
+        assert!((radius - 136f64.sqrt() / 25.0).abs() < 1e-12, "{radius}");
+        assert_eq!(Ambient::radius(None, Samples::One, &Model::default()), None, "nothing has no diagonal");
     }
 }

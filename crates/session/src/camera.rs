@@ -16,7 +16,8 @@ use serde::Serialize;
 pub const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
 /// Vertical field of view where nothing is said, degrees.
 pub const FOV_DEG: f64 = 35.0;
-/// How far a rotation may be from one, and what is 0 or 1 in a calibration from it: what decimal files round off.
+/// Largest deviation of a rotation from orthonormal, and of the zeros and the one in K: decimal files round so much
+/// off.
 const ROUNDED: f64 = 1e-6;
 
 /// How wide a view is.

@@ -1,8 +1,9 @@
-//! Which borders are smooth where nobody says.
+//! Which borders are smooth by default.
 
 use selvedge::picture::{Samples, Smooth};
 
-/// As it is said; else the borders of all faces, but that several samples smooth all by themselves.
+/// The setting `said`. By default it is the borders of all faces with one sample; several samples smooth borders
+/// already.
 pub fn smooth(said: Option<Smooth>, samples: Samples) -> Smooth {
     said.unwrap_or(if samples == Samples::One { Smooth::Borders } else { Smooth::None })
 }

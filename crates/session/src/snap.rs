@@ -7,11 +7,11 @@ use selvedge_check::{EdgeTracer, SnapKind, Tracer};
 use serde::Serialize;
 use std::sync::Arc;
 
-/// What may be snapped to, in the order in which it is preferred, as callers name it.
+/// The names of the kinds of points, preferred kinds first.
 pub const SNAP_KINDS: [(&str, SnapKind); 3] =
     [("vertex", SnapKind::Vertex), ("centre", SnapKind::Centre), ("edge", SnapKind::Edge)];
 
-/// A model, ready to be asked: its edges are found once.
+/// A model whose edges have been found, so that each call only searches them.
 #[derive(Debug)]
 pub struct Snapper {
     model: Arc<Model>,
@@ -26,15 +26,15 @@ pub struct Snapped {
     pub kind: &'static str,
     /// Model coordinates.
     pub point: [f64; 3],
-    /// Where it is in the picture; the first pixel's centre is (0.5, 0.5).
+    /// Position in the picture; the first pixel's centre is (0.5, 0.5).
     pub pixel: [f64; 2],
-    /// From the place that was given, pixels.
+    /// Distance from the given place, pixels.
     pub distance_px: f64,
     /// Distance from the eye along the view axis, model units.
     pub depth: f64,
     /// Index of the placed body.
     pub instance: usize,
-    /// Number of the edge, as in the image of edges; of a vertex, of one that ends there.
+    /// Number of the edge, as in the image of edges; for a vertex, the number of an edge that ends there.
     pub edge: usize,
 }
 
@@ -56,10 +56,11 @@ impl Snapper {
         })
     }
 
-    /// The point of these kinds nearest to `pixel` that the camera sees within `radius_px` of it.
+    /// The preferred visible point of these kinds within `radius_px` of `pixel`, by [`EdgeTracer::snap`].
     ///
     /// # Errors
-    /// [`SessionError::Camera`]; [`SessionError::Snap`] for a radius that is no number above 0.
+    /// [`SessionError::Camera`]; [`SessionError::Snap`] if the place is not finite or the radius is not a number above
+    /// 0.
     pub fn snap(
         &self,
         camera: &Camera,

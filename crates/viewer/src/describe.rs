@@ -176,7 +176,7 @@ pub fn command(session: &Session, camera: &Camera, settings: &Settings, style: S
     match camera.projection {
         Projection::Perspective { fov_y } => push("--fov", format!("{}", fov_y.to_degrees())),
         Projection::Orthographic { height } => push("--ortho", format!("{height}")),
-        // no view of the window is one, and no argument says it
+        // no argument sets a calibrated camera, and the window never shows one
         Projection::Pinhole { .. } => {}
     }
     push("--style", style.name().to_owned());

@@ -11,8 +11,9 @@
 //!
 //! Reads: everything that the bindings name but what it writes. Writes: `find`: `list` and `dispatch`; `mix`: `list`;
 //! `write`: `resolved`, at pixels of the list.
-//! Where a border is straight and pixels around see both of its sides, sixteen points know its share of the pixel to 0.14,
-//! and to 0.03 on average over all straight lines.
+//!
+//! Where a border is straight and pixels around see both of its sides, the share of sixteen points is within 0.14 of
+//! the share of the area, and within 0.03 on average over all straight lines.
 
 use crate::bindings::{Placed, Primitives};
 use crate::frame::common::kernel::Kernel;

@@ -1,8 +1,8 @@
 //! Smooth borders of all faces.
 //!
 //! ```text
-//!   resolve ──▶ linear colour and depth ──border_mix──▶ linear colour
-//!           ──▶ the host's depth, depth, face, (u, v), normal: those of the pixels' centres, as without it
+//!   resolve ──▶ linear colour and depth ──border_mix──▶ linear colour ──linear_show──▶ the host's colour
+//!           ──▶ the host's depth; depth, face, (u, v) and normal: those of the pixels' centres, as without the pass
 //! ```
 
 use super::border_mix::{self, BorderMix, BorderPixel, Dispatch, Kinds};
@@ -44,12 +44,14 @@ impl SmoothBorders {
         })
     }
 
-    /// Pixels at the borders of faces are mixed from what is `resolved`, `written` before; a compute shader writes them.
+    /// Mixes pixels at the borders of faces, in place. `written`: the last write to `resolved` before;
+    /// [`Access::COMPUTE_WRITE`] is the last one after.
     pub(crate) fn record(
         &self,
         frame: &Frame<'_>,
         cmd: &Commands<'_>,
-        (resolved, written): (&Image, Access),
+        resolved: &Image,
+        written: Access,
         test: &[Resource<'_>],
     ) {
         let (w, r) = (Access::COMPUTE_WRITE, Access::COMPUTE_READ);

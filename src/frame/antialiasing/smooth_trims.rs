@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   resolve ──▶ linear colour and depth ──coverage──▶ the host's colour
-//!           ──▶ the host's depth, depth, face, (u, v), normal: those of the pixels' centres, as without it
+//!           ──▶ the host's depth; depth, face, (u, v) and normal: those of the pixels' centres, as without the pass
 //! ```
 
 use super::coverage;
@@ -32,12 +32,14 @@ impl SmoothTrims {
         Self { pass: Arc::clone(pass) }
     }
 
-    /// Pixels at the borders of trimmed faces are mixed from what is `resolved`, `written` before; all go to the host's colour.
+    /// Mixes pixels at the borders of trimmed faces, and writes all pixels to the host's colour. `written`: the last
+    /// write to `resolved` before.
     pub(crate) fn record(
         &self,
         frame: &Frame<'_>,
         cmd: &Commands<'_>,
-        (resolved, written): (&Image, Access),
+        resolved: &Image,
+        written: Access,
         test: &[Resource<'_>],
     ) {
         barrier::images(cmd, &[(resolved, written, Access::FRAGMENT_READ)]);

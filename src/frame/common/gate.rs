@@ -1,7 +1,7 @@
-//! Pass `gate`: where something that is drawn from had no room, no patch is drawn.
+//! Pass `gate`: if a list of this frame overflowed, no patch is drawn.
 //!
 //! ```text
-//!   trim table, sub-patches, draws, chords ──counters.failed──▶ draws: as they are, or none
+//!   trim table, sub-patches, draws, chords ──counters.failed──▶ the numbers of draws: as they are, or 0
 //! ```
 //!
 //! Reads: `counters`. Writes: `counters`. Twin: `src/twin/gate.rs`.

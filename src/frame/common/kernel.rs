@@ -3,7 +3,7 @@
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Resource};
 use crate::shaders::Shader;
 
-/// Threads of one dispatch: those behind the last, which fill its row of workgroups, have numbers of 32 bits too.
+/// The most threads of one dispatch. The threads that fill its last row of workgroups have numbers of 32 bits too.
 pub(crate) const MOST_THREADS: u32 = 1 << 31;
 
 /// The pipeline of one compute shader.
@@ -43,13 +43,13 @@ impl Kernel {
         cmd.bind(&self.pipeline, resources, push_constants);
     }
 
-    /// As many workgroups as `threads` need, and as fill their last row: [`Commands::dispatch`].
+    /// As many workgroups as `threads` need; [`Commands::dispatch`] fills the last row of them.
     pub(crate) fn record(&self, cmd: &Commands<'_>, resources: &[Resource<'_>], threads: u32) {
         self.bind(cmd, resources, &[]);
         self.dispatch(cmd, threads);
     }
 
-    /// The same for the pipeline bound last.
+    /// As [`record`](Self::record), after [`bind`](Self::bind).
     ///
     /// # Panics
     /// When there are more threads than [`MOST_THREADS`].

@@ -63,7 +63,7 @@ impl Common {
         cmd.after(w, w);
     }
 
-    /// Patches are drawn only where all that they are drawn from had room.
+    /// After all lists are made: takes out the draws of patches if a list overflowed.
     pub(super) fn gate(&self, cmd: &Commands<'_>) {
         let Some(gate) = &self.passes.gate else { return };
         let (counted, drawn) = (Access::COMPUTE_WRITE, Access::COMPUTE_WRITE | Access::INDIRECT_READ);

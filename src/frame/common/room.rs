@@ -21,7 +21,7 @@ pub(crate) const DRAWN_AND_READ: vk::ImageUsageFlags = vk::ImageUsageFlags::from
     vk::ImageUsageFlags::COLOR_ATTACHMENT.as_raw() | vk::ImageUsageFlags::STORAGE.as_raw(),
 );
 
-/// Images that begin cleared, where shaders count by atomics, and that others sample.
+/// Images that are cleared, then changed by atomics in shaders, then sampled or loaded.
 pub(crate) const COUNTED: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
     vk::ImageUsageFlags::STORAGE.as_raw()
         | vk::ImageUsageFlags::SAMPLED.as_raw()

@@ -28,7 +28,7 @@ use crate::shaders::{self, constant};
 /// Elements that one workgroup scans.
 pub const BLOCK: u32 = 1024;
 
-/// Most elements: numbers of those that fill the last row of workgroups have 32 bits, too.
+/// Most elements. The elements that would fill the last row of workgroups have numbers of 32 bits too.
 pub const MAX_COUNT: u32 = 1 << 31;
 
 /// Blocks, and so words of `sums` and workgroups of the indirect arguments, for `count` elements.

@@ -6,7 +6,7 @@
 //!                                                                          └─▶ seen | share | chord, the largest
 //! ```
 //!
-//! Reads: everything that `Bindings` names. Writes: `best`, one word a pixel, 0 before.
+//! Reads: everything that `Bindings` names. Writes: `best`, cleared to 0 before.
 
 use crate::bindings::Placed;
 use crate::frame::common::draw::Draw;

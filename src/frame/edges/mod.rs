@@ -80,7 +80,7 @@ pub(crate) struct EdgeStage {
     starts: Buffer,
     chords: Buffer,
     draw: Buffer,
-    /// Of each pixel.
+    /// Each pixel's best line.
     best: Image,
 }
 

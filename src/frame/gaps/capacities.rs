@@ -4,7 +4,7 @@ use crate::abi::{Counters, GapCandidate};
 use crate::frame::capacities::grown;
 use crate::frame::counts::{Counts, SMALLER, TooMany};
 
-/// Pixels of a picture of which one looks through a gap, in a scene with many narrow faces.
+/// In a scene with many narrow faces, one pixel of this many is a candidate.
 const PIXELS_OF_A_CANDIDATE: u64 = 8;
 
 /// Room for what only the GPU can count.
@@ -19,8 +19,8 @@ impl Capacities {
         Self { candidates: u32::from(counts.trim.is_some()) * (1 << 14) }
     }
 
-    /// The same, with room for one of so many pixels of a picture where a storage buffer of `range` bytes has it: most often
-    /// that is enough.
+    /// At least one candidate for every [`PIXELS_OF_A_CANDIDATE`] pixels of a picture, as far as a storage buffer of
+    /// `range` bytes holds them. That is most often enough.
     pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), range: u32) -> Self {
         let some = u64::from(size.0) * u64::from(size.1) / PIXELS_OF_A_CANDIDATE;
         let most = range / size_of::<GapCandidate>() as u32;

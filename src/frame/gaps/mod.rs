@@ -18,7 +18,7 @@ use crate::shaders::TrimTest;
 use ash::vk;
 use std::sync::Arc;
 
-/// Format of the image of how near skirts come: the bits of reversed depths.
+/// Format of [`Gaps::border_depths`]: the bits of reversed depths.
 const BORDER_DEPTH_FORMAT: vk::Format = vk::Format::R32_UINT;
 
 /// The passes of scenes with trims, whose test is `test`.
@@ -31,7 +31,7 @@ pub(super) fn passes(device: &Device, data: &SceneData, test: &TrimTest) -> Resu
 /// The stage.
 pub(crate) struct Gaps {
     passes: Arc<gap_fill::GapFill>,
-    /// How near the nearest skirt comes, of each pixel.
+    /// The depth of the nearest skirt at each pixel; 0 without one.
     pub border_depths: Image,
     candidates: Buffer,
     dispatch: Buffer,

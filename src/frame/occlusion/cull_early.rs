@@ -30,7 +30,7 @@ impl CullEarly {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of `items`, those in sight.
+    /// One thread for each of the `items` in sight.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
         let resources = [b.frame, b.hidden, b.taus, b.counters, b.in_sight].map(Into::into);
         self.kernel.record(cmd, &resources, items);

@@ -52,7 +52,7 @@ impl CullLate {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of `items`, those in sight.
+    /// One thread for each of the `items` in sight.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
         let resources = [
             b.frame.into(),

@@ -65,7 +65,7 @@ impl Passes {
 /// The stage.
 pub(crate) struct Occlusion {
     passes: Arc<Passes>,
-    /// Whether a patch lay behind others when it was in sight last, a word an item; from frame to frame.
+    /// A word an item: whether the patch lay behind others in the last frame that had it in sight.
     hidden: Buffer,
     /// A float a square of pixels, then a tile, then a block of tiles.
     farthest: Buffer,
@@ -94,7 +94,7 @@ impl Occlusion {
         let (w, r) = WRITE_TO_READ;
         let cleared = Access::TRANSFER_WRITE;
         barrier::buffers(cmd, &[(taus, w, w), (&self.hidden, cleared | w, r), (counters, w, w)]);
-        let (in_sight, items) = frame.in_sight;
+        let (in_sight, items) = (frame.in_sight, frame.items_in_sight);
         let bindings = cull_early::Bindings { frame: frame.constants, hidden: &self.hidden, taus, counters, in_sight };
         self.passes.cull_early.record(cmd, &bindings, items);
         cmd.after(w, w);
@@ -116,7 +116,7 @@ impl Occlusion {
         let pyramid = depth_pyramid::Bindings { frame: frame.constants, depth: &v.depth, farthest: &self.farthest };
         self.passes.depth_pyramid.record(cmd, &pyramid);
         cmd.after(w | Access::INDIRECT_READ, r | w);
-        let (in_sight, items) = frame.in_sight;
+        let (in_sight, items) = (frame.in_sight, frame.items_in_sight);
         let bindings = cull_late::Bindings {
             frame: frame.constants,
             views: frame.views,
@@ -146,6 +146,9 @@ impl Occlusion {
         cmd.after(w, w);
         frame.stages.tessellation.begin_again(cmd);
         frame.stages.tessellation.split(frame, cmd);
+        if frame.counts_first {
+            c.gate(cmd);
+        }
         frame.stages.visibility.patches(frame, cmd, test, true);
     }
 }

@@ -1,10 +1,11 @@
-//! Pass `ambient`: what lies close to other things gets less of the sky's light.
+//! Passes `ambient_find` and `ambient_write`: points close to other surfaces get less of the sky's light.
 //!
 //! ```text
-//!   resolved ──find──▶ what each pixel's own slices hide of the sky ──write──▶ mean of 4 x 4 pixels ──▶ resolved
+//!   resolved ──find──▶ ambient: the hidden share of each pixel's slices ──write──▶ mean of 4 x 4 pixels ──▶ resolved
 //! ```
 //!
-//! Reads: `frame`, `resolved`. Writes: `find`: `ambient`; `write`: the colours of `resolved`.
+//! `find` reads `frame` and `resolved`, and writes `ambient`. `write` reads `frame`, `ambient` and `resolved`, and
+//! writes the colours of `resolved`.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image};
@@ -17,7 +18,7 @@ pub(crate) const AMBIENT_FORMAT: vk::Format = vk::Format::R32G32_SFLOAT;
 /// Pixels of a workgroup, both ways.
 const GROUP: u32 = 8;
 
-/// The pass, in its two steps.
+/// Both passes.
 pub(crate) struct Ambient {
     find: Kernel,
     write: Kernel,
@@ -39,7 +40,7 @@ impl Ambient {
         })
     }
 
-    /// One thread a pixel; what is farther than `radius`, in units of the model, hides nothing.
+    /// One thread a pixel. A point farther than `radius`, in units of the model, hides nothing.
     pub(crate) fn find(&self, cmd: &Commands<'_>, b: &Bindings<'_>, radius: f32) {
         self.find.bind(cmd, &[b.frame.into(), b.resolved.into(), b.ambient.into()], bytemuck::bytes_of(&radius));
         cmd.dispatch_grid(groups(b.resolved));

@@ -1,4 +1,4 @@
-//! Ambient occlusion: the image of pass `ambient`, and when it is made.
+//! The stage of ambient occlusion: its image, and the barriers around its two passes.
 
 use super::ambient::{AMBIENT_FORMAT, Ambient, Bindings};
 use crate::frame::Frame;
@@ -8,13 +8,14 @@ use crate::scene::SceneData;
 use ash::vk;
 use std::sync::Arc;
 
-/// The pass, and the radius; `None` where no ambient occlusion is wanted.
+/// The passes, and the radius in units of the model.
 pub(crate) struct Passes {
     pass: Ambient,
     radius: f32,
 }
 
 impl Passes {
+    /// `None` in scenes without ambient occlusion.
     pub(crate) fn new(device: &Device, data: &SceneData) -> Result<Option<Self>, GpuError> {
         data.ambient.map(|radius| Ok(Self { pass: Ambient::new(device)?, radius: radius as f32 })).transpose()
     }
@@ -32,7 +33,7 @@ impl Contact {
         Ok(Self { passes: Arc::clone(passes), image })
     }
 
-    /// What pass `resolve` drew gets darker where less of the sky is seen; the colours are written by a compute shader.
+    /// Darkens the colours of `resolved`, which pass `resolve` drew. A compute shader writes them last.
     pub(crate) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, resolved: &Image) {
         let Passes { pass, radius } = &*self.passes;
         let (w, r) = (Access::COMPUTE_WRITE, Access::COMPUTE_READ);

@@ -1,4 +1,4 @@
-//! What pass `resolve` sees, for passes that change its colours: linear colour and depth.
+//! The image of linear colour and depth that pass `resolve` draws if later passes change its colours.
 //!
 //! ```text
 //!   resolve ──▶ resolved ──(ambient)──(border_mix)──linear_show──▶ the host's colour
@@ -13,13 +13,13 @@ use crate::gpu::{Access, Attachment, Commands, Device, GpuError, Image, Load, ba
 use crate::scene::SceneData;
 use std::sync::Arc;
 
-/// The pass; pass `coverage` draws into the host's colour itself.
+/// The pass; `None` if pass `coverage` draws into the host's colour.
 pub(crate) struct Passes {
     show: Option<LinearShow>,
 }
 
 impl Passes {
-    /// `None` where the host's colour is what pass `resolve` draws.
+    /// `None` if pass `resolve` draws into the host's colour.
     pub(crate) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<Self>, GpuError> {
         if !data.is_mixed() {
             return Ok(None);
@@ -42,7 +42,7 @@ impl Linear {
         Ok(Self { passes: Arc::clone(passes), resolved })
     }
 
-    /// All pixels, as they are `written` last, to the host's colour.
+    /// Draws all pixels into the host's colour. `written`: the last write to `resolved`.
     pub(crate) fn show(&self, frame: &Frame<'_>, cmd: &Commands<'_>, written: Access) {
         let Some(show) = &self.passes.show else { return };
         barrier::images(cmd, &[(&self.resolved, written, Access::FRAGMENT_READ)]);
@@ -51,7 +51,7 @@ impl Linear {
 }
 
 impl<'a> Frame<'a> {
-    /// The host's colour, for a pass that draws every pixel over what is there.
+    /// The host's colour, for a pass that blends every pixel over it: kept, or cleared to zero.
     pub(crate) fn colour_over_nothing(&self) -> Attachment<'a> {
         let load = match self.colour[0].load {
             Load::Discard => Load::ColourF32([0.0; 4]),

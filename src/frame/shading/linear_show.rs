@@ -1,7 +1,7 @@
-//! Pass `linear_show`: linear colours to the host's colour.
+//! Pass `linear_show`: writes linear colours to the host's colour.
 //!
 //! ```text
-//!   resolved: linear colour, depth; or of a mixed pixel colour, less its opacity ──▶ over what the host keeps
+//!   resolved: linear colour and depth; or of a mixed pixel colour, less its opacity ──▶ over what the host keeps
 //! ```
 //!
 //! Reads: `frame`, `resolved`. Writes: the colour target.

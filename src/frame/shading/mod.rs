@@ -1,4 +1,5 @@
-//! Where each kind of thing is seen, and its exact point, normal and light: into the host's targets, or what is mixed later.
+//! The pixels of each kind of surface; their exact points, normals and light, drawn into the host's targets or into
+//! images of linear colour; ambient occlusion over those images.
 
 pub(crate) mod ambient;
 pub(crate) mod contact;

@@ -113,7 +113,7 @@ impl Lists {
     pub fn hold(&self, rows: u32, entries: Entries) -> bool {
         let [leaves, fragments] = entries.bytes();
         let range = u64::from(self.limits.range);
-        // a word a pixel: of its crossings, or of where its ray goes on
+        // a word a pixel: its count of crossings, or the point where its ray resumes
         let counted = self.pixels(rows) < u64::from(scan::MAX_COUNT)
             && size_of::<u32>() as u64 * (self.pixels(rows) + 1) <= range;
         counted && leaves.max(fragments) <= range && self.counted_bytes(rows) + leaves + fragments <= self.limits.budget

@@ -40,14 +40,14 @@ impl DividePass {
             counters: &frame.stages.common.counters,
             cones: s.cones.as_ref(),
             points: &s.points,
-            in_sight: frame.in_sight.0,
+            in_sight: frame.in_sight,
         };
         match self {
-            Self::Bound(pass) => pass.record(cmd, &bounded, frame.in_sight.1),
+            Self::Bound(pass) => pass.record(cmd, &bounded, frame.items_in_sight),
             #[cfg(feature = "baselines")]
             Self::Slefe(pass) => {
                 let bindings = slefe::Bindings { bounded, slefes: s.slefes() };
-                pass.record(cmd, &bindings, frame.in_sight.1);
+                pass.record(cmd, &bindings, frame.items_in_sight);
             }
         }
     }

@@ -5,7 +5,8 @@
 //!    draw that gets it        |   0   |        1         |        2
 //! ```
 //!
-//! Reads: `frame`, `factors`, `sub_patch_starts`, `vertex_starts`, `in_sight`. Writes: `sub_patches`, `draws`, `counters`.
+//! Reads: `frame`, `factors`, `sub_patch_starts`, `vertex_starts`, `in_sight`.
+//! Writes: `sub_patches`, `draws`, `counters`.
 //! Twin: `src/twin/emit.rs`.
 
 use crate::frame::common::kernel::Kernel;
@@ -39,7 +40,7 @@ impl Emit {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of `items`, those in sight.
+    /// One thread for each of the `items` in sight.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
         let lists = [b.sub_patch_starts, b.vertex_starts, b.sub_patches, b.draws, b.counters, b.in_sight];
         let resources: Vec<_> = [b.frame, b.factors].into_iter().chain(lists).map(Into::into).collect();

@@ -88,7 +88,7 @@ impl Tessellation {
     pub(super) fn split(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let Some(p) = &self.passes else { return };
         let (s, c) = (frame.scene, &frame.stages.common);
-        let (in_sight, items) = frame.in_sight;
+        let (in_sight, items) = (frame.in_sight, frame.items_in_sight);
         let (w, r) = WRITE_TO_READ;
         let split = split::Bindings {
             frame: frame.constants,

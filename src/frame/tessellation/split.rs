@@ -10,7 +10,8 @@
 //!    └───────────┴───────────┘
 //! ```
 //!
-//! Reads: `frame`, `face_instances`, `faces`, `patches`, `items`, `taus`, `in_sight`, `links`. Writes: `factors`, `sub_patch_counts`, `vertex_counts`.
+//! Reads: `frame`, `face_instances`, `faces`, `patches`, `items`, `taus`, `in_sight`, `links`.
+//! Writes: `factors`, `sub_patch_counts`, `vertex_counts`.
 //! Twin: `src/twin/split.rs`.
 
 use crate::frame::common::kernel::Kernel;
@@ -54,7 +55,7 @@ impl Split {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of `items`, those in sight.
+    /// One thread for each of the `items` in sight.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
         let resources = [
             b.frame,

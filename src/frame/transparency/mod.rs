@@ -88,14 +88,15 @@ impl Transparency {
         self.passes.colour.as_ref().map(|_| &self.behind)
     }
 
-    /// Layers over what is behind them, `written` before, and lengths within solids. Where lists are those of one band, they
-    /// are made again.
+    /// Draws layers over the colours behind them, and lengths within solids. `written`: the last write to those
+    /// colours. If the lists are those of one band, they are made again.
     pub(super) fn record(
         &self,
         frame: &Frame<'_>,
         cmd: &Commands<'_>,
         solids: &SolidParts<'_>,
-        (drawing, written): (Drawing, Access),
+        drawing: Drawing,
+        written: Access,
     ) {
         barrier::images(cmd, &[(&self.behind, written, Access::FRAGMENT_READ)]);
         let mut counted_again = false;

@@ -37,7 +37,7 @@ impl Capacities {
         let over = over.or_else(|| TooMany::of_bytes(intercepts, size_of::<u32>(), range, EXACT).filter(|_| has_table));
         over.map_or(Ok(()), Err)?;
         let most = |bytes: usize| range / bytes as u32;
-        // of rows without room crossings were not counted: as many as of the others
+        // rows without room were not counted: assume that they have as many crossings as the other rows
         let share = u64::from(c.wanted_rows) * u64::from(c.intercepts) / u64::from(c.rows.max(1));
         let most_intercepts = most(size_of::<u32>());
         let intercepts = if c.wanted_rows > c.rows { share.min(most_intercepts.into()) as u32 } else { c.intercepts };

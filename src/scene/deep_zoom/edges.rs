@@ -28,12 +28,12 @@ impl PartialEq for KnownEdges {
 }
 
 impl KnownEdges {
-    /// Those of each part.
+    /// The given edges, one entry a part.
     pub(in crate::scene) fn found(edges: Vec<Edges>) -> Self {
         Self(Arc::new(OnceLock::from(Ok(edges))))
     }
 
-    /// Where they were found.
+    /// The edges of each part; `None` if they were not found.
     pub(in crate::scene) fn get(&self) -> Option<&[Edges]> {
         self.0.get()?.as_deref().ok()
     }

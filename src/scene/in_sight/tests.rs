@@ -1,4 +1,5 @@
-//! What is left out is nowhere in the picture, and what may be seen is not left out: against pass `bound`, patch by patch.
+//! What is left out is nowhere in the picture, and what may be seen is not left out: against pass `bound`, patch by
+//! patch.
 
 use super::*;
 use crate::abi::Counters;
@@ -17,7 +18,8 @@ fn hill() -> Model {
     placed(vec![untrimmed(Surface::new((2, 2), knots(), knots(), points.collect()).unwrap())], DAffine3::IDENTITY)
 }
 
-/// Some thousand hills of all sizes, around the eye and beside the picture, before the near plane and behind the far one.
+/// Some thousand hills of all sizes, around the eye and beside the picture, before the near plane and behind the far
+/// one.
 fn hills(random: &mut Random) -> Model {
     let mut model = hill();
     model.instances = (0..3000)
@@ -67,11 +69,14 @@ fn what_is_left_out_pass_bound_would_leave_out() {
         assert_eq!(told.iter().filter(|told| **told).count(), in_sight.items as usize, "each item once");
         let lost = taus.iter().zip(&told).filter(|(tau, told)| **tau != 0 && !**told).count();
         assert_eq!(lost, 0, "of {} in sight", in_sight.items);
-        // of hills as large as the scene, the box is in sight where no patch is; of the others seldom
+        // and the margins are thin: of what is smaller than the hill itself, a part is in sight where one of its
+        // patches is, and seldom else; of a hill around the eye the box is in sight, and perhaps no patch
         let of_part = case.data.boxes[0].count as usize;
-        let parts = taus.chunks(of_part).filter(|of_part| of_part.iter().any(|tau| *tau != 0)).count();
-        let told = in_sight.parts.len();
-        assert!(parts > 100 && told < 2500 && told < 3 * parts, "{parts} seen, {told} in sight");
+        let is_small = |n: usize| case.data.placements[n].matrix3.determinant().abs() < 1000.0;
+        let seen = |of_part: &[u32]| of_part.iter().any(|tau| *tau != 0);
+        let parts = taus.chunks(of_part).enumerate().filter(|(n, part)| is_small(*n) && seen(part)).count();
+        let told = in_sight.parts.iter().filter(|n| is_small(**n as usize)).count();
+        assert!(parts > 5 && told < 2 * parts, "{parts} seen, {told} in sight");
     }
 }
 

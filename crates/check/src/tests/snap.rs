@@ -24,7 +24,7 @@ fn snap(model: &Model, camera: &Camera, pixel: DVec2, radius: f64, kinds: &[Snap
     EdgeTracer::new(model, &tracer).unwrap().snap(camera, pixel, radius, kinds)
 }
 
-/// The eight corners of a cube: the seven that are seen are found, the eighth is behind.
+/// The seven visible corners of a cube are found; the eighth is hidden.
 #[test]
 fn vertices_are_found_where_they_are_seen() {
     let model = alone(bodies::block(-DVec3::ONE, DVec3::ONE).unwrap().part);
@@ -35,9 +35,9 @@ fn vertices_are_found_where_they_are_seen() {
         let (at, depth) = camera.project(corner).unwrap();
         let found = snap(&model, &camera, at + DVec2::new(1.5, -1.0), 4.0, &[SnapKind::Vertex]);
         let is_hidden = corner == DVec3::new(-1.0, 1.0, -1.0);
-        hidden += u32::from(is_hidden);
         let Some(found) = found else {
             assert!(is_hidden, "{corner}");
+            hidden += 1;
             continue;
         };
         assert!(!is_hidden && found.kind == SnapKind::Vertex, "{found:?}");
@@ -56,7 +56,7 @@ fn points_on_edges_and_centres_are_exact_and_kinds_have_their_order() {
     let centre = snap(&model, &camera, top + DVec2::new(0.5, 0.5), 3.0, &ALL).expect("the top's centre");
     assert!(centre.kind == SnapKind::Centre && centre.point.distance(DVec3::Z) < OFF, "{centre:?}");
     assert!((centre.depth - depth).abs() < OFF);
-    // the rim of the bottom is seen in front, so is its centre's circle
+    // the front half of the bottom's rim is visible, so its centre is found though the body hides it
     let (bottom, _) = camera.project(DVec3::ZERO).unwrap();
     let centre = snap(&model, &camera, bottom, 2.0, &[SnapKind::Centre]).expect("the bottom's centre");
     assert!(centre.point.length() < OFF, "{centre:?}");
@@ -67,7 +67,7 @@ fn points_on_edges_and_centres_are_exact_and_kinds_have_their_order() {
         let (at, _) = camera.project(on).unwrap();
         let found = snap(&model, &camera, at, 3.0, &[SnapKind::Edge]).expect("the rim");
         assert!(found.kind == SnapKind::Edge && found.point.distance(on) < 1e-6, "{degrees}: {found:?}");
-        // behind the body the other rim is no answer
+        // the bottom's rim is found only where it lies in front of the body
         let below = DVec3::new(0.8 * cos, 0.8 * sin, 0.0);
         let (at, _) = camera.project(below).unwrap();
         let seen = sin < -0.3;

@@ -1,4 +1,4 @@
-//! What `selvedge devices` tells.
+//! Arguments of `selvedge devices`.
 
 use clap::Args;
 

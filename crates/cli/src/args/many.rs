@@ -6,8 +6,8 @@ use std::path::PathBuf;
 /// What becomes of the others when one file is done, or fails.
 #[derive(Debug, Default, Args)]
 pub struct ManyArgs {
-    /// Stop at the first file that fails. Without this option the failure is told, all other files are drawn, and the exit
-    /// status is 1
+    /// Stop at the first file that fails. Without this option the program reports the failure, draws all other files, and
+    /// exits with status 1
     #[arg(long)]
     pub fail_fast: bool,
     /// Skip files whose outputs all exist

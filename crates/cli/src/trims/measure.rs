@@ -226,7 +226,7 @@ fn quickest(
     Ok(best)
 }
 
-/// What the frame needs is more than the device has.
+/// Whether the frame needs more memory than the device has.
 fn no_room(error: &HeadlessError) -> bool {
     error.gpu().is_some_and(GpuError::is_out_of_memory)
 }

@@ -7,8 +7,8 @@
 //!   kind      sharp, smooth, seam, border: by the angle across it
 //!   mesh      creases and borders of triangles
 //!   flatten   an edge as a line in the picture
-//!   nearest   its point nearest to a pixel
-//!   curve     the line or circle that it is
+//!   nearest   the point of an edge nearest to a pixel
+//!   curve     length of an edge; the line or circle that it is
 //! ```
 //!
 //! Edges are found on demand, not when a file is read. An import stores only what cannot be found again: the edge of the

@@ -6,16 +6,18 @@
 //!                                              else halved again
 //! ```
 //!
-//! Accuracy: where the edge is as near as its radius of curvature in the picture, the nearest point to rounding; all pieces are
-//! searched, so it is the nearest one of all. Cost: some tens of halvings a piece that passes within reach.
+//! All pieces are searched, so the point is the nearest of the whole edge. Accuracy: the steps converge where the pixel
+//! is nearer to the edge than the edge's radius of curvature in the picture; each step shrinks the error by the ratio
+//! of the two. Cost: some tens of halvings for each piece that passes within reach.
 
 use crate::model::Edge;
 use crate::spline::Bezier;
 use glam::{DMat4, DVec2, DVec4, Vec4Swizzles};
 
-/// A box this wide has one point that is nearest, pixels.
+/// Boxes below this width are not halved again, pixels.
 const SMALL_PX: f64 = 0.5;
-/// Shortest part of a piece: where it passes the plane of the eye, boxes have no end.
+/// Shortest part of a piece. Where a curve crosses the plane of the eye, boxes stay infinite however often they are
+/// halved.
 const SHORT: f64 = 1e-9;
 /// Steps of Gauss and Newton's method.
 const STEPS: usize = 24;
@@ -25,14 +27,15 @@ const STEPS: usize = 24;
 pub struct Nearest {
     /// The edge's parameter: number of the piece, and fraction.
     pub parameter: f64,
-    /// Where it is in the picture.
+    /// Position in the picture.
     pub pixel: DVec2,
-    /// From the pixel that was given, pixels.
+    /// Distance from the given pixel, pixels.
     pub distance_px: f64,
 }
 
-/// The point of `edge` nearest to `pixel` and nearer than `within_px`, in front of the eye; `to_pixels` takes the part to
-/// homogeneous pixels: [`Camera::pixel_matrix`](crate::model::Camera::pixel_matrix) times the part's placement.
+/// The point of `edge` nearest to `pixel`, if it is nearer than `within_px`. Points behind the eye are ignored.
+/// `to_pixels` takes the part to homogeneous pixels: it is [`Camera::pixel_matrix`](crate::model::Camera::pixel_matrix)
+/// times the part's placement.
 pub fn nearest(edge: &Edge, to_pixels: DMat4, pixel: DVec2, within_px: f64) -> Option<Nearest> {
     let mut best: Option<Nearest> = None;
     for (number, span) in edge.curve.iter().enumerate() {
@@ -59,8 +62,8 @@ pub fn nearest(edge: &Edge, to_pixels: DMat4, pixel: DVec2, within_px: f64) -> O
     best
 }
 
-/// How far the box around the control polygon is from the pixel, and how wide it is; 0 and infinite where it passes the plane
-/// of the eye, infinite and 0 behind it.
+/// Distance of the pixel from the box around the control polygon, and width of the box. If the polygon crosses the
+/// plane of the eye, they are 0 and infinite; if it lies behind that plane, infinite and 0.
 fn bounds(curve: &Bezier<DVec4>, pixel: DVec2) -> (f64, f64) {
     let behind = curve.points.iter().filter(|q| q.w <= 0.0).count();
     if behind == curve.points.len() {
@@ -124,7 +127,7 @@ mod tests {
                 let pixel = DVec2::splat(100.0) + towards * radius;
                 let found = nearest(&arc(), DMat4::IDENTITY, pixel, 40.0).expect("within reach");
                 let expected = DVec2::splat(100.0) + towards * 50.0;
-                // where a distance is least is known to the root of what it is known to: 1e-8 of the arc
+                // the distance is flat at its minimum, so the point is less exact than the distance
                 assert!(found.pixel.distance(expected) < 1e-5, "{degrees} {radius}: {found:?}");
                 assert!((found.distance_px - (radius - 50.0f64).abs()).abs() < 1e-9, "{found:?}");
             }

@@ -1,7 +1,7 @@
 //! Integrals of several functions at once: Gauss's rule of 16 points, halved until two answers agree.
 //!
 //! ```text
-//!   rule over [a, b]  ─── as much as the rules over its halves? ──▶ their sum
+//!   rule over [a, b]  ─── agrees with the rules over its halves? ─ yes ──▶ their sum
 //!                                        └─ no ──▶ each half in the same way
 //! ```
 
@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 
 /// Points of the rule.
 const POINTS: usize = 16;
-/// Halvings of [`integrate`]; what does not settle by then is told by the error.
+/// [`integrate`] halves a piece at most so often. If the answers still differ, the returned error shows it.
 const HALVINGS: u32 = 14;
 
 /// Abscissae in `[-1, 1]` and weights, roots of the Legendre polynomial by Newton's method.
@@ -58,7 +58,8 @@ pub fn integrate<const N: usize>(
     within(f, (a, b), scale.map(|s| s * tolerance), HALVINGS)
 }
 
-/// The same, with pieces halved while answers are farther apart than `allowed`, of the whole, and at most `halvings` times.
+/// The same with absolute tolerances. Pieces are halved, at most `halvings` times, while the last two answers differ by
+/// more than `allowed`, which each half shares equally.
 pub fn within<const N: usize>(
     f: &impl Fn(f64) -> [f64; N],
     (a, b): (f64, f64),

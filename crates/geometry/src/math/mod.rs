@@ -7,7 +7,7 @@
 //!   eigen       ── along which axes is a quadric?         rotations of Jacobi
 //!   bernstein   ── where does a polynomial change sign?    isolation by sign variations
 //!   root        ── one root in a bracket                   false position, never slower than bisection
-//!   gauss       ── what is the integral?                 a rule, halved until it agrees
+//!   gauss       ── what is the integral?                  a rule, halved until it agrees
 //!   golden      ── where is one valley lowest?          golden section, one value a step
 //!   random      ── which test case?                       the same sequence everywhere
 //! ```

@@ -23,8 +23,8 @@ pub enum Projection {
         /// Height of the picture in model units.
         height: f64,
     },
-    /// A calibrated camera, of a picture of [`Camera::size`]: the view axis need not be in the middle.
-    /// [`Camera::from_intrinsics`] takes the numbers as OpenCV has them.
+    /// A calibrated camera of a picture of [`Camera::size`]. The view axis need not be in the middle of the picture.
+    /// [`Camera::from_intrinsics`] takes OpenCV's numbers.
     Pinhole {
         /// Pixels per unit slope, across and down.
         focal: DVec2,
@@ -52,9 +52,9 @@ pub struct Camera {
 
 /// Smallest height of a picture beside what it lies at: a picture of 4096 rows then has steps of 16 roundings of `f64`.
 const LEAST_STEP: f64 = 4096.0 * 16.0 * f64::EPSILON;
-/// How much longer than the other one a focal length may be: bounds of the frame take the longer one.
+/// Largest ratio of the two focal lengths: bounds of the frame use the longer one for both.
 const MOST_OBLONG: f64 = 2.0;
-/// Pixels that the principal point may lie beside the picture: rows of single precision then resolve 1/500 pixel.
+/// Largest distance of the principal point from the picture, pixels: single precision then resolves 1/500 pixel.
 const MOST_BESIDE: f64 = 16384.0;
 /// Lengths whose squares, times a count of pixels, are single-precision numbers.
 const LENGTHS: std::ops::RangeInclusive<f64> = 1e-15..=1e15;
@@ -148,16 +148,19 @@ impl Camera {
         Ok(())
     }
 
-    /// A calibrated camera, as OpenCV has it, of a picture of `size` pixels: a point `(x, y, z)` with x to the right, y down
-    /// and z ahead is seen at `(fx x / z + cx, fy y / z + cy)`, the centre of the first pixel being `(0, 0)`.
+    /// A calibrated camera by OpenCV's conventions, of a picture of `size` pixels. A point `(x, y, z)`, with x to the
+    /// right, y down and z ahead, is seen at `(fx x / z + cx, fy y / z + cy)`. The centre of the first pixel is `(0,
+    /// 0)`.
     ///
-    /// It stands in the origin of the model and looks along its z axis; [`Camera::posed`] moves it. The depth range is
-    /// 1 to 2 until [`Camera::fit_depth`] sets it. Nothing is checked before [`Camera::check`].
+    /// The camera stands in the origin of the model and looks along the model's z axis; [`Camera::posed`] moves it. The
+    /// depth range is 1 to 2 until [`Camera::fit_depth`] sets it. The numbers are checked by [`Camera::check`], not
+    /// here.
     ///
     /// ```
     /// # use selvedge_geometry::model::Camera;
     /// # use glam::{DMat3, DVec2, DVec3};
-    /// let camera = Camera::from_intrinsics(800.0, 790.0, 300.0, 250.0, (640, 480)).posed(DMat3::IDENTITY, DVec3::Z * 4.0);
+    /// let camera = Camera::from_intrinsics(800.0, 790.0, 300.0, 250.0, (640, 480));
+    /// let camera = camera.posed(DMat3::IDENTITY, DVec3::Z * 4.0);
     /// let (pixel, depth) = camera.project(DVec3::new(1.0, -0.5, 0.0)).unwrap();
     /// // continuous positions have the first pixel's centre at (0.5, 0.5)
     /// assert!(pixel.distance(DVec2::new(800.0 / 4.0 + 300.5, 790.0 * -0.5 / 4.0 + 250.5)) < 1e-12 && depth == 4.0);
@@ -167,8 +170,8 @@ impl Camera {
         Self { eye: DVec3::ZERO, target: DVec3::Z, up: -DVec3::Y, projection, depth_range: (1.0, 2.0), size }
     }
 
-    /// The same camera where a point `X` of the model has the coordinates `rotation * X + translation` of OpenCV: x to the
-    /// right, y down, z ahead. `rotation` is a rotation: its rows are the camera's axes.
+    /// The same camera, moved so that a point `X` of the model has the camera coordinates `rotation * X + translation`:
+    /// x to the right, y down, z ahead. The rows of `rotation` are the camera's axes.
     #[must_use]
     pub fn posed(self, rotation: DMat3, translation: DVec3) -> Self {
         let axes = rotation.transpose();
@@ -213,7 +216,7 @@ impl Camera {
         (right, right.cross(forward), forward)
     }
 
-    /// Whether rays leave from the eye; those of a parallel view leave from its plane.
+    /// Whether all rays start at the eye. In a parallel view they start in the plane of the eye.
     pub fn is_perspective(&self) -> bool {
         !matches!(self.projection, Projection::Orthographic { .. })
     }
@@ -223,7 +226,7 @@ impl Camera {
         DVec2::new(f64::from(self.size.0), f64::from(self.size.1))
     }
 
-    /// Pixels per unit slope, across and down; of a parallel view per model unit.
+    /// Pixels per unit slope, across and down; in a parallel view, pixels per model unit.
     pub fn focal_px(&self) -> DVec2 {
         let height_px = f64::from(self.size.1);
         match self.projection {
@@ -233,7 +236,8 @@ impl Camera {
         }
     }
 
-    /// The pixel position at which the view axis is seen: the middle of the picture, but for a [`Projection::Pinhole`].
+    /// The pixel position at which the view axis is seen. Without a [`Projection::Pinhole`] it is the middle of the
+    /// picture.
     pub fn principal_px(&self) -> DVec2 {
         match self.projection {
             Projection::Pinhole { principal, .. } => principal,
@@ -344,7 +348,7 @@ mod tests {
         camera.posed(rotation, DVec3::new(0.2, -0.1, 9.0))
     }
 
-    /// By OpenCV's formula, written out; and the ray of a pixel runs through what is seen there.
+    /// Pixels follow OpenCV's formula, written out here; the ray of a pixel runs through the point that is seen there.
     #[test]
     fn calibrated_cameras_see_points_where_the_formula_says() {
         let camera = off_centre();

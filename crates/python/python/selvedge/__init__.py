@@ -127,8 +127,8 @@ class Renderer:
         hidden_lines: lines behind faces, dashed. line_width: pixels; without it 1 or more, and more in high pictures.
         samples: 1, 4 or 8 of each pixel's colour. smooth: at samples=1, borders that are smooth: "borders" of all faces (the
             default), "trims", those of trimmed faces by exact areas, or "none".
-        ao: at samples=1, ambient occlusion: what lies close to other things is darker. The radius, millimetres, "auto", a
-            twenty-fifth of the model's diagonal (the default), or "none".
+        ao: ambient occlusion at samples=1: nearby surfaces darken each other. The radius, millimetres; "auto", a
+            twenty-fifth of the model's diagonal (the default); or "none".
         sun: direction from the model towards a light that casts shadows; without it a studio's light.
         tolerance: largest distance in pixels between a drawn boundary and the true one, at least 0.1.
 

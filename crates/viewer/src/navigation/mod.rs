@@ -188,7 +188,7 @@ pub fn other_projection(camera: &Camera) -> Camera {
     }
 }
 
-/// The projection with its axis in the middle of the picture, as high as it is seen.
+/// The projection with its axis in the middle of the picture, and with the same vertical scale.
 fn in_the_middle(camera: &Camera) -> Projection {
     match camera.projection {
         Projection::Pinhole { focal, .. } => {
