@@ -78,6 +78,11 @@ def absences(report):
     for section, promise in report.promises():
         if promise.why:
             grouped.setdefault((section.number, promise.why), []).append(promise.what)
+    # what stands in tables alone
+    for section in report.sections:
+        for one in section.tables:
+            for why in {cell.why: None for row in one.rows for cell in row if isinstance(cell, Missing)}:
+                grouped.setdefault((section.number, why), [one.title or section.title])
     for (number, why), what in grouped.items():
         named = what[0] if len(what) == 1 else f"{what[0]}, and {len(what) - 1} more"
         lines.append(f"* {number}. {named}: {why}")
@@ -95,6 +100,8 @@ def section_text(section, plots):
     if section.promises:
         parts.append(promises(section.promises))
     parts += [f"![{plot.title}]({plots[plot.name]})" for plot in section.plots if plot.name in plots]
+    if any(plot.name not in plots for plot in section.plots):
+        parts.append("Not plotted: matplotlib is not installed.")
     if section.commands:
         parts.append("```sh\n" + "\n".join(section.commands) + "\n```")
     return "\n\n".join(part for part in parts if part)

@@ -26,6 +26,7 @@ PACKAGES = {
 }
 DEBIAN = {"OpenSCAD": "openscad", "POV-Ray": "povray"}
 SCREEN = "-screen 0 3840x2160x24"
+NOT_DONE = "not done in"
 
 
 class Peers:
@@ -33,8 +34,8 @@ class Peers:
 
     def __init__(self, scratch):
         self.scratch, self.count = scratch, 0
-        # of the last process: empty where it ended well
-        self.problem = ""
+        # of the last process: empty where it ended well; and whether the limit of time stopped it
+        self.problem, self.late = "", False
         self.versions = {}
         for name, (package, module) in PACKAGES.items():
             if importlib.util.find_spec(module):
@@ -65,6 +66,7 @@ class Peers:
         if windowed:
             command = ["xvfb-run", "-a", "-s", SCREEN, *command]
         out, problem, _ = run(command, limit_s)
+        self.late = problem.startswith(NOT_DONE)
         if problem:
             print(f"   {program}: {problem}", file=sys.stderr, flush=True)
         self.problem = problem
@@ -97,7 +99,7 @@ def run(command, limit_s, allowed=(0,)):
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, 15)
         out, _ = process.communicate()
-        problem = f"not done in {limit_s:.0f} s"
+        problem = f"{NOT_DONE} {limit_s:.0f} s"
     return out, problem, time.perf_counter() - start
 
 

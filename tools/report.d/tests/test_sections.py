@@ -32,6 +32,10 @@ class Trims(unittest.TestCase):
         time, _ = self.contests(("table", -3, 1), ("exact", 5, 1), ("bisect", 40, 1), ("texture", 1, 1))
         self.assertEqual(time.ours, [0.5] * 3)
 
+    def test_one_of_our_ways_may_lack_room(self):
+        _, memory = self.contests(("table", "", ""), ("exact", 4, 80), ("bisect", 40, 1), ("texture", 1, 90))
+        self.assertEqual(memory.ours, [80.0])
+
     def test_a_texture_without_room_is_not_measured(self):
         _, memory = self.contests(("table", 9, 1), ("exact", 4, 1), ("bisect", 40, 1), ("texture", "", ""))
         self.assertEqual((memory.verdict(), memory.reason()), ("not measured", "the device has no room for it"))
@@ -64,6 +68,9 @@ class Surfaces(unittest.TestCase):
         self.assertIsNone(self.contest(0.125))
         never = self.ERRORS | {"mesh 0.0001": 0.8}
         self.assertEqual(self.contest(0.25, never).verdict(), "unreached")
+
+    def test_a_peer_that_nobody_judged_is_not_behind(self):
+        self.assertEqual(self.contest(0.5, {"ours 0.5": 0.2}).verdict(), "not measured")
 
     def test_a_plot_shows_the_quickest_of_each_error(self):
         self.assertEqual(surfaces.front([(0.5, 3), (0.1, 9), (0.5, 2)]), [(0.1, 9), (0.5, 2)])

@@ -164,7 +164,7 @@ class Case:
         results = rounds(competitors, self.context.pick(25, 300), most=self.context.pick(3, 5))
         if isinstance(results["selvedge"], Unmeasurable):
             raise results["selvedge"]
-        errors, judged = self.errors()
+        errors, judged = self.errors(section)
         rows = []
         for name, found in results.items():
             if isinstance(found, Unmeasurable):
@@ -203,7 +203,7 @@ class Case:
                 section.promises[1].cases += report[way]["error"]["judged_pixels"]
                 section.promises[1].violations += report[way]["error"]["wrong_pixels"]
 
-    def errors(self):
+    def errors(self, section):
         try:
             job = {
                 "scene": self.scene.data(),
@@ -213,7 +213,7 @@ class Case:
             }
             (found,) = self.context.peers.results("csg", job, limit_s=120 + 4 * job["seconds"])
         except Unmeasurable as error:
-            self.context.say(str(error))
+            section.contests.append(Contest(f"errors, {self.name}", "the equations", "px", why=str(error)))
             return {}, 0
         return found["pictures"], found["boundary"]
 

@@ -245,9 +245,10 @@ class Case:
                         f"{quantity}, {self.what}, within {error:g} px", name, unit, kind, ours, found, errors, k, error
                     )
                     # a larger error that changes neither side's setting is the same contest
-                    if contest and (contest.ours, contest.theirs, contest.unreached) != before:
+                    sides = contest and (contest.ours, contest.theirs, contest.why)
+                    if contest and sides != before:
                         section.contests.append(contest)
-                        before = (contest.ours, contest.theirs, contest.unreached)
+                    before = sides
 
     def contest(self, what, name, unit, kind, ours, found, errors, k, error):
         """None where even we have no setting as right."""
@@ -255,9 +256,11 @@ class Case:
         mine, theirs = [best("ours", one) for one in ours], [best(kind, one) for one in found]
         if None in mine:
             return None
+        if not any(self.curve(kind, [one], errors, k) for one in found):
+            return Contest(what, name, unit, why="no setting of its was both timed and judged")
         large = self.model.stat().st_size >= CLAIMED_BYTES
         claim = "ahead" if k == 0 and error <= CLAIMED_PX and large else "open"
-        if None in theirs or not theirs:
+        if None in theirs:
             return Contest(what, name, unit, claim=claim, unreached=True, why="none of its settings is as right")
         many = min(len(mine), len(theirs))
         return Contest(what, name, unit, mine[:many], theirs[:many], claim)

@@ -17,10 +17,13 @@ that turns. The least of the frames of each round counts, and the table has medi
 
 def measure(context):
     section = Section(3, "Trimming", TEXT)
+    names = context.pick(FILES_QUICK, FILES)
     zooms = context.pick("1,10", "1,10,100,1000")
     sizes = context.pick("200x200,400x400", "400x400,800x800,1600x1600,3840x2160")
     size, holes = context.pick("400x400", "800x800"), context.pick(20, 100)
-    models = [model for model in map(context.model, context.pick(FILES_QUICK, FILES)) if model]
+    models = [model for model in map(context.model, names) if model]
+    absent = [name for name in names if not context.model(name)]
+    section.contests += [Contest(f"trims, {name}", "all", "ms", why=context.absent(name).why) for name in absent]
     words = [*models, "--no-knobs", "--holes", holes, "--zooms", zooms, "--sizes", sizes, "--size", size]
     words += ["--frames", context.pick(2, 5), "--samples", context.pick(500, 2000)]
     found = []
@@ -133,7 +136,7 @@ def contests(section, model, found, size):
         section.contests.append(contest(f"trims, {what}", "bisection", "ms", ours, theirs, "ahead"))
         # a texture that is as right as it is at the closest view needs a texel a pixel
         claim = "ahead" if at[2] >= 10 else "open"
-        least = min((values(found[:1], other(way), "trim_bytes") for way in OURS), default=[])
+        least = min(filter(None, (values(found[:1], other(way), "trim_bytes") for way in OURS)), default=[])
         texture = values(found[:1], other("texture"), "trim_bytes")
         section.contests.append(
             contest(f"memory, {what}", "a trim texture", "bytes", least, texture, claim, exact=True)
@@ -141,12 +144,12 @@ def contests(section, model, found, size):
 
 
 def contest(what, peer, unit, ours, theirs, claim, exact=False):
-    if None in ours or None in theirs or not theirs:
+    if None in ours or None in theirs or not ours or not theirs:
         return Contest(what, peer, unit, why="the device has no room for it")
     return Contest(what, peer, unit, ours, theirs, claim, exact)
 
 
 def cost(one, ats):
-    """Milliseconds of the quickest way; at least a hundredth of its frame: differences of two drawings may be below 0."""
+    """Milliseconds of the quickest way; at least a hundredth of its frame, for a difference of two may be below 0."""
     texts = [(one[at]["trim_ms"], one[at]["frame_ms"]) for at in ats if at in one and one[at]["trim_ms"]]
     return min((max(float(trims), 0.01 * float(frame)) for trims, frame in texts), default=None)

@@ -67,6 +67,8 @@ def measure(context):
             for one in context.peers.results("zoomed", job, windowed=True, limit_s=limit_s)
         }
         late = [name for name in reached if ("remeshed", name) not in found]
+        if late and not context.peers.late:
+            raise Unmeasurable(f"a mesh a zoom: {context.peers.problem}")  # a failure is no lost race
         reached[:] = [name for name in reached if name not in late]
         # told once, for all rounds
         stopped.update({name: f"{int(late[0]):,} times was not meshed within {limit_s} s" for name in late})
