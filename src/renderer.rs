@@ -31,7 +31,7 @@ mod viewport;
 
 use crate::abi;
 use crate::budget::Budget;
-use crate::frame::capacities::Capacities;
+use crate::frame::capacities::{Capacities, Ranges};
 use crate::frame::counts::Counts;
 pub use crate::frame::counts::TooMany;
 use crate::frame::shading::{numbers, resolve};
@@ -121,13 +121,6 @@ impl Loaded {
     fn solid_bytes(&self) -> Vec<PoolBytes> {
         self.stages.as_ref().and_then(Stages::solids).map_or_else(Vec::new, Solids::bytes)
     }
-}
-
-/// Bytes of the largest list. The largest lists are read as texels, so both limits bound them.
-fn range(device: &Device) -> u32 {
-    let limits = device.limits();
-    let texels = u64::from(limits.max_texel_buffer_elements) * TexelBuffer::LEAST_BYTES;
-    limits.max_storage_buffer_range.min(u32::try_from(texels).unwrap_or(u32::MAX))
 }
 
 #[allow(dead_code)] // held for their drop
@@ -337,10 +330,10 @@ impl Renderer {
         finished.retired.clear();
         finished.recorded = false;
         let Some(loaded) = &mut self.loaded else { return Ok(()) };
-        let range = range(&self.device);
+        let ranges = Ranges::of(&self.device);
         let capacities = match (had, report) {
             // else another slot's frame has made them larger since
-            (Some(had), Some(c)) if had == loaded.capacities => match had.grown(&c, loaded.counts, drawn, range) {
+            (Some(had), Some(c)) if had == loaded.capacities => match had.grown(&c, loaded.counts, drawn, ranges) {
                 Ok(grown) => grown,
                 // a picture of another size may have room
                 Err(_) if drawn != size => loaded.capacities,
@@ -355,7 +348,7 @@ impl Renderer {
             }
             _ => loaded.capacities,
         };
-        let capacities = capacities.for_picture(loaded.counts, size, range)?;
+        let capacities = capacities.for_picture(loaded.counts, size, ranges)?;
         let suffice = loaded.stages.as_ref().is_some_and(|stages| stages.suffice(capacities, size));
         let make = || Stages::new(&self.device, &loaded.passes, loaded.counts, capacities, size);
         let made = (!suffice).then(make).transpose()?;

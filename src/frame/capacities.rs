@@ -9,6 +9,7 @@
 use super::counts::{Counts, TooMany};
 use super::{edges, gaps, solids, tessellation, trim};
 use crate::abi::Counters;
+use crate::gpu::{Device, Texel};
 
 /// Room for what only the GPU can count, of each stage that counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +45,8 @@ impl Capacities {
     }
 
     /// See [`solids::Capacities::for_picture`] and [`gaps::Capacities::for_picture`].
-    pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), range: u32) -> Result<Self, TooMany> {
+    pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), ranges: Ranges) -> Result<Self, TooMany> {
+        let range = ranges.quads;
         let gaps = self.gaps.for_picture(counts, size, range);
         Ok(Self { gaps, solids: self.solids.for_picture(counts, size, range)?, ..self })
     }
@@ -54,16 +56,39 @@ impl Capacities {
         self.solids.takes_as_much(others.solids) && Self { solids: others.solids, ..self } == others
     }
 
-    /// What the frame that reported `c` would have needed, with a quarter to spare where a storage
-    /// buffer of `range` bytes has it; the same when it had enough. `size` is that of the picture.
-    pub(crate) fn grown(self, c: &Counters, counts: Counts, size: (u32, u32), range: u32) -> Result<Self, TooMany> {
+    /// What the frame that reported `c` would have needed, with a quarter to spare where a list may take it; the same
+    /// when it had enough. `size` is that of the picture.
+    pub(crate) fn grown(
+        self,
+        c: &Counters,
+        counts: Counts,
+        size: (u32, u32),
+        ranges: Ranges,
+    ) -> Result<Self, TooMany> {
+        let range = ranges.quads;
         Ok(Self {
             tessellation: self.tessellation.grown(c, range)?,
-            trim: self.trim.grown(c, counts, range)?,
+            trim: self.trim.grown(c, counts, ranges.pairs)?,
             gaps: self.gaps.grown(c, range)?,
             solids: self.solids.grown(c, counts, size, range)?,
             edges: self.edges.grown(c, range)?,
         })
+    }
+}
+
+/// Most bytes of a list. Shaders read the longest lists as texels, so the device's limit of texels bounds them too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Ranges {
+    /// Of a list that is read as texels of two words: the trim table.
+    pub pairs: u32,
+    /// Of a list that is read as texels of four words, or as structs.
+    pub quads: u32,
+}
+
+impl Ranges {
+    pub(crate) fn of(device: &Device) -> Self {
+        let limits = device.limits();
+        Self { pairs: Texel::U32x2.range(limits), quads: Texel::U32x4.range(limits) }
     }
 }
 
@@ -77,13 +102,17 @@ mod tests {
     /// Every storage buffer of Vulkan's least capable device.
     const RANGE: u32 = 1 << 27;
 
+    fn both(range: u32) -> Ranges {
+        Ranges { pairs: range, quads: range }
+    }
+
     fn first() -> Capacities {
         let counts = Counts { items: 1000, bins: 8, trim: Some(TakenWay::Table), ..Default::default() };
         Capacities::first(counts, u32::MAX)
     }
 
     fn grown(had: Capacities, c: &Counters) -> Result<Capacities, TooMany> {
-        had.grown(c, Counts::default(), (640, 480), RANGE)
+        had.grown(c, Counts::default(), (640, 480), both(RANGE))
     }
 
     #[test]
@@ -131,7 +160,7 @@ mod tests {
         let counts = Counts { items: HUNDRED_MILLION, trim: Some(TakenWay::Table), ..Default::default() };
         let rows = Counters { wanted_rows: HUNDRED_MILLION, failed: 4, ..Default::default() };
         assert!(counts.check(u32::MAX).is_ok());
-        let grown = |range| first().grown(&rows, counts, (640, 480), range);
+        let grown = |range| first().grown(&rows, counts, (640, 480), both(range));
         assert!(grown(u32::MAX).unwrap().trim.rows > HUNDRED_MILLION);
         let over = counts.check(RANGE).unwrap_err();
         assert_eq!((over.count, over.most), (HUNDRED_MILLION, RANGE / 16));
@@ -144,10 +173,10 @@ mod tests {
         assert_eq!((over.what, over.most, over.bytes), ("scan lines", RANGE / 8, Some((800_000_000, RANGE.into()))));
         assert!(over.is_of_table());
         let more = Counters { plain: RANGE / 8 + 1, failed: 1, ..Default::default() };
-        let over = first().grown(&more, counts, (640, 480), RANGE).unwrap_err();
+        let over = first().grown(&more, counts, (640, 480), both(RANGE)).unwrap_err();
         assert_eq!((over.what, over.most), ("parts of patches", RANGE / 8));
         let more = Counters { gap_candidates: RANGE / 12 + 1, failed: 16, ..Default::default() };
-        let over = first().grown(&more, counts, (640, 480), RANGE).unwrap_err();
+        let over = first().grown(&more, counts, (640, 480), both(RANGE)).unwrap_err();
         assert_eq!((over.what, over.most), ("pixels at gaps", RANGE / 12));
     }
 }

@@ -4,7 +4,7 @@ use super::budget::Heaps;
 use super::description::Description;
 use super::memory::lock;
 use super::pipeline::Made;
-use super::{GpuError, Pool, Quirks, TexelBuffer};
+use super::{GpuError, Pool, Quirks, Texel};
 use ash::vk;
 use ash::vk::Handle;
 use gpu_allocator::vulkan::Allocator;
@@ -55,7 +55,7 @@ impl LowerLimits {
         let least = |limit: &mut u32, lower: Option<u32>| *limit = lower.map_or(*limit, |lower| lower.min(*limit));
         least(&mut limits.max_compute_work_group_count[0], self.work_groups);
         least(&mut limits.max_storage_buffer_range, self.storage_range);
-        let texels = self.storage_range.map(|bytes| bytes / TexelBuffer::LEAST_BYTES as u32);
+        let texels = self.storage_range.map(|bytes| bytes / Texel::U32x2.bytes() as u32);
         least(&mut limits.max_texel_buffer_elements, texels);
     }
 }

@@ -32,11 +32,17 @@ impl Texel {
         }
     }
 
-    fn bytes(self) -> u64 {
+    pub(super) fn bytes(self) -> u64 {
         match self {
             Self::U32x2 => 8,
             Self::Words | Self::Numbers | Self::U32x4 | Self::F32x4 => 16,
         }
+    }
+
+    /// Most bytes of a buffer that shaders read as such texels and write as a storage buffer.
+    pub(crate) fn range(self, limits: &vk::PhysicalDeviceLimits) -> u32 {
+        let texels = u64::from(limits.max_texel_buffer_elements) * self.bytes();
+        limits.max_storage_buffer_range.min(u32::try_from(texels).unwrap_or(u32::MAX))
     }
 }
 
@@ -51,9 +57,6 @@ pub struct TexelBuffer {
 }
 
 impl TexelBuffer {
-    /// Of the smallest texel.
-    pub const LEAST_BYTES: u64 = 8;
-
     /// Views `buffer`.
     ///
     /// # Errors

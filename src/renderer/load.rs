@@ -10,9 +10,9 @@
 
 use super::constants::draw_vertices;
 use super::source::Source;
-use super::{Loaded, RenderError, Renderer, Retired, TargetFormats, range, validate};
+use super::{Loaded, RenderError, Renderer, Retired, TargetFormats, validate};
 use crate::frame::Passes;
-use crate::frame::capacities::Capacities;
+use crate::frame::capacities::{Capacities, Ranges};
 use crate::frame::counts::Counts;
 use crate::gpu::Device;
 use crate::model::{Camera, Model};
@@ -163,7 +163,7 @@ impl Loaded {
         }
         let may_change = request.trim == TrimWay::Auto && data_of.trim_way() == Some(TakenWay::Table);
         let too_many =
-            Counts::of(&data_of).check(range(device)).err().filter(|too_many| may_change && too_many.is_of_table());
+            Counts::of(&data_of).check(Ranges::of(device).quads).err().filter(|too_many| may_change && too_many.is_of_table());
         if too_many.is_some() {
             data_of = data(request.exact())?;
         }
@@ -181,7 +181,7 @@ impl Loaded {
         };
         data.show(&whole.instances, &source.shown);
         let counts = Counts::of(&data);
-        counts.check(range(device))?;
+        counts.check(Ranges::of(device).quads)?;
         let passes = Passes::new(device, &data, formats.of_passes())?;
         let may_be_exact = may_change && too_many.is_none();
         Ok(Self {

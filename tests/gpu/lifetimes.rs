@@ -207,11 +207,17 @@ fn pipelines_are_kept_in_a_file() {
     let whole = std::fs::read(&file).unwrap();
     run();
     assert_eq!(kept().len(), 1);
+    // a driver's data of the same pipelines may differ by some bytes from run to run
+    let is_whole = || {
+        let file = std::fs::read(&file).unwrap();
+        file.starts_with(&whole[..8]) && file.len() > whole.len() * 3 / 4
+    };
     std::fs::write(&file, &whole[..whole.len() / 2]).unwrap();
+    assert!(!is_whole());
     run();
-    assert_eq!(std::fs::read(&file).unwrap().len(), whole.len(), "written anew");
+    assert!(is_whole(), "written anew");
     std::fs::write(&file, b"no pipelines at all").unwrap();
     run();
-    assert_eq!(std::fs::read(&file).unwrap().len(), whole.len());
+    assert!(is_whole(), "written anew");
     std::fs::remove_dir_all(&folder).unwrap();
 }
