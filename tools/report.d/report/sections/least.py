@@ -1,5 +1,7 @@
 """7. Only what a scene needs: pipelines, buffers, images and bytes that exist for each kind of scene."""
 
+import re
+
 from .. import hard
 from ..rows import Promise, Section, Table
 from ..turns import Unmeasurable
@@ -75,5 +77,6 @@ def measure(context):
 
 
 def foreign(name, features):
-    """The features that an object is for and that a scene has not."""
-    return [of for of, words in FEATURES.items() if of not in features and any(word in name.lower() for word in words)]
+    """The features that an object is for and that a scene has not. A pipeline's name has in brackets what it leaves out."""
+    name = re.sub(r"\(no [^)]*\)", "", name.lower())
+    return [of for of, words in FEATURES.items() if of not in features and any(word in name for word in words)]
