@@ -168,6 +168,15 @@ impl Renderer {
         })
     }
 
+    /// So many frames may be in flight, or as many as before where those are more.
+    #[cfg(feature = "headless")]
+    pub(crate) fn add_slots(&mut self, frame_slots: usize) -> Result<(), GpuError> {
+        while self.slots.len() < frame_slots {
+            self.slots.push(Slot::new(&self.device)?);
+        }
+        Ok(())
+    }
+
     /// Records one frame: compute, draws, and the picture into the targets.
     ///
     /// # Errors

@@ -12,11 +12,13 @@
 mod instance;
 mod messages;
 mod renderer;
+mod sequence;
 #[cfg(test)]
 mod tests;
 
 pub use messages::{Message, Severity};
 pub use renderer::HeadlessRenderer;
+pub use sequence::PictureView;
 
 use crate::gpu::{Commands, Device, GpuError, HostDevice, LowerLimits, Named, Requirements};
 use ash::vk;
@@ -188,8 +190,15 @@ impl HeadlessDevice {
         &self,
         record: impl FnOnce(&Commands<'_>) -> Result<R, E>,
     ) -> Result<Result<R, E>, GpuError> {
-        let queue = self.parts.queue.lock().unwrap_or_else(PoisonError::into_inner);
-        queue.submit(&self.parts.device, record)
+        let mut queue = self.parts.queue.lock().unwrap_or_else(PoisonError::into_inner);
+        let recorded = queue.start(&self.parts.device, record)?;
+        queue.finish()?;
+        Ok(recorded)
+    }
+
+    /// The same queue with a command buffer of its own. One thread submits by both.
+    fn another_queue(&self) -> Result<Queue, GpuError> {
+        Queue::new(self.parts.device.raw().clone(), self.parts.device.queue_family())
     }
 
     /// What the validation layers have said so far, oldest first.
@@ -240,6 +249,8 @@ struct Queue {
     pool: vk::CommandPool,
     commands: vk::CommandBuffer,
     fence: vk::Fence,
+    /// What was submitted last has not been waited for.
+    in_flight: bool,
 }
 
 impl Queue {
@@ -253,6 +264,7 @@ impl Queue {
             pool: vk::CommandPool::null(),
             commands: vk::CommandBuffer::null(),
             fence: vk::Fence::null(),
+            in_flight: false,
         };
         let create = vk::CommandPoolCreateInfo::default().queue_family_index(family);
         // SAFETY: the device is alive.
@@ -268,11 +280,13 @@ impl Queue {
         Ok(this)
     }
 
-    fn submit<R, E>(
-        &self,
+    /// Records commands and submits them; what ends in an error is forgotten instead.
+    fn start<R, E>(
+        &mut self,
         device: &Device,
         record: impl FnOnce(&Commands<'_>) -> Result<R, E>,
     ) -> Result<Result<R, E>, GpuError> {
+        self.finish()?;
         let raw = &self.device;
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
         // SAFETY: the submission before has finished, so the pool may be reset; the lock keeps others away.
@@ -281,7 +295,7 @@ impl Queue {
                 .named("vkResetCommandPool", "headless")?;
             raw.begin_command_buffer(self.commands, &begin).named("vkBeginCommandBuffer", "headless")?;
         }
-        // SAFETY: recording; the wait below comes before anything recorded can be dropped.
+        // SAFETY: recording; it is waited for before anything recorded can be dropped.
         let result = record(&unsafe { Commands::new(device, self.commands) });
         if result.is_err() {
             return Ok(result);
@@ -292,15 +306,28 @@ impl Queue {
         unsafe {
             raw.end_command_buffer(self.commands).named("vkEndCommandBuffer", "headless")?;
             raw.queue_submit2(self.queue, &[submit], self.fence).named("vkQueueSubmit2", "headless")?;
-            raw.wait_for_fences(&[self.fence], true, u64::MAX).named("vkWaitForFences", "headless")?;
-            raw.reset_fences(&[self.fence]).named("vkResetFences", "headless")?;
         }
+        self.in_flight = true;
         Ok(result)
+    }
+
+    /// Waits for what was submitted last.
+    fn finish(&mut self) -> Result<(), GpuError> {
+        if std::mem::take(&mut self.in_flight) {
+            // SAFETY: submitted with this fence, which is ours alone.
+            unsafe {
+                self.device.wait_for_fences(&[self.fence], true, u64::MAX).named("vkWaitForFences", "headless")?;
+                self.device.reset_fences(&[self.fence]).named("vkResetFences", "headless")?;
+            }
+        }
+        Ok(())
     }
 }
 
 impl Drop for Queue {
     fn drop(&mut self) {
+        // on the way out of an error frames may be in flight; without a device there is nothing to wait for
+        let _ = self.finish();
         // SAFETY: every submission was waited for.
         unsafe {
             self.device.destroy_fence(self.fence, None);

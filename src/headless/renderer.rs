@@ -17,22 +17,22 @@ use std::time::Duration;
 const COLOUR_FORMAT: vk::Format = vk::Format::R8G8B8A8_SRGB;
 /// A frame is recorded again when a buffer was too small; each time they grow to what was needed, so
 /// more than a few rounds mean that something else is wrong.
-const MOST_RETRIES: u32 = 8;
+pub(super) const MOST_RETRIES: u32 = 8;
 
 /// Renders models into [`Picture`]s, on a device of its own.
 pub struct HeadlessRenderer {
     // drop order: everything made from the device, then the device
-    renderer: ManuallyDrop<Renderer>,
+    pub(super) renderer: ManuallyDrop<Renderer>,
     targets: ManuallyDrop<Option<TargetImages>>,
-    device: ManuallyDrop<HeadlessDevice>,
+    pub(super) device: ManuallyDrop<HeadlessDevice>,
     /// What the renderer draws into.
-    formats: TargetFormats,
+    pub(super) formats: TargetFormats,
 }
 
 /// Images of one size, and the buffers that they are copied to.
-struct TargetImages {
-    colour: (Image, ReadBack),
-    aovs: Option<[(Image, ReadBack); 4]>,
+pub(super) struct TargetImages {
+    pub(super) colour: (Image, ReadBack),
+    pub(super) aovs: Option<[(Image, ReadBack); 4]>,
     thickness: Option<(Image, ReadBack)>,
     numbers: Option<[(Image, ReadBack); 3]>,
 }
@@ -253,27 +253,13 @@ impl HeadlessRenderer {
     fn frame(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<(bool, FrameStats), HeadlessError> {
         let Some(images) = &*self.targets else { unreachable!("prepared before") };
         let renderer = &mut *self.renderer;
-        self.device.try_submit(|cmd| -> Result<(), RenderError> {
-            images.begin(cmd);
-            let aov = |i: usize| images.aovs.as_ref().map(|aovs| &aovs[i].0);
-            let number = |i: usize| images.numbers.as_ref().map(|numbers| &numbers[i].0);
-            let [depth, face, uv, normal] = [0, 1, 2, 3].map(aov);
-            let [edge, part, instance] = [0, 1, 2].map(number);
-            let aovs = Aovs { depth, face, uv, normal, edge, part, instance };
-            let thickness = images.thickness.as_ref().map(|(image, _)| image);
-            let targets = Targets { aovs, thickness, ..Targets::new(&images.colour.0) };
-            let input = FrameInput { camera, settings: *settings, slot: 0, targets };
-            // SAFETY: recording; the submission is waited for, so the slot is free again.
-            unsafe { renderer.record(cmd.raw(), &input) }?;
-            images.end(cmd);
-            Ok(())
-        })??;
+        self.device.try_submit(|cmd| images.record(renderer, cmd, (camera, settings), 0))??;
         let report = self.renderer.report(0)?.expect("a frame was recorded");
         Ok((report.complete, report.stats))
     }
 
     /// Makes targets of this size, and a renderer that writes these images.
-    fn prepare(&mut self, size: (u32, u32), outputs: Outputs) -> Result<(), HeadlessError> {
+    pub(super) fn prepare(&mut self, size: (u32, u32), outputs: Outputs) -> Result<(), HeadlessError> {
         let thickness = outputs.thickness;
         let Some(source) = self.renderer.source() else { panic!("upload a model before rendering") };
         let mut request = source.request();
@@ -347,7 +333,12 @@ impl Drop for HeadlessRenderer {
 }
 
 impl TargetImages {
-    fn new(device: &Device, size: (u32, u32), formats: TargetFormats, thickness: bool) -> Result<Self, GpuError> {
+    pub(super) fn new(
+        device: &Device,
+        size: (u32, u32),
+        formats: TargetFormats,
+        thickness: bool,
+    ) -> Result<Self, GpuError> {
         let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
         let target = |name: &str, format, bytes: u64| {
             let image = Image::new(device, &ImageInfo { name, size, format, usage, pool: Pool::Transient })?;
@@ -378,6 +369,29 @@ impl TargetImages {
     fn all(&self) -> impl Iterator<Item = &(Image, ReadBack)> {
         let numbers = self.numbers.iter().flatten();
         std::iter::once(&self.colour).chain(self.aovs.iter().flatten()).chain(&self.thickness).chain(numbers)
+    }
+
+    /// A frame into them, in a slot that is free, and its way to host memory.
+    pub(super) fn record(
+        &self,
+        renderer: &mut Renderer,
+        cmd: &Commands<'_>,
+        (camera, settings): (&Camera, &FrameSettings),
+        slot: usize,
+    ) -> Result<(), RenderError> {
+        self.begin(cmd);
+        let aov = |i: usize| self.aovs.as_ref().map(|aovs| &aovs[i].0);
+        let number = |i: usize| self.numbers.as_ref().map(|numbers| &numbers[i].0);
+        let [depth, face, uv, normal] = [0, 1, 2, 3].map(aov);
+        let [edge, part, instance] = [0, 1, 2].map(number);
+        let aovs = Aovs { depth, face, uv, normal, edge, part, instance };
+        let thickness = self.thickness.as_ref().map(|(image, _)| image);
+        let targets = Targets { aovs, thickness, ..Targets::new(&self.colour.0) };
+        let input = FrameInput { camera, settings: *settings, slot, targets };
+        // SAFETY: recording; the slot's last submission was waited for, and this one will be.
+        unsafe { renderer.record(cmd.raw(), &input) }?;
+        self.end(cmd);
+        Ok(())
     }
 
     /// Ready to be drawn into; what they held goes.

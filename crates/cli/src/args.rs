@@ -262,6 +262,9 @@ pub struct BenchArgs {
     /// How the camera moves from frame to frame
     #[arg(long, value_enum, default_value_t = Motion::Path, conflicts_with = "edit")]
     pub motion: Motion,
+    /// Also draw the frames with several in flight: pictures a second
+    #[arg(long, conflicts_with = "edit")]
+    pub throughput: bool,
     /// Frames judged against the exact model, spread evenly; 0 judges none
     #[arg(long, value_name = "N", default_value_t = 4)]
     pub judged: usize,

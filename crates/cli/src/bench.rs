@@ -42,8 +42,18 @@ struct Report {
     device: String,
     driver: String,
     first_frame: Option<FirstFrame>,
+    throughput: Option<Throughput>,
     rows: Vec<Row>,
     error: Error,
+}
+
+/// All frames of the path with several in flight.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Throughput {
+    pictures_per_second: f64,
+    /// Wall clock a picture, and all its passes: the mean.
+    wall_ms: f64,
+    passes_ms: f64,
 }
 
 /// The worst of the judged frames.
@@ -122,6 +132,11 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
         }
         Ok(())
     })?;
+    let throughput = args.throughput.then(|| {
+        let cameras: Vec<Camera> = (0..args.frames).map(camera).collect();
+        during("drawing with several frames in flight", || throughput(&mut session, &cameras))
+    });
+    let throughput = throughput.transpose()?;
     let mut error = Error::default();
     let mut tracer = None;
     for index in judged(args.frames, args.judged) {
@@ -141,10 +156,27 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
         device: stats.device,
         driver: stats.driver,
         first_frame: session.first_frame(),
+        throughput,
         rows: gathered.rows(),
         error,
     };
     Ok((report, session.complaints()))
+}
+
+/// Pictures as fast as they come; each is read once, as whoever keeps it would.
+fn throughput(session: &mut Session, cameras: &[Camera]) -> Result<Throughput> {
+    let (start, mut passes_ms, mut kept) = (Instant::now(), 0.0, Vec::new());
+    session.render_sequence(cameras, |picture| {
+        passes_ms += picture.stats.passes.iter().map(|pass| pass.gpu_ms).sum::<f64>();
+        kept.clear();
+        kept.extend_from_slice(picture.colour);
+    })?;
+    let (seconds, count) = (start.elapsed().as_secs_f64(), cameras.len() as f64);
+    Ok(Throughput {
+        pictures_per_second: count / seconds,
+        wall_ms: 1e3 * seconds / count,
+        passes_ms: passes_ms / count,
+    })
 }
 
 /// One frame, and what it cost.
@@ -223,8 +255,14 @@ impl Report {
                 first.wall_ms, first.pipelines_ms
             )
         });
+        let flight = self.throughput.map_or_else(String::new, |t| {
+            format!(
+                "several frames in flight: {:.1} pictures a second; {:.2} ms each, of which passes {:.2} ms\n",
+                t.pictures_per_second, t.wall_ms, t.passes_ms
+            )
+        });
         format!(
-            "{model}: {faces} faces, {face_instances} placed, {missing_faces} missing; {w} x {h} on {device} ({driver})\n{table}\n{first}\
+            "{model}: {faces} faces, {face_instances} placed, {missing_faces} missing; {w} x {h} on {device} ({driver})\n{table}\n{first}{flight}\
              error in {} judged frames: {} of {} pixels wrong, worst shift {:.3} px, depth {:.2e} mm, normal {:.3} deg",
             e.judged_frames, e.wrong_pixels, e.judged_pixels, e.worst_shift_px, e.worst_depth, e.worst_normal_deg
         )
@@ -236,7 +274,17 @@ fn csv(path: &Path, reports: &[Report]) -> Result<()> {
     target::write(path, |to| {
         let mut lines = csv::Writer::from_writer(to);
         lines.write_record(["model", "quantity", "unit", "median", "p95", "largest", "frames"])?;
-        for Report { model, rows, first_frame, error: e, .. } in reports {
+        for Report { model, rows, first_frame, throughput, error: e, .. } in reports {
+            if let Some(t) = throughput {
+                let frames = rows.iter().map(|row| row.frames).max();
+                for (name, unit, value) in [
+                    ("throughput", "pictures/s", t.pictures_per_second),
+                    ("throughput: wall clock", "ms", t.wall_ms),
+                    ("throughput: all passes", "ms", t.passes_ms),
+                ] {
+                    lines.serialize((model, name, unit, value, "", "", frames))?;
+                }
+            }
             for (name, ms) in
                 first_frame.iter().flat_map(|f| [("first frame", f.wall_ms), ("pipelines", f.pipelines_ms)])
             {
