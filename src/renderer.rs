@@ -173,6 +173,18 @@ impl Renderer {
         })
     }
 
+    /// So many frames may be in flight from now on. Frames of slots that go have finished on the GPU, as have all
+    /// before them.
+    #[cfg(feature = "headless")]
+    pub(crate) fn set_slots(&mut self, frame_slots: usize) -> Result<(), GpuError> {
+        self.slots.truncate(frame_slots);
+        self.order.retain(|slot| *slot < frame_slots);
+        while self.slots.len() < frame_slots {
+            self.slots.push(Slot::new(&self.device)?);
+        }
+        Ok(())
+    }
+
     /// Records one frame: compute, draws, and the picture into the targets.
     ///
     /// # Errors
@@ -298,6 +310,8 @@ impl Renderer {
         (slot.recorded, slot.reused) = (true, history.reuses_view);
         slot.capacities = Some(loaded.capacities);
         slot.size = input.camera.size;
+        slot.counts = loaded.counts;
+        slot.shadow_deviation = loaded.data.sun.as_ref().map_or(0.0, |sun| sun.deviation);
         (slot.bands, slot.solid_bytes) = (loaded.bands(), loaded.solid_bytes());
         self.order.retain(|slot| *slot != input.slot);
         self.order.push(input.slot);

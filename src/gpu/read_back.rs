@@ -57,15 +57,20 @@ impl ReadBack {
         barrier::buffers(cmd, &[(&self.buffer, Access::TRANSFER_WRITE, Access::HOST_READ)]);
     }
 
-    /// The first `count` values, after the fence.
+    /// The first `count` values where they are, after the fence.
+    ///
+    /// # Panics
+    /// When there is no room for that many.
+    pub fn slice<T: Pod>(&self, count: usize) -> &[T] {
+        let Some(mapped) = self.buffer.mapped() else { panic!("`{}` is not mapped", self.buffer.name()) };
+        bytemuck::cast_slice(&mapped[..count * size_of::<T>()])
+    }
+
+    /// A copy of the first `count` values, after the fence.
     ///
     /// # Panics
     /// When there is no room for that many.
     pub fn values<T: Pod>(&self, count: usize) -> Vec<T> {
-        let Some(mapped) = self.buffer.mapped() else { panic!("`{}` is not mapped", self.buffer.name()) };
-        let mut values = vec![T::zeroed(); count];
-        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut values);
-        bytes.copy_from_slice(&mapped[..bytes.len()]);
-        values
+        self.slice(count).to_vec()
     }
 }

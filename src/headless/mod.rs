@@ -10,14 +10,18 @@
 //! alive, and the leaks that the validation layers find.
 
 mod devices;
+mod images;
 mod instance;
 mod messages;
 mod pipelines;
+mod queue;
 mod renderer;
+mod sequence;
 #[cfg(test)]
 mod tests;
 
 pub use devices::{DeviceLimits, DeviceSummary, devices};
+pub use images::PictureView;
 pub use messages::{Message, Severity};
 pub use renderer::HeadlessRenderer;
 
@@ -27,10 +31,11 @@ use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use instance::Instance;
 use messages::Messages;
 use pipelines::PipelineFile;
+use queue::{Queue, Submission};
 use std::io;
 use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// Which device, and how closely it is watched.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -113,7 +118,7 @@ pub struct HeadlessDevice {
 
 /// Dropped in this order.
 struct Parts {
-    queue: Mutex<Queue>,
+    queue: Queue,
     device: Device,
     cache: Option<Cache>,
     _allocator: Arc<Mutex<Allocator>>,
@@ -200,7 +205,8 @@ impl HeadlessDevice {
         };
         // SAFETY: made above with the requirements; `Parts` and `Drop` keep it until the last user is gone.
         let device = unsafe { Device::limited(host, lower) };
-        let queue = Mutex::new(Queue::new(raw, queue_family)?);
+        // SAFETY: the device was made with one queue of this family.
+        let queue = unsafe { Queue::new(&raw, queue_family) };
         let parts = Parts { queue, device, cache, _allocator: allocator, _owned: owned, _instance: instance };
         Ok(Self { parts: ManuallyDrop::new(parts), messages })
     }
@@ -230,9 +236,19 @@ impl HeadlessDevice {
         &self,
         record: impl FnOnce(&Commands<'_>) -> Result<R, E>,
     ) -> Result<Result<R, E>, GpuError> {
-        let queue = self.parts.queue.lock().unwrap_or_else(PoisonError::into_inner);
         self.device().alive()?;
-        queue.submit(&self.parts.device, record).inspect_err(|error| self.device().note(error))
+        let submit = || {
+            let mut submission = self.submission()?;
+            let recorded = submission.start(record)?;
+            submission.finish()?;
+            Ok(recorded)
+        };
+        submit().inspect_err(|error| self.device().note(error))
+    }
+
+    /// A command buffer of its own, for submissions to the queue.
+    fn submission(&self) -> Result<Submission, GpuError> {
+        Submission::new(&self.parts.device, &self.parts.queue)
     }
 
     /// Writes the pipelines compiled so far to their file in [`HeadlessOptions::pipeline_folder`]. The drop does so
@@ -321,101 +337,5 @@ impl Drop for OwnedDevice {
     fn drop(&mut self) {
         // SAFETY: declared after everything made from it.
         unsafe { self.0.destroy_device(None) }
-    }
-}
-
-/// The queue with one command buffer, used again for each submission.
-struct Queue {
-    device: ash::Device,
-    queue: vk::Queue,
-    pool: vk::CommandPool,
-    commands: vk::CommandBuffer,
-    fence: vk::Fence,
-}
-
-impl Queue {
-    fn new(device: ash::Device, family: u32) -> Result<Self, GpuError> {
-        // SAFETY: the device was made with one queue of this family.
-        let queue = unsafe { device.get_device_queue(family, 0) };
-        // Owned from here on, so that a failure frees what was made; destroying null is allowed.
-        let mut this = Self {
-            device,
-            queue,
-            pool: vk::CommandPool::null(),
-            commands: vk::CommandBuffer::null(),
-            fence: vk::Fence::null(),
-        };
-        let create = vk::CommandPoolCreateInfo::default().queue_family_index(family);
-        // SAFETY: the device is alive.
-        this.pool =
-            unsafe { this.device.create_command_pool(&create, None) }.named("vkCreateCommandPool", "headless")?;
-        let allocate = vk::CommandBufferAllocateInfo::default().command_pool(this.pool).command_buffer_count(1);
-        // SAFETY: the pool was just made.
-        this.commands = unsafe { this.device.allocate_command_buffers(&allocate) }
-            .named("vkAllocateCommandBuffers", "headless")?[0];
-        // SAFETY: the device is alive.
-        this.fence = unsafe { this.device.create_fence(&vk::FenceCreateInfo::default(), None) }
-            .named("vkCreateFence", "headless")?;
-        Ok(this)
-    }
-
-    fn submit<R, E>(
-        &self,
-        device: &Device,
-        record: impl FnOnce(&Commands<'_>) -> Result<R, E>,
-    ) -> Result<Result<R, E>, GpuError> {
-        let raw = &self.device;
-        let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        // SAFETY: the submission before has finished, so fence and pool may be reset; the lock keeps others away.
-        unsafe {
-            raw.reset_fences(&[self.fence]).named("vkResetFences", "headless")?;
-            raw.reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty())
-                .named("vkResetCommandPool", "headless")?;
-            raw.begin_command_buffer(self.commands, &begin).named("vkBeginCommandBuffer", "headless")?;
-        }
-        // SAFETY: recording; the wait below comes before anything recorded can be dropped.
-        let result = record(&unsafe { Commands::new(device, self.commands) });
-        if result.is_err() {
-            return Ok(result);
-        }
-        let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(self.commands)];
-        let submit = vk::SubmitInfo2::default().command_buffer_infos(&commands);
-        // SAFETY: recorded above; queue and fence are ours alone.
-        unsafe {
-            raw.end_command_buffer(self.commands).named("vkEndCommandBuffer", "headless")?;
-            raw.queue_submit2(self.queue, &[submit], self.fence).named("vkQueueSubmit2", "headless")?;
-        }
-        self.wait(device).map(|()| result)
-    }
-
-    /// Waits until the GPU has finished. If that fails and the device is not lost, nothing that the GPU may use is
-    /// freed.
-    fn wait(&self, device: &Device) -> Result<(), GpuError> {
-        // SAFETY: the fence was submitted.
-        let waited = unsafe { self.device.wait_for_fences(&[self.fence], true, u64::MAX) };
-        let waited = match waited {
-            // The GPU is still running. Another way to wait may need less memory.
-            Err(vk::Result::ERROR_OUT_OF_HOST_MEMORY | vk::Result::ERROR_OUT_OF_DEVICE_MEMORY) => {
-                // SAFETY: the lock keeps others away from the queue.
-                unsafe { self.device.queue_wait_idle(self.queue) }.named("vkQueueWaitIdle", "headless")
-            }
-            waited => waited.named("vkWaitForFences", "headless"),
-        };
-        waited.inspect_err(|error| {
-            if !error.is_device_lost() {
-                device.set_lost("vkQueueWaitIdle", "headless");
-                device.abandon();
-            }
-        })
-    }
-}
-
-impl Drop for Queue {
-    fn drop(&mut self) {
-        // SAFETY: every submission was waited for.
-        unsafe {
-            self.device.destroy_fence(self.fence, None);
-            self.device.destroy_command_pool(self.pool, None);
-        }
     }
 }

@@ -1,13 +1,13 @@
 //! A whole picture in host memory: device, targets, frame, read-back.
 
+use super::sequence::{Flight, View};
 use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
-use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, LowerLimits, Pool, ReadBack, barrier};
+use crate::gpu::{Device, GpuError, LowerLimits};
 use crate::model::{Camera, Colour, LoopAt, Model, TrimLoop};
-use crate::picture::{FrameSettings, FrameStats, Outputs, Picture, SceneSettings};
-use crate::renderer::{Aovs, EditError, FrameInput, Hit, InstanceError, RenderError, Renderer, TargetFormats, Targets};
+use crate::picture::{FrameSettings, Outputs, Picture, SceneSettings};
+use crate::renderer::{EditError, Hit, InstanceError, RenderError, Renderer, TargetFormats};
 use crate::scene::SceneRequest;
 use ash::vk;
-use bytemuck::Pod;
 use glam::DAffine3;
 use std::mem::ManuallyDrop;
 use std::sync::Arc;
@@ -15,26 +15,16 @@ use std::time::Duration;
 
 /// Colour is rendered to 8 bits, encoded by the format.
 const COLOUR_FORMAT: vk::Format = vk::Format::R8G8B8A8_SRGB;
-/// A frame is recorded again when a buffer was too small; each time they grow to what was needed, so
-/// more than a few rounds mean that something else is wrong.
-const MOST_RETRIES: u32 = 8;
 
 /// Renders models into [`Picture`]s, on a device of its own.
 pub struct HeadlessRenderer {
-    // drop order: everything made from the device, then the device
-    renderer: ManuallyDrop<Renderer>,
-    targets: ManuallyDrop<Option<TargetImages>>,
-    device: ManuallyDrop<HeadlessDevice>,
+    // drop order: the GPU finishes, then everything made from the device goes, then the device
+    /// One for each frame slot of the renderer.
+    pub(super) flights: ManuallyDrop<Vec<Flight>>,
+    pub(super) renderer: ManuallyDrop<Renderer>,
+    pub(super) device: ManuallyDrop<HeadlessDevice>,
     /// What the renderer draws into.
-    formats: TargetFormats,
-}
-
-/// Images of one size, and the buffers that they are copied to.
-struct TargetImages {
-    colour: (Image, ReadBack),
-    aovs: Option<[(Image, ReadBack); 4]>,
-    thickness: Option<(Image, ReadBack)>,
-    numbers: Option<[(Image, ReadBack); 3]>,
+    pub(super) formats: TargetFormats,
 }
 
 /// Draws whole pictures only: a frame whose lists overflow draws no patches.
@@ -68,10 +58,11 @@ impl HeadlessRenderer {
     /// [`HeadlessError::Gpu`].
     pub fn on(device: HeadlessDevice) -> Result<Self, HeadlessError> {
         let formats = TargetFormats::new(COLOUR_FORMAT);
+        let flight = Flight::new(&device)?;
         let renderer = renderer(device.device(), formats)?;
         Ok(Self {
+            flights: ManuallyDrop::new(vec![flight]),
             renderer: ManuallyDrop::new(renderer),
-            targets: ManuallyDrop::new(None),
             device: ManuallyDrop::new(device),
             formats,
         })
@@ -209,26 +200,11 @@ impl HeadlessRenderer {
         outputs: Outputs,
     ) -> Result<Picture, HeadlessError> {
         camera.check().map_err(RenderError::from)?;
-        self.device.device().alive()?;
-        let drawn = self.drawn(camera, settings, outputs);
-        drawn.inspect_err(|error| error.gpu().into_iter().for_each(|error| self.device.device().note(error)))
-    }
-
-    fn drawn(&mut self, camera: &Camera, settings: &FrameSettings, outputs: Outputs) -> Result<Picture, HeadlessError> {
-        self.prepare(camera.size, outputs)?;
-        let (mut retries, mut edit_bytes) = (0, 0);
-        let stats = loop {
-            let report = self.frame(camera, settings)?;
-            edit_bytes += report.1.edit_bytes;
-            if report.0 {
-                break report.1;
-            }
-            retries += 1;
-            if retries > MOST_RETRIES {
-                return Err(HeadlessError::NeverComplete);
-            }
-        };
-        Ok(self.read(camera.size, outputs, FrameStats { retries, edit_bytes, ..stats }))
+        self.prepare(outputs)?;
+        let view = View { camera, settings, outputs };
+        self.start(0, view)?;
+        let stats = self.finish(0, view)?;
+        Ok(self.view(0, outputs, stats).to_picture())
     }
 
     /// The model that was uploaded, as edits have made it: see [`Renderer::model`].
@@ -258,49 +234,24 @@ impl HeadlessRenderer {
 
     /// Frees everything and returns all validation messages, those about leaks included.
     pub fn shutdown(mut self) -> Vec<String> {
-        // SAFETY: each is taken once, and `self` is forgotten; every frame was waited for.
+        // SAFETY: each is taken once, and `self` is forgotten; flights wait for their frames.
         let device = unsafe {
+            ManuallyDrop::drop(&mut self.flights);
             ManuallyDrop::drop(&mut self.renderer);
-            ManuallyDrop::drop(&mut self.targets);
             ManuallyDrop::take(&mut self.device)
         };
         std::mem::forget(self);
         device.shutdown().iter().map(ToString::to_string).collect()
     }
 
-    fn frame(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<(bool, FrameStats), HeadlessError> {
-        let Some(images) = &*self.targets else { unreachable!("prepared before") };
-        let renderer = &mut *self.renderer;
-        let submitted = self.device.try_submit(|cmd| -> Result<(), RenderError> {
-            images.begin(cmd);
-            let aov = |i: usize| images.aovs.as_ref().map(|aovs| &aovs[i].0);
-            let number = |i: usize| images.numbers.as_ref().map(|numbers| &numbers[i].0);
-            let [depth, face, uv, normal] = [0, 1, 2, 3].map(aov);
-            let [edge, part, instance] = [0, 1, 2].map(number);
-            let aovs = Aovs { depth, face, uv, normal, edge, part, instance };
-            let thickness = images.thickness.as_ref().map(|(image, _)| image);
-            let targets = Targets { aovs, thickness, ..Targets::new(&images.colour.0) };
-            let input = FrameInput { camera, settings: *settings, slot: 0, targets };
-            // SAFETY: recording; the submission is waited for, so the slot is free again.
-            unsafe { renderer.record(cmd.raw(), &input) }?;
-            images.end(cmd);
-            Ok(())
-        });
-        if submitted.is_err() {
-            self.renderer.discard(0);
-        }
-        submitted??;
-        let report = self.renderer.report(0)?.expect("a frame was recorded");
-        Ok((report.complete, report.stats))
-    }
-
-    /// Makes targets of this size, and a renderer that writes these images.
-    fn prepare(&mut self, size: (u32, u32), outputs: Outputs) -> Result<(), HeadlessError> {
-        let thickness = outputs.thickness;
+    /// Makes a renderer that writes these images. No frame is in flight then.
+    pub(super) fn prepare(&mut self, outputs: Outputs) -> Result<(), HeadlessError> {
+        self.device.device().alive()?;
+        self.land()?; // frames are in flight after a panic in the middle of a sequence
         let Some(source) = self.renderer.source() else { panic!("upload a model before rendering") };
         let mut request = source.request();
-        let lacks_thickness = thickness && !request.thickness;
-        request.settings.thickness |= thickness;
+        let lacks_thickness = outputs.thickness && !request.thickness;
+        request.settings.thickness |= outputs.thickness;
         // images that one pass makes come together: another choice among them makes no other renderer
         let (points, numbers) = (outputs.has_points(), outputs.has_numbers());
         let outputs = Outputs {
@@ -316,104 +267,25 @@ impl HeadlessRenderer {
         let formats = TargetFormats { outputs, ..self.formats };
         if formats != self.formats || lacks_thickness {
             let source = source.with(request);
-            let mut renderer = renderer(self.device.device(), formats)?;
-            renderer.upload_source(source, &|_| ())?;
-            *self.renderer = renderer;
-            self.formats = formats;
-            *self.targets = None;
-        }
-        let fits = |t: &TargetImages| t.colour.0.size() == size && t.thickness.is_some() == thickness;
-        if !self.targets.as_ref().is_some_and(fits) {
-            *self.targets = None;
-            *self.targets = Some(TargetImages::new(self.device.device(), size, formats, thickness)?);
+            self.noting(|this| {
+                let mut renderer = renderer(this.device.device(), formats)?;
+                renderer.upload_source(source, &|_| ())?;
+                *this.renderer = renderer;
+                this.formats = formats;
+                Ok(())
+            })?;
         }
         Ok(())
-    }
-
-    fn read(&self, size: (u32, u32), outputs: Outputs, stats: FrameStats) -> Picture {
-        let Some(images) = &*self.targets else { unreachable!("prepared before") };
-        let count = size.0 as usize * size.1 as usize;
-        let aov = |i: usize| images.aovs.as_ref().map(|a| &a[i].1);
-        let number = |i: usize| images.numbers.as_ref().map(|n| &n[i].1);
-        fn values<T: Pod>(read: Option<&ReadBack>, wanted: bool, count: usize) -> Vec<T> {
-            read.filter(|_| wanted).map_or_else(Vec::new, |r| r.values(count))
-        }
-        let normals: Vec<[f32; 4]> = values(aov(3), outputs.normal, count);
-        let has_sun = self.renderer.source().is_some_and(|source| source.request().sun.is_some());
-        Picture {
-            size,
-            colour: images.colour.1.values(count),
-            depth: values(aov(0), outputs.depth, count),
-            face: values(aov(1), outputs.face, count),
-            uv: values(aov(2), outputs.uv, count),
-            normal: normals.iter().map(|n| [n[0], n[1], n[2]]).collect(),
-            sunlit: if has_sun { normals.iter().map(|n| n[3] > 0.0).collect() } else { Vec::new() },
-            edge: values(number(0), outputs.edge, count),
-            part: values(number(1), outputs.part, count),
-            instance: values(number(2), outputs.instance, count),
-            thickness: values(images.thickness.as_ref().map(|t| &t.1), outputs.thickness, count),
-            stats,
-        }
     }
 }
 
 impl Drop for HeadlessRenderer {
     fn drop(&mut self) {
-        // SAFETY: dropped once, here, in the order of their dependence; every frame was waited for.
+        // SAFETY: dropped once, here, in the order of their dependence; flights wait for their frames.
         unsafe {
+            ManuallyDrop::drop(&mut self.flights);
             ManuallyDrop::drop(&mut self.renderer);
-            ManuallyDrop::drop(&mut self.targets);
             ManuallyDrop::drop(&mut self.device);
         }
-    }
-}
-
-impl TargetImages {
-    fn new(device: &Device, size: (u32, u32), formats: TargetFormats, thickness: bool) -> Result<Self, GpuError> {
-        let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
-        let target = |name: &str, format, bytes: u64| {
-            let image = Image::new(device, &ImageInfo { name, size, format, usage, pool: Pool::Transient })?;
-            let pixels = u64::from(size.0) * u64::from(size.1);
-            Ok::<_, GpuError>((image, ReadBack::new(device, &format!("{name} (read back)"), pixels * bytes)?))
-        };
-        let colour = target("colour", COLOUR_FORMAT, 4)?;
-        let [depth, face, uv, normal] = Renderer::AOV_FORMATS;
-        let aovs = formats
-            .outputs
-            .has_points()
-            .then(|| {
-                Ok::<_, GpuError>([
-                    target("depth", depth, 4)?,
-                    target("face", face, 4)?,
-                    target("uv", uv, 8)?,
-                    target("normal", normal, 16)?,
-                ])
-            })
-            .transpose()?;
-        let thickness = thickness.then(|| target("thickness", Renderer::THICKNESS_FORMAT, 4)).transpose()?;
-        let number = |name| target(name, Renderer::NUMBER_FORMAT, 4);
-        let numbers = || Ok::<_, GpuError>([number("edge")?, number("part")?, number("instance")?]);
-        let numbers = formats.outputs.has_numbers().then(numbers).transpose()?;
-        Ok(Self { colour, aovs, thickness, numbers })
-    }
-
-    fn all(&self) -> impl Iterator<Item = &(Image, ReadBack)> {
-        let numbers = self.numbers.iter().flatten();
-        std::iter::once(&self.colour).chain(self.aovs.iter().flatten()).chain(&self.thickness).chain(numbers)
-    }
-
-    /// Ready to be drawn into; what they held goes.
-    fn begin(&self, cmd: &Commands<'_>) {
-        let before = Access::TRANSFER_READ.discarded();
-        let barriers: Vec<_> = self.all().map(|(image, _)| (image, before, Access::COLOUR_WRITE)).collect();
-        barrier::images(cmd, &barriers);
-    }
-
-    /// Copied to host memory.
-    fn end(&self, cmd: &Commands<'_>) {
-        let barriers: Vec<_> =
-            self.all().map(|(image, _)| (image, Access::COLOUR_WRITE, Access::TRANSFER_READ)).collect();
-        barrier::images(cmd, &barriers);
-        self.all().for_each(|(image, read)| read.record_image(cmd, image, vk::ImageAspectFlags::COLOR));
     }
 }

@@ -45,6 +45,12 @@ impl Renderer {
         self.pick = Some((x, y));
     }
 
+    /// The pixel of [`pick`](Self::pick), which the next frame then does not read back.
+    #[cfg(feature = "headless")]
+    pub(crate) fn take_pick(&mut self) -> Option<(u32, u32)> {
+        self.pick.take()
+    }
+
     /// What the frame recorded last into `slot`, which has finished on the GPU, shows at the pixel of
     /// [`pick`](Self::pick): the exact point under the pixel's centre, in double precision, of the face that the frame shows
     /// there. What is seen through is no hit: what lies behind it is. With several samples a pixel, the face is that of one

@@ -9,6 +9,7 @@ use crate::abi;
 use crate::abi::Counters;
 use crate::frame::ViewBuffers;
 use crate::frame::capacities::Capacities;
+use crate::frame::counts::Counts;
 use crate::gpu::{
     Buffer, BufferInfo, Device, GpuError, MemoryLocation, Pool, ReadBack, Texel, TexelBuffer, Timestamps,
 };
@@ -51,6 +52,9 @@ pub(super) struct Slot {
     pub(super) capacities: Option<Capacities>,
     /// Of the picture.
     pub(super) size: (u32, u32),
+    /// What the frame's scene had, which may have been replaced since.
+    pub(super) counts: Counts,
+    pub(super) shadow_deviation: f64,
     /// What the frame reports of the lists of Boolean solids.
     pub(super) bands: u32,
     pub(super) solid_bytes: Vec<PoolBytes>,
@@ -77,6 +81,8 @@ impl Slot {
             edit_bytes: 0,
             capacities: None,
             size: (0, 0),
+            counts: Counts::default(),
+            shadow_deviation: 0.0,
             bands: 0,
             solid_bytes: Vec::new(),
         })

@@ -273,7 +273,13 @@ calls! {
         // SAFETY: room for the address.
         unsafe { *made = mapped.cast() };
     };
-    bind_buffer "vkBindBufferMemory" (device: vk::Device, buffer: u64, memory: u64, offset: u64) {};
+    bind_buffer "vkBindBufferMemory" (device: vk::Device, buffer: u64, memory: u64, offset: u64) {
+        // what another buffer left there would be read as what the GPU wrote
+        with(|state| {
+            let (first, end) = (offset as usize / 8, (offset + state.bytes[&buffer]).div_ceil(8) as usize);
+            state.memory.get_mut(&memory).into_iter().for_each(|words| words[first..end].fill(0));
+        });
+    };
     bind_image "vkBindImageMemory" (device: vk::Device, image: u64, memory: u64, offset: u64) {};
     command_buffers "vkAllocateCommandBuffers" (device: vk::Device, info: *const c_void, made: *mut u64) {
         // SAFETY: room for one.

@@ -66,6 +66,16 @@ impl Script {
         self.frame(renderer)
     }
 
+    /// More pictures than are in flight at a time. Each is taken once, in order.
+    fn sequence(&self, renderer: &mut HeadlessRenderer) -> Result<(), HeadlessError> {
+        let mut next = 0;
+        renderer.render_sequence(&[self.camera; 5], &FrameSettings::default(), Outputs::ALL, |nth, _| {
+            assert_eq!(nth, next);
+            next += 1;
+            Ok(())
+        })
+    }
+
     /// Runs the whole script, and returns the first error. A step that fails is tried once more, unless the device is
     /// lost.
     fn run(&self, driver: &Driver) -> Option<GpuError> {
@@ -75,14 +85,14 @@ impl Script {
             self.open(driver)
         });
         let mut renderer = opened.expect("the second time nothing fails");
-        for step in [Self::upload, Self::frame, Self::edited] {
+        for step in [Self::upload, Self::frame, Self::edited, Self::sequence] {
             let Err(error) = step(self, &mut renderer) else { continue };
             assert!(first.is_none(), "{error} after {first:?}");
             let error = gpu(error);
             if error.is_device_lost() {
                 // the renderer is poisoned: every step returns the first error and makes no call
                 let calls = driver.count();
-                for step in [Self::upload, Self::frame] {
+                for step in [Self::upload, Self::frame, Self::sequence] {
                     let again = step(self, &mut renderer).expect_err("the device is lost");
                     assert_eq!(gpu(again).to_string(), error.to_string());
                 }
@@ -116,7 +126,7 @@ fn is_told(error: &GpuError, fault: Fault) -> bool {
     told == fault.result && error.to_string().starts_with(&format!("{} failed for `", fault.call))
 }
 
-/// Each call of create, upload, frame, read back and edit fails in turn. Nothing crashes, no handle of the device
+/// Each call of create, upload, frame, read back, edit and a sequence of frames fails in turn. Nothing crashes, no handle of the device
 /// leaks, and the error names the call.
 #[test]
 fn each_call_fails_once() {

@@ -41,6 +41,7 @@ mod real_solids;
 mod regular;
 mod room;
 mod samples;
+mod sequence;
 mod shadows;
 #[path = "../shapes/mod.rs"]
 mod shapes;

@@ -42,8 +42,20 @@ struct Report {
     device: String,
     driver: String,
     first_frame: Option<FirstFrame>,
+    throughput: Option<Throughput>,
     rows: Vec<Row>,
     error: Error,
+}
+
+/// All frames of the path with several in flight: means of a picture.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Throughput {
+    pictures_per_second: f64,
+    /// Wall clock, with the copy of the picture by the CPU.
+    wall_ms: f64,
+    /// All passes on the GPU, without its copy to host memory.
+    passes_ms: f64,
+    wall_over_passes: f64,
 }
 
 /// The worst of the judged frames.
@@ -122,6 +134,12 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
         }
         Ok(())
     })?;
+    let throughput = args.throughput.then(|| {
+        let warm_up = (0..WARM_UP_FRAMES).map(|_| camera(0));
+        let cameras: Vec<Camera> = warm_up.chain((0..args.frames).map(camera)).collect();
+        during("drawing with several frames in flight", || throughput(&mut session, &cameras))
+    });
+    let throughput = throughput.transpose()?;
     let mut error = Error::default();
     let mut tracer = None;
     for index in judged(args.frames, args.judged) {
@@ -141,10 +159,31 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
         device: stats.device,
         driver: stats.driver,
         first_frame: session.first_frame(),
+        throughput,
         rows: gathered.rows(),
         error,
     };
     Ok((report, session.complaints()))
+}
+
+/// Draws pictures with several frames in flight, and measures those after the warm-up. Each is copied, as by a caller
+/// that keeps it.
+fn throughput(session: &mut Session, cameras: &[Camera]) -> Result<Throughput> {
+    let (mut start, mut passes_ms, mut kept) = (Instant::now(), 0.0, Vec::new());
+    session.render_sequence(cameras, |nth, picture| {
+        kept.clear();
+        kept.extend_from_slice(picture.colour);
+        if nth < WARM_UP_FRAMES {
+            start = Instant::now();
+        } else {
+            passes_ms += picture.stats.passes.iter().map(|pass| pass.gpu_ms).sum::<f64>();
+        }
+    })?;
+    let count = (cameras.len() - WARM_UP_FRAMES) as f64;
+    let wall_ms = start.elapsed().as_secs_f64() * 1e3 / count;
+    let passes_ms = passes_ms / count;
+    let wall_over_passes = wall_ms / passes_ms;
+    Ok(Throughput { pictures_per_second: 1e3 / wall_ms, wall_ms, passes_ms, wall_over_passes })
 }
 
 /// One frame, and what it cost.
@@ -223,8 +262,14 @@ impl Report {
                 first.wall_ms, first.pipelines_ms
             )
         });
+        let flight = self.throughput.map_or_else(String::new, |t| {
+            format!(
+                "several frames in flight: {:.1} pictures per second; {:.2} ms each, {:.2} times the {:.2} ms of all passes\n",
+                t.pictures_per_second, t.wall_ms, t.wall_over_passes, t.passes_ms
+            )
+        });
         format!(
-            "{model}: {faces} faces, {face_instances} placed, {missing_faces} missing; {w} x {h} on {device} ({driver})\n{table}\n{first}\
+            "{model}: {faces} faces, {face_instances} placed, {missing_faces} missing; {w} x {h} on {device} ({driver})\n{table}\n{first}{flight}\
              error in {} judged frames: {} of {} pixels wrong, worst shift {:.3} px, depth {:.2e} mm, normal {:.3} deg",
             e.judged_frames, e.wrong_pixels, e.judged_pixels, e.worst_shift_px, e.worst_depth, e.worst_normal_deg
         )
@@ -236,7 +281,18 @@ fn csv(path: &Path, reports: &[Report]) -> Result<()> {
     target::write(path, |to| {
         let mut lines = csv::Writer::from_writer(to);
         lines.write_record(["model", "quantity", "unit", "median", "p95", "largest", "frames"])?;
-        for Report { model, rows, first_frame, error: e, .. } in reports {
+        for Report { model, rows, first_frame, throughput, error: e, .. } in reports {
+            if let Some(t) = throughput {
+                let frames = rows.iter().map(|row| row.frames).max();
+                for (name, unit, value) in [
+                    ("in flight: pictures per second", "1/s", t.pictures_per_second),
+                    ("in flight: mean wall clock", "ms", t.wall_ms),
+                    ("in flight: mean of all passes", "ms", t.passes_ms),
+                    ("in flight: wall clock over passes", "", t.wall_over_passes),
+                ] {
+                    lines.serialize((model, name, unit, value, "", "", frames))?;
+                }
+            }
             for (name, ms) in
                 first_frame.iter().flat_map(|f| [("first frame", f.wall_ms), ("pipelines", f.pipelines_ms)])
             {

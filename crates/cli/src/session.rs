@@ -5,7 +5,7 @@ use crate::progress::{advancing, during, importing};
 use crate::{camera, device, openscad, output, target};
 use anyhow::{Error, Result, anyhow, bail};
 use glam::DVec3;
-use selvedge::headless::HeadlessRenderer;
+use selvedge::headless::{HeadlessRenderer, PictureView};
 use selvedge::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use selvedge::picture::{EdgeSettings, FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings, Style};
 use selvedge_io::import::{self, Facets, Folders, Import, ImportError, Options, Stage};
@@ -233,6 +233,15 @@ impl Session {
         });
         output::clamps(&picture.stats);
         Ok(picture)
+    }
+
+    /// A frame for each camera, several in flight; `take` gets each picture.
+    pub fn render_sequence(&mut self, cameras: &[Camera], mut take: impl FnMut(usize, &PictureView<'_>)) -> Result<()> {
+        self.renderer.render_sequence(cameras, &self.settings, Outputs::default(), |nth, picture| {
+            output::clamps(&picture.stats);
+            take(nth, picture);
+            Ok(())
+        })
     }
 
     /// What the first frame took, once it is drawn.
