@@ -42,6 +42,8 @@ struct Report {
     device: String,
     driver: String,
     first_frame: Option<FirstFrame>,
+    /// Of the path.
+    frames: usize,
     throughput: Option<Throughput>,
     rows: Vec<Row>,
     error: Error,
@@ -135,8 +137,10 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
         Ok(())
     })?;
     let throughput = args.throughput.then(|| {
-        let warm_up = (0..WARM_UP_FRAMES).map(|_| camera(0));
-        let cameras: Vec<Camera> = warm_up.chain((0..args.frames).map(camera)).collect();
+        // the path is closed: its end warms up for its beginning, and its beginning goes on while its end is measured
+        let from_end = WARM_UP_FRAMES * (args.frames - 1);
+        let cameras = (0..args.frames + 2 * WARM_UP_FRAMES).map(|nth| camera((nth + from_end) % args.frames));
+        let cameras: Vec<Camera> = cameras.collect();
         during("drawing with several frames in flight", || throughput(&mut session, &cameras))
     });
     let throughput = throughput.transpose()?;
@@ -159,6 +163,7 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
         device: stats.device,
         driver: stats.driver,
         first_frame: session.first_frame(),
+        frames: args.frames,
         throughput,
         rows: gathered.rows(),
         error,
@@ -166,24 +171,28 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
     Ok((report, session.complaints()))
 }
 
-/// Draws pictures with several frames in flight, and measures those after the warm-up. Each is copied, as by a caller
-/// that keeps it.
+/// Draws pictures with several frames in flight, and measures all but [`WARM_UP_FRAMES`] at either end: as many frames
+/// are in flight when the clock starts as when it stops. Each picture is copied, as by a caller that keeps it.
 fn throughput(session: &mut Session, cameras: &[Camera]) -> Result<Throughput> {
-    let (mut start, mut passes_ms, mut kept) = (Instant::now(), 0.0, Vec::new());
+    let measured = WARM_UP_FRAMES..cameras.len() - WARM_UP_FRAMES;
+    let (mut start, mut wall_ms, mut passes_ms, mut kept) = (Instant::now(), 0.0, 0.0, Vec::new());
     session.render_sequence(cameras, |nth, picture| {
         kept.clear();
         kept.extend_from_slice(picture.colour);
-        if nth < WARM_UP_FRAMES {
+        if measured.contains(&nth) {
+            passes_ms += all_passes(&picture.stats);
+            wall_ms = start.elapsed().as_secs_f64() * 1e3;
+        } else if nth < measured.start {
             start = Instant::now();
-        } else {
-            passes_ms += picture.stats.passes.iter().map(|pass| pass.gpu_ms).sum::<f64>();
         }
     })?;
-    let count = (cameras.len() - WARM_UP_FRAMES) as f64;
-    let wall_ms = start.elapsed().as_secs_f64() * 1e3 / count;
-    let passes_ms = passes_ms / count;
+    let [wall_ms, passes_ms] = [wall_ms, passes_ms].map(|ms| ms / measured.len() as f64);
     let wall_over_passes = wall_ms / passes_ms;
     Ok(Throughput { pictures_per_second: 1e3 / wall_ms, wall_ms, passes_ms, wall_over_passes })
+}
+
+fn all_passes(stats: &FrameStats) -> f64 {
+    stats.passes.iter().map(|pass| pass.gpu_ms).sum()
 }
 
 /// One frame, and what it cost.
@@ -196,7 +205,7 @@ fn timed(session: &mut Session, camera: &Camera, gathered: &mut Gathered) -> Res
     for pass in &stats.passes {
         gathered.push(&row(&format!("pass: {}", pass.name)), "ms", pass.gpu_ms);
     }
-    gathered.push(&row("all passes"), "ms", stats.passes.iter().map(|p| p.gpu_ms).sum());
+    gathered.push(&row("all passes"), "ms", all_passes(&stats));
     if !stats.reused {
         if stats.trim_rows > 0 && stats.passes.iter().all(|p| p.name != TRIM_TABLE) {
             gathered.push(&row(&format!("pass: {TRIM_TABLE}")), "ms", 0.0);
@@ -246,6 +255,18 @@ impl Error {
     }
 }
 
+impl Throughput {
+    /// Quantity, unit and value.
+    fn rows(&self) -> [(&'static str, &'static str, f64); 4] {
+        [
+            ("in flight: pictures per second", "1/s", self.pictures_per_second),
+            ("in flight: mean wall clock", "ms", self.wall_ms),
+            ("in flight: mean of all passes", "ms", self.passes_ms),
+            ("in flight: wall clock over passes", "", self.wall_over_passes),
+        ]
+    }
+}
+
 impl Report {
     fn text(&self) -> String {
         let mut table = output::table(["", "unit", "median", "95 %", "largest"]);
@@ -281,17 +302,9 @@ fn csv(path: &Path, reports: &[Report]) -> Result<()> {
     target::write(path, |to| {
         let mut lines = csv::Writer::from_writer(to);
         lines.write_record(["model", "quantity", "unit", "median", "p95", "largest", "frames"])?;
-        for Report { model, rows, first_frame, throughput, error: e, .. } in reports {
-            if let Some(t) = throughput {
-                let frames = rows.iter().map(|row| row.frames).max();
-                for (name, unit, value) in [
-                    ("in flight: pictures per second", "1/s", t.pictures_per_second),
-                    ("in flight: mean wall clock", "ms", t.wall_ms),
-                    ("in flight: mean of all passes", "ms", t.passes_ms),
-                    ("in flight: wall clock over passes", "", t.wall_over_passes),
-                ] {
-                    lines.serialize((model, name, unit, value, "", "", frames))?;
-                }
+        for Report { model, rows, first_frame, throughput, frames, error: e, .. } in reports {
+            for (name, unit, value) in throughput.iter().flat_map(Throughput::rows) {
+                lines.serialize((model, name, unit, value, "", "", frames))?;
             }
             for (name, ms) in
                 first_frame.iter().flat_map(|f| [("first frame", f.wall_ms), ("pipelines", f.pipelines_ms)])

@@ -7,6 +7,7 @@ mod missing;
 mod outputs;
 mod reading;
 mod scenes;
+mod throughput;
 
 use std::process::{Command, Output};
 
