@@ -58,13 +58,7 @@ impl Capacities {
 
     /// What the frame that reported `c` would have needed, with a quarter to spare where a list may take it; the same
     /// when it had enough. `size` is that of the picture.
-    pub(crate) fn grown(
-        self,
-        c: &Counters,
-        counts: Counts,
-        size: (u32, u32),
-        ranges: Ranges,
-    ) -> Result<Self, TooMany> {
+    pub(crate) fn grown(self, c: &Counters, counts: Counts, size: (u32, u32), ranges: Ranges) -> Result<Self, TooMany> {
         let range = ranges.quads;
         Ok(Self {
             tessellation: self.tessellation.grown(c, range)?,

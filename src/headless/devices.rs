@@ -1,7 +1,7 @@
 //! The system's Vulkan devices: their properties, and the requirements that each does not meet.
 
 use super::instance::{Instance, rank};
-use super::{HeadlessError, HeadlessOptions};
+use super::{HeadlessError, HeadlessOptions, loader};
 use crate::gpu::{Named, Quirks, Requirements, text};
 use ash::vk;
 
@@ -60,9 +60,7 @@ pub struct DeviceLimits {
 /// # Errors
 /// [`HeadlessError::NoLoader`], [`HeadlessError::NoDevice`], [`HeadlessError::Gpu`].
 pub fn devices() -> Result<Vec<DeviceSummary>, HeadlessError> {
-    // SAFETY: the system's Vulkan loader is trusted as any shared library of the system is.
-    let entry = unsafe { ash::Entry::load() }.map_err(|source| HeadlessError::NoLoader { source })?;
-    let instance = Instance::new(entry, &HeadlessOptions::default())?;
+    let instance = Instance::new(loader::load()?, &HeadlessOptions::default())?;
     // SAFETY: the instance is alive.
     let all = unsafe { instance.raw.enumerate_physical_devices() }.named("vkEnumeratePhysicalDevices", "instance")?;
     if all.is_empty() {

@@ -12,6 +12,7 @@
 mod devices;
 mod images;
 mod instance;
+mod loader;
 mod messages;
 mod pipelines;
 mod queue;
@@ -141,9 +142,7 @@ impl HeadlessDevice {
     /// As [`new`](Self::new).
     #[doc(hidden)]
     pub fn limited(options: &HeadlessOptions, lower: LowerLimits) -> Result<Self, HeadlessError> {
-        // SAFETY: the system's Vulkan loader is trusted as any shared library of the system is.
-        let entry = unsafe { ash::Entry::load() }.map_err(|source| HeadlessError::NoLoader { source })?;
-        Self::on_entry(entry, options, lower)
+        Self::on_entry(loader::load()?, options, lower)
     }
 
     /// As [`new`](Self::new), on another Vulkan loader than the system's: tests pass a double of the driver.

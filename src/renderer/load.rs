@@ -162,8 +162,10 @@ impl Loaded {
             validate::check_smooth_trims(&data_of, request)?;
         }
         let may_change = request.trim == TrimWay::Auto && data_of.trim_way() == Some(TakenWay::Table);
-        let too_many =
-            Counts::of(&data_of).check(Ranges::of(device).quads).err().filter(|too_many| may_change && too_many.is_of_table());
+        let too_many = Counts::of(&data_of)
+            .check(Ranges::of(device).quads)
+            .err()
+            .filter(|too_many| may_change && too_many.is_of_table());
         if too_many.is_some() {
             data_of = data(request.exact())?;
         }

@@ -7,6 +7,7 @@ use selvedge::gpu::{
 };
 use selvedge::headless::{HeadlessDevice, HeadlessError, HeadlessOptions, Severity};
 use selvedge::internals::scan::Scan;
+use std::collections::BTreeSet;
 
 #[test]
 fn live_objects_are_listed_until_they_go() {
@@ -220,4 +221,21 @@ fn pipelines_are_kept_in_a_file() {
     run();
     assert!(is_whole(), "written anew");
     std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// A process that opens device after device keeps the driver's library loaded.
+#[test]
+fn the_driver_stays_loaded() {
+    let libraries = || {
+        let maps = std::fs::read_to_string("/proc/self/maps").unwrap();
+        let paths = maps.lines().filter_map(|line| line.split_whitespace().nth(5));
+        paths.filter(|path| path.contains(".so")).map(str::to_owned).collect::<BTreeSet<_>>()
+    };
+    let open = || HeadlessDevice::new(&HeadlessOptions::default()).unwrap();
+    drop(open());
+    let device = open();
+    let alive = libraries();
+    drop(device);
+    assert!(alive.iter().any(|path| path.contains("libvulkan")), "{alive:?}");
+    assert_eq!(alive.difference(&libraries()).count(), 0);
 }

@@ -41,6 +41,10 @@ class Least(unittest.TestCase):
         self.assertEqual(least.foreign("trim intercepts", ["trims"]), [])
         self.assertEqual(least.foreign("patches", []), [])
 
+    def test_what_a_pipeline_leaves_out_is_not_foreign(self):
+        self.assertEqual(least.foreign("border mix (no trims)", []), [])
+        self.assertEqual(least.foreign("trim mix (no sun)", []), ["trims"])
+
 
 if __name__ == "__main__":
     unittest.main()
