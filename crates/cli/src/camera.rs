@@ -144,10 +144,7 @@ impl CameraArgs {
         let bounds = bounds(&import.model);
         let whole = self.over(bounds, import)?;
         let view = |&times: &f64| {
-            let mut camera = fitted(closer(&import.model, whole, times), bounds)?;
-            // nothing of interest is nearer than a tenth of the distance
-            let near = (camera.eye - camera.target).length() * 0.1;
-            camera.depth_range.0 = camera.depth_range.0.min(near);
+            let camera = fitted(closer(&import.model, whole, times), bounds)?;
             Ok(View { name: format!("{times} x"), camera })
         };
         times.iter().map(view).collect()

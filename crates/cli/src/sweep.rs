@@ -171,7 +171,6 @@ fn camera(model: &Model, zoom: f64, size: (u32, u32)) -> Camera {
     let whole = Camera::around(bounds, FROM, DVec3::Z, FOV_DEG.to_radians(), size);
     let mut camera = if zoom > 1.0 { closer(model, whole, zoom) } else { whole };
     camera.fit_depth(bounds);
-    camera.depth_range.0 = camera.depth_range.0.min((camera.eye - camera.target).length() * 0.1);
     camera
 }
 

@@ -199,13 +199,16 @@ impl Camera {
         camera
     }
 
-    /// Sets the depth range to the part of `bounds` in front of the eye, with a margin.
+    /// Sets the depth range to the part of `bounds` in front of the eye, with a margin. For an eye beside or within the
+    /// bounds it begins at a hundred-thousandth of its end, or at a tenth of the distance to the target if that is less.
     pub fn fit_depth(&mut self, bounds: Bounds) {
         let radius = (bounds.diagonal() * 0.5).max(1e-9);
         let (_, _, forward) = self.axes();
         let depth = if bounds.is_empty() { radius } else { (bounds.centre() - self.eye).dot(forward) };
         let far = (depth + radius * 1.01).max(radius * 1e-3);
-        let near = (depth - radius * 1.01).max(far * 1e-5);
+        let held = self.eye.distance(self.target) * 0.1;
+        let least = if held > 0.0 { held.min(far * 1e-5) } else { far * 1e-5 };
+        let near = (depth - radius * 1.01).max(least);
         self.depth_range = (near, far.max(near * 2.0));
     }
 
@@ -363,6 +366,18 @@ mod tests {
             let (origin, direction) = camera.ray(pixel);
             let beside = (point - origin).cross(direction).length();
             assert!(beside < 1e-12 * point.distance(origin), "{beside}");
+        }
+    }
+
+    #[test]
+    fn what_a_view_from_very_near_looks_at_is_in_its_depth_range() {
+        let bounds = Bounds { min: DVec3::splat(-50.0), max: DVec3::splat(50.0) };
+        for distance in [1e-6, 1e-3, 1.0, 40.0, 400.0] {
+            let target = DVec3::new(0.0, 0.0, 50.0);
+            let mut camera = Camera { target, eye: target + DVec3::Z * distance, up: DVec3::Y, ..off_centre() };
+            camera.fit_depth(bounds);
+            let (near, far) = camera.depth_range;
+            assert!(near > 0.0 && near < distance && far > distance + 100.0, "{distance}: {near} to {far}");
         }
     }
 
