@@ -47,6 +47,7 @@ pub use crate::scene::{EditError, Hit, InstanceError, UndrawnEdges, UndrawnSolid
 use ash::vk;
 pub use error::RenderError;
 use history::History;
+use pick::SlotPick;
 pub use report::FrameReport;
 use slot::Slot;
 use source::Source;
@@ -341,6 +342,10 @@ impl Renderer {
         let finished = &mut self.slots[slot];
         let (had, drawn) = (finished.capacities.take(), finished.size);
         let report = had.map(|_| finished.read_counters());
+        // the frame that lacked room is recorded again, and with it the copy of its pixel
+        if report.is_some_and(|c| c.failed != 0) {
+            self.pick = self.pick.or_else(|| finished.pick.as_mut().and_then(SlotPick::take_back));
+        }
         finished.retired.clear();
         finished.recorded = false;
         let Some(loaded) = &mut self.loaded else { return Ok(()) };

@@ -270,6 +270,9 @@ impl HeadlessRenderer {
             self.noting(|this| {
                 let mut renderer = renderer(this.device.device(), formats)?;
                 renderer.upload_source(source, &|_| ())?;
+                if let Some((x, y)) = this.renderer.take_pick() {
+                    renderer.pick(x, y);
+                }
                 *this.renderer = renderer;
                 this.formats = formats;
                 Ok(())

@@ -21,7 +21,7 @@ pub(super) struct SlotPick {
 }
 
 impl SlotPick {
-    /// The pixel of a frame that never reached the GPU.
+    /// The pixel of a frame that never reached the GPU, or that is recorded again.
     pub(super) fn take_back(&mut self) -> Option<(u32, u32)> {
         self.asked.take().map(|asked| asked.at)
     }
@@ -39,7 +39,8 @@ struct Asked {
 
 impl Renderer {
     /// Lets the next frame recorded read back what it shows at a pixel: column and row, from the upper left corner. Once
-    /// the GPU has finished that frame, [`picked`](Self::picked) has the hit. Costs 16 bytes of copies, whatever the
+    /// the GPU has finished that frame, [`picked`](Self::picked) has the hit. If the frame lacked room, the one recorded
+    /// again into its slot reads it back. Costs 16 bytes of copies, whatever the
     /// model; a still view is not drawn anew for it. The last call before the frame counts.
     pub fn pick(&mut self, x: u32, y: u32) {
         self.pick = Some((x, y));

@@ -126,8 +126,8 @@ fn is_told(error: &GpuError, fault: Fault) -> bool {
     told == fault.result && error.to_string().starts_with(&format!("{} failed for `", fault.call))
 }
 
-/// Each call of create, upload, frame, read back, edit and a sequence of frames fails in turn. Nothing crashes, no handle of the device
-/// leaks, and the error names the call.
+/// Each call of create, upload, frame, read back, edit and a sequence of frames fails in turn. Nothing crashes, no
+/// handle of the device leaks, and the error names the call.
 #[test]
 fn each_call_fails_once() {
     let script = Script::new("calls");

@@ -99,7 +99,8 @@ fn five_million_patches() {
     [renderer, alone].into_iter().for_each(assert_silent);
 }
 
-/// More scan lines than 65,535 workgroups of 128 threads hold, in stacked plates of which only the last is visible.
+/// The picture has more scan lines than 65,535 workgroups have threads. The plates are stacked, and only the last is
+/// visible.
 #[test]
 #[ignore = "minutes, and a gigabyte"]
 fn nine_million_scan_lines() {

@@ -1,12 +1,13 @@
 //! What a frame shows at a pixel, against exact rays: the same face, and the same point in double precision.
 
 use crate::hidden::crowd;
+use crate::room::plates;
 use crate::shapes::{self, operands, solids};
 use crate::support::{assert_silent, orthographic, perspective, watched, watched_with};
 use glam::{DAffine3, DVec2, DVec3};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Model};
-use selvedge::picture::{EdgeSettings, FrameSettings, Outputs, SceneSettings};
+use selvedge::picture::{EdgeSettings, FrameSettings, Outputs, SceneSettings, TrimWay};
 use selvedge_check::Tracer;
 
 const SIZE: (u32, u32) = (60, 48);
@@ -183,4 +184,20 @@ fn a_hit_has_the_edge_whose_line_is_there() {
         assert!(same > 30 && other * 8 < same && away > 10, "{same} the same, {other} others, {away} away");
         assert_silent(renderer);
     }
+}
+
+/// The first frame has more scan lines than its table and is drawn again, by a renderer made for its images.
+#[test]
+fn a_frame_that_is_drawn_again_picks_again() {
+    let (model, camera) = plates();
+    let settings = SceneSettings { trim: TrimWay::Table, ..SceneSettings::default() };
+    let frame = FrameSettings { tolerance_px: 0.125, ..FrameSettings::default() };
+    let [mut before, mut renderer] = [0; 2].map(|_| watched_with(&model, settings));
+    let face = before.render(&camera, &frame, ALL).unwrap().face;
+    let at = face.len() / 2 + face[face.len() / 2..].iter().position(|face| *face != 0).unwrap();
+    renderer.pick(at as u32 % camera.size.0, at as u32 / camera.size.0);
+    let picture = renderer.render(&camera, &frame, ALL).unwrap();
+    assert!(picture.stats.retries > 0);
+    assert_eq!(renderer.picked().map_or(0, |hit| hit.id), face[at]);
+    [before, renderer].into_iter().for_each(assert_silent);
 }

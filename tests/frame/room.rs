@@ -48,14 +48,19 @@ fn check(model: &Model, camera: &Camera, tolerance_px: f64) -> Picture {
     grown
 }
 
+/// 64 plates side by side, and a view of all of them: it has more scan lines than a first table at 0.125 px.
+pub fn plates() -> (Model, Camera) {
+    let mut model = shapes::plate();
+    let place = |i: u32| DVec3::new(f64::from(i % 8), f64::from(i / 8), 0.0) * 7.0;
+    model.instances = (0..64).map(|i| shapes::placed(DAffine3::from_translation(place(i)), None)).collect();
+    let camera = Camera::around(model.control_bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, (640, 480));
+    (model, camera)
+}
+
 /// 64 plates with 32 scan lines a pixel: some 10^5 rows and twice as many intercepts.
 #[test]
 fn more_rows_than_the_first_table_holds() {
-    let mut model = shapes::plate();
-    let place = |i: u32| DVec3::new(f64::from(i % 8), f64::from(i / 8), 0.0) * 7.0;
-    let placed = |i| shapes::placed(DAffine3::from_translation(place(i)), None);
-    model.instances = (0..64).map(placed).collect();
-    let camera = Camera::around(model.control_bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, (640, 480));
+    let (model, camera) = plates();
     let picture = check(&model, &camera, 0.125);
     assert!(picture.stats.trim_rows > 65_536, "{:?}", picture.stats);
 }

@@ -1,6 +1,7 @@
 //! Several frames in flight: the pictures of one frame after another, bit for bit.
 
 use crate::hidden::crowd;
+use crate::room::plates;
 use crate::shapes;
 use crate::support::{assert_identical, assert_silent, perspective, watched, watched_with};
 use crate::watched::limited;
@@ -126,25 +127,16 @@ fn no_picture_at_all() {
     assert_silent(renderer);
 }
 
-/// 64 plates, of which a view from so far fills a part of the picture.
-fn plates() -> (Model, impl Fn(f64) -> Camera) {
-    let mut model = shapes::plate();
-    let place = |i: u32| DVec3::new(f64::from(i % 8), f64::from(i / 8), 0.0) * 7.0;
-    model.instances = (0..64).map(|i| shapes::placed(DAffine3::from_translation(place(i)), None)).collect();
-    let all = Camera::around(model.control_bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, (640, 480));
-    let from = move |times: f64| Camera {
-        eye: all.target + times * (all.eye - all.target),
-        depth_range: (all.depth_range.0, times * all.depth_range.1),
-        ..all
-    };
-    (model, from)
-}
-
 /// The fourth view has more scan lines than the first table holds, as have those in flight with it. Two of them are the
 /// same view, so one reuses a table that lacks rows.
 #[test]
 fn a_frame_that_lacks_room_is_drawn_again_in_its_turn() {
-    let (model, from) = plates();
+    let (model, all) = plates();
+    let from = |times: f64| Camera {
+        eye: all.target + times * (all.eye - all.target),
+        depth_range: (all.depth_range.0, times * all.depth_range.1),
+        ..all
+    };
     let settings = SceneSettings { trim: TrimWay::Table, ..SceneSettings::default() };
     let frame = FrameSettings { tolerance_px: 0.125, ..FrameSettings::default() };
     let cameras = [12.0, 11.0, 10.0, 1.0, 1.0, 1.01, 10.0, 11.0].map(from);
@@ -159,8 +151,8 @@ fn a_frame_that_lacks_room_is_drawn_again_in_its_turn() {
     [in_flight, one_by_one].into_iter().for_each(assert_silent);
 }
 
-/// Near views are of what was cut out of the model for them: the scene changes while frames are in flight, and each
-/// picture tells of its own.
+/// The scene changes while frames are in flight, because near views show what was cut out of the model for them. The
+/// statistics of each picture are those of its own scene.
 #[test]
 fn near_and_far_views_in_turn() {
     let model = shapes::wave();

@@ -297,7 +297,7 @@ pub unsafe extern "C" fn selvedge_host_new(
     })
 }
 
-/// The images that a host asks for.
+/// Names the images that a host draws into.
 fn outputs(bits: u32) -> Result<Outputs, Failure> {
     let outputs = selvedge_session::Image::outputs(crate::picture::images(bits)?);
     if outputs.thickness {
