@@ -1,7 +1,6 @@
 //! What a scene needs of each stage: its passes, made with the scene; and with them its buffers, made for pictures of one
 //! size.
 
-use super::antialiasing::border_mix::BorderMix;
 use super::antialiasing::coverage::Coverage;
 use super::antialiasing::samples::{self, MoreSamples};
 use super::antialiasing::smooth_borders::{self, SmoothBorders};
@@ -41,7 +40,7 @@ pub(crate) struct Passes {
     linear: Option<Arc<linear::Passes>>,
     contact: Option<Arc<contact::Passes>>,
     smooth_trims: Option<Arc<Coverage>>,
-    smooth_borders: Option<Arc<BorderMix>>,
+    smooth_borders: Option<Arc<smooth_borders::Passes>>,
     edges: Option<Arc<edges::Passes>>,
 }
 
@@ -66,7 +65,7 @@ impl Passes {
         let over = || {
             let transparency = transparency::Passes::new(device, data, formats)?;
             let smooth_trims = smooth_trims::pass(device, data, formats)?;
-            let smooth_borders = smooth_borders::pass(device, data, test)?;
+            let smooth_borders = smooth_borders::Passes::new(device, data, test)?;
             Ok::<_, GpuError>((transparency, smooth_trims, smooth_borders, edges::Passes::new(device, data, formats)?))
         };
         let ((gaps, over), (solids, (patches, pictures))) = rayon::join(

@@ -78,10 +78,10 @@ pub enum Smooth {
     /// [`TrimWay::Exact`](super::TrimWay::Exact) then. What does not go with it is
     /// [`RenderError::SmoothTrims`](crate::renderer::RenderError::SmoothTrims).
     Trims,
-    /// Those of faces, silhouettes and folds among them, by sixteen points of each pixel at a border: the surfaces that
-    /// the pixels around see are asked for, exactly. A mesh or Boolean solid is smooth where a face ends before it, and
-    /// rough by itself. Pictures of several samples, and those with something to see through or to mark, stay as they
-    /// are.
+    /// Those of faces, meshes and Boolean solids, silhouettes, folds and creases among them, by sixteen points of each
+    /// pixel at a border. The faces and meshes that the pixels around see are asked for, and the solids as a whole, exactly.
+    /// Rough are solids that are cut from meshes or spline parts, but where a face ends before them, and what is seen
+    /// through: behind it, opaque things are smooth. Pictures of several samples stay as they are.
     Borders,
 }
 

@@ -29,6 +29,7 @@ mod instance;
 mod link;
 mod mesh;
 mod mixed;
+mod neighbours;
 mod parts;
 mod picking;
 mod request;

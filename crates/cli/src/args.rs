@@ -98,7 +98,7 @@ pub struct EdgeArgs {
     /// Samples of each pixel's colour, 1, 4 or 8: smooth edges, at about as many times the cost
     #[arg(long, value_name = "N", default_value = "1")]
     pub samples: Samples,
-    /// Borders that are smooth in pictures of one sample: those of all faces (borders, in pictures of one sample), those of
+    /// Borders that are smooth in pictures of one sample: all (borders, in pictures of one sample), those of
     /// trimmed faces by the area that they cover of a pixel (trims; trims exactly), or none
     #[arg(long, value_name = "none|trims|borders")]
     smooth: Option<Smooth>,
