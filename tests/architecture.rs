@@ -377,3 +377,25 @@ fn an_ignored_test_is_found() {
     let text = "#[test]\n    #[ignore = \"minutes\"]\n    fn long() {}\n#[test]\nfn short() {}\n#[ignore]\n#[test]\nfn other() {}\n";
     assert_eq!(ignored(text), ["long", "other"]);
 }
+
+/// Paths of files between backticks, without the `::function` behind some of them.
+fn paths_of(text: &str) -> Vec<&str> {
+    let kinds = ["rs", "glsl", "comp", "vert", "tesc", "tese", "frag", "step"];
+    let spans = text.split('`').skip(1).step_by(2).map(|span| span.split("::").next().unwrap_or_default());
+    spans.filter(|path| path.rsplit_once('.').is_some_and(|(_, kind)| kinds.contains(&kind))).collect()
+}
+
+#[test]
+fn files_of_the_walkthrough_exist() {
+    let text = fs::read_to_string(root().join("docs/walkthrough.md")).unwrap();
+    let paths = paths_of(&text);
+    assert!(paths.len() > 30, "only {} paths were found", paths.len());
+    let missing: Vec<_> = paths.into_iter().filter(|path| !root().join(path).is_file()).collect();
+    assert_eq!(missing, [""; 0], "paths begin at the repository's root");
+}
+
+#[test]
+fn a_path_is_found() {
+    let text = "`Face` (`src/a.rs`), `b.rs::of` and `model::Face { u, … }`; c.rs\n";
+    assert_eq!(paths_of(text), ["src/a.rs", "b.rs"]);
+}
