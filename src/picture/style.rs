@@ -1,6 +1,6 @@
-//! What surfaces look like.
+//! The look of surfaces.
 
-/// How surfaces are shown. Images beside the colour are the same in every style.
+/// The look of surfaces. Images beside the colour are the same in every style.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
@@ -10,12 +10,12 @@ pub enum Style {
     /// In their colours, in a studio's light or the sun's.
     #[default]
     Shaded = 0,
-    /// In one colour, without highlights: shape alone.
+    /// In one colour, without highlights: only the shape.
     Clay = 1,
-    /// Normals as colours: right red, up green, towards the eye blue.
+    /// Normals as colours: right is red, up is green, towards the eye is blue.
     Normals = 2,
-    /// The stripes of a room around the camera's vertical, reflected once. Where normals jump the stripes jump; where
-    /// curvatures jump they have corners.
+    /// The stripes of a room around the camera's vertical, reflected once. At a jump of the normal the stripes jump; at
+    /// a jump of the curvature they have corners.
     Zebra = 3,
 }
 
@@ -23,7 +23,7 @@ impl Style {
     /// Every style.
     pub const ALL: &'static [Self] = &[Self::Shaded, Self::Clay, Self::Normals, Self::Zebra];
 
-    /// As in command lines and tables.
+    /// The name in command lines and tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Shaded => "shaded",
@@ -42,7 +42,7 @@ impl std::str::FromStr for Style {
     }
 }
 
-/// No style is called so.
+/// A name that no style has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no style is called `{0}`; there are: {names}", names = Style::ALL.iter().map(|s| s.name()).collect::<Vec<_>>().join(", "))]
 pub struct UnknownStyle(String);

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //!        ☀  rays are parallel: one picture for all frames    right ▶
-//!        │                                          ┌────┬────┬────┐ up ▲   tiles: each has the leaves whose boxes reach
-//!   ┌────┴────┐  boxes of leaves ──────────────────▶│ A  │ AB │ B  │        it, with their Blist; triangles of operands
-//!   ▼         ▼  triangles, facets                  └────┴────┴────┘        without equations; facets of placed parts
+//!        │                                          ┌────┬────┬────┐ up ▲   tiles; each lists the leaves whose boxes
+//!   ┌────┴────┐  boxes of leaves ──────────────────▶│ A  │ AB │ B  │        reach it, and their Blist; triangles of
+//!   ▼         ▼  triangles, facets                  └────┴────┴────┘        operands without equations; facets of parts
 //! ```
 //!
 //! For the eye, passes `solid_rects` to `solid_fold` make such lists in each frame. For the sun they are made once, on

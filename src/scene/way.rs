@@ -1,8 +1,8 @@
 //! Chooses the way to trim before any array is made.
 //!
 //! ```text
-//!   rows of a placed face  =  bins (strips + length)        length: of a curve along v, in rows, if the scene is as wide
-//!                                                           as a picture of PICTURE_PX
+//!   rows of a placed face  =  bins (strips + length)        length: of a curve along v, in rows, if the scene is
+//!                                                           as wide as a picture of PICTURE_PX
 //!   Auto:  rows of all faces <= MOST_ROWS  and  points <= MOST_POINTS  ──▶ table        else ──▶ exact
 //! ```
 //!
