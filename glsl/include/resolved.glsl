@@ -1,12 +1,12 @@
-// What the resolve pass writes of a pixel, whatever is seen there. Needs `frame`, scene.glsl, view.glsl.
+// The outputs of pass `resolve`, for every kind of surface. Needs `frame`, scene.glsl, view.glsl.
 #ifndef RESOLVED_GLSL
 #define RESOLVED_GLSL
 
 #include "eye_ray.glsl"
 #include "shade.glsl"
 
-// Of points that lie on no surface of a Boolean solid, as far as is known.
-// With the bit of OWN_PLANE, too: such a point is known as that of a triangle is.
+// The surface number of points on no known surface of a Boolean solid. It has the bit of OWN_PLANE, like a triangle
+// without a shared plane.
 const uint NO_SURFACE = 0xffffffffu;
 
 #ifdef SUN_BINDING
@@ -15,7 +15,7 @@ const uint NO_SURFACE = 0xffffffffu;
 
 layout(constant_id = 3) const bool HAS_AOVS = false;
 
-// What pass `solid_layers` looks through to: the colour is linear and has the depth beside it.
+// The image behind layers of pass `solid_layers`: linear colour, with the depth beside it.
 layout(constant_id = 18) const bool BEHIND = false;
 
 layout(location = 0) out vec4 out_colour;
@@ -24,14 +24,14 @@ layout(location = 2) out uint out_face;
 layout(location = 3) out vec2 out_uv;
 layout(location = 4) out vec4 out_normal;
 
-// The light of a point, and whether the sun is part of it.
+// The light of a point, and whether the sun contributes.
 struct Lit {
     vec3 light;
     float sun;
 };
 
-// Of a point at a depth of the pixel's ray, with its unit outward normal `n`, in model space; `surface` is the number
-// of the Boolean solids' surface that it lies on, or NO_SURFACE.
+// The light of a point at a depth of the pixel's ray, with unit outward normal `n` in model space; `surface` is the
+// number of the Boolean solids' surface that contains it, or NO_SURFACE.
 Lit lit_at(vec3 colour, vec3 n, bool two_sided, Ray ray, float depth, uint surface) {
 #ifdef SUN_BINDING
     vec3 seen = two_sided && dot(n, ray.d) > 0.0 ? -n : n;
@@ -42,7 +42,7 @@ Lit lit_at(vec3 colour, vec3 n, bool two_sided, Ray ray, float depth, uint surfa
 #endif
 }
 
-// A point of a surface, as for `lit_at`. `own` is the surface's colour; the instance's lies over it.
+// Writes a point of a surface, with arguments as in `lit_at`. `own` is the surface's colour; the instance's is over it.
 void write_surface(
     uint own, Instance instance, vec3 n, bool solid, float depth, uint id, vec2 uv, uint surface
 ) {

@@ -1,5 +1,5 @@
-// The exact surface under a pixel that sees a patch, then light. Needs placed.glsl, patch.glsl,
-// view.glsl and resolved.glsl.
+// The exact surface under a pixel that shows a patch, then light. Needs placed.glsl, patch.glsl, view.glsl and
+// resolved.glsl.
 #ifndef RESOLVED_PATCH_GLSL
 #define RESOLVED_PATCH_GLSL
 
@@ -7,8 +7,7 @@
 #include "patch_normal.glsl"
 #include "visible.glsl"
 
-// `seen` are item + 1 and packed (u, v). The other side of an operand's face may be seen, and is a front
-// of the solid.
+// `seen` is item + 1 and packed (u, v). An operand's face may show its back, which is then a front of the solid.
 void write_patch(uvec2 seen, bool operand) {
     uint item = seen_item(seen.x);
     FaceInstance fi = face_instance_at(face_instance_of(item));
