@@ -1,7 +1,7 @@
 // Whether a patch is hidden by the surfaces drawn so far. Twin: src/twin/occlusion.rs, which has the derivation.
 //
 //   ┌────┬────┬────┐   a patch is divided into cells of about CELL_PX. Every triangle of a cell is within `off` of
-//   │    │    │    │   the bilinear surface through its corners. So its pixels lie within those of the corners, and some
+//   │    │    │    │   the bilinear surface through its corners. So its pixels lie within the corners' pixels, and some
 //   ├────┼────┼────┤   around them, and its depth is at most a little nearer than the corners'. If every square there
 //   │    │    │    │   is nearer, the cell does not change the picture
 //   └────┴────┴────┘

@@ -17,7 +17,7 @@ Outline outline_of(Candidate c, vec2 pixel);
 
 // The reason why the pixel is a gap candidate, and the pixel's surroundings.
 struct Situation {
-    bool border;       // a border lies before the visible surface, or the eye is within a solid; else a back face is visible
+    bool border;       // a border is before the visible surface, or the eye in a solid; else a back face is visible
     bool isolated;     // no border is near: the pixel shows background between patches on both sides
     bool empty;        // the pixel shows no patch
     bool empty_beside; // a neighbour shows the background
