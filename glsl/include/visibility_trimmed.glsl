@@ -4,11 +4,11 @@
 // them would show a surface behind. Such pixels are marked as gap candidates, and pass `gap_fill` decides them:
 //
 // * A solid's face that shows its back, if the whole circle of gap_radius_px around the pixel's centre is inside its
-// trims: the pixel shows the solid's inside through the gap. The back wins over a touching face of another solid. * The
-// skirt around a solid's face that shows its back, on either side of the border: faces behind then leave no gap of
-// their own, and the far end of a hole, drawn narrower than it is, does not hide the hole's wall. * The skirt around
-// each face of an open shell. Within the border the face is drawn, and marked: the face before it may end in a
-// silhouette, which is drawn narrower than it is. An open shell has no known front.
+//   trims: the pixel shows the solid's inside through the gap. The back wins over a touching face of another solid.
+// * The skirt around a solid's face that shows its back, on either side of the border: faces behind then leave no gap
+//   of their own, and the far end of a hole, drawn narrower than it is, does not hide the hole's wall.
+// * The skirt around each face of an open shell. Within the border the face is drawn, and marked: the face before it
+//   may end in a silhouette, which is drawn narrower than it is. An open shell has no known front.
 //
 // Skirts are not drawn, because a surface behind them may be correct. Each pixel stores only the nearest depth of its
 // skirts.
