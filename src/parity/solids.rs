@@ -1,5 +1,5 @@
-//! Parity of the passes `solid_rects` and `solid_fold`, both exact, and the fold against the trees that
-//! say what a solid is.
+//! Parity of the passes `solid_rects` and `solid_fold`, both exact; and the fold compared with evaluation of the
+//! solids' trees.
 
 use super::Random;
 use super::harness::{Gpu, Mismatch, same};
