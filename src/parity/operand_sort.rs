@@ -144,20 +144,20 @@ fn one_from(near: f32, fragments: &[Fragment]) -> (Vec<f32>, u32, u32) {
 
 /// The rules for rays that pass between two faces.
 #[test]
-fn gaps_are_mended_by_rings_alone() {
+fn gaps_are_closed_by_skirts_alone() {
     let (enter, leave) = (|t| fragment(0, t), |t| fragment(FRAGMENT_LEAVES, t));
-    let (ring_in, ring_out) = (|t| fragment(FRAGMENT_SKIRT, t), |t| fragment(FRAGMENT_SKIRT | FRAGMENT_LEAVES, t));
+    let (skirt_in, skirt_out) = (|t| fragment(FRAGMENT_SKIRT, t), |t| fragment(FRAGMENT_SKIRT | FRAGMENT_LEAVES, t));
     // skirts beside a complete ray are ignored
-    assert_eq!(one(&[ring_in(1.0), enter(2.0), leave(5.0), ring_out(6.0)]), (vec![2.0, 5.0], 0, 0));
-    assert_eq!(one(&[leave(5.0), ring_in(2.0)]), (vec![2.0, 5.0], 1, 0));
-    assert_eq!(one(&[enter(2.0), ring_out(4.0)]), (vec![2.0, 4.0], 1, 0));
-    assert_eq!(one(&[enter(1.0), ring_out(2.0), enter(3.0), leave(4.0)]), (vec![1.0, 2.0, 3.0, 4.0], 1, 0));
+    assert_eq!(one(&[skirt_in(1.0), enter(2.0), leave(5.0), skirt_out(6.0)]), (vec![2.0, 5.0], 0, 0));
+    assert_eq!(one(&[leave(5.0), skirt_in(2.0)]), (vec![2.0, 5.0], 1, 0));
+    assert_eq!(one(&[enter(2.0), skirt_out(4.0)]), (vec![2.0, 4.0], 1, 0));
+    assert_eq!(one(&[enter(1.0), skirt_out(2.0), enter(3.0), leave(4.0)]), (vec![1.0, 2.0, 3.0, 4.0], 1, 0));
     // without a skirt: an entry stays, an exit is removed
     assert_eq!(one(&[enter(2.0)]), (vec![2.0], 0, 1));
     assert_eq!(one(&[leave(2.0), enter(3.0), leave(4.0)]), (vec![3.0, 4.0], 0, 1));
     // two faces that overlap at their border
     assert_eq!(one(&[enter(2.0), enter(2.1), leave(4.0)]), (vec![2.0, 4.0], 0, 0));
-    assert_eq!(one(&[ring_in(2.0), ring_out(3.0)]), (vec![], 0, 0));
+    assert_eq!(one(&[skirt_in(2.0), skirt_out(3.0)]), (vec![], 0, 0));
     // near a silhouette, two are interchanged
     assert_eq!(one(&[leave(1.0), enter(1.01), enter(3.0), leave(4.0)]), (vec![1.0, 1.01, 3.0, 4.0], 0, 0));
     // also if the ray may begin within: with as many exits as entries, it does not

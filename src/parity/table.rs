@@ -13,7 +13,7 @@ use glam::DVec2;
 /// The face instance of the sheet and its strips, in the first instance of the model.
 const SHEET: usize = 2;
 
-/// The table that a chain ends with; `flips` are its intercepts after sorting, as floats.
+/// The table at the end of a chain; `flips` are its intercepts after sorting, as floats.
 fn table<'a>(case: &Case, chain: &'a Chain, flips: &'a [f32]) -> Table<'a> {
     Table {
         strips: &chain.strips,
@@ -25,7 +25,7 @@ fn table<'a>(case: &Case, chain: &'a Chain, flips: &'a [f32]) -> Table<'a> {
     }
 }
 
-/// Half the sides of the boxes that are asked about.
+/// Half the sides of the tested boxes.
 const AROUND: [f32; 2] = [0.004, 0.002];
 
 /// The box around a point.
@@ -41,7 +41,7 @@ fn points(count: usize) -> Vec<[f32; 2]> {
     border.into_iter().chain(inner).collect()
 }
 
-/// The rows of the strip that a point is in; `None` where nobody sees its bin.
+/// The rows of the strip that contains a point; `None` if its bin is not visible.
 fn rows_at(chain: &Chain, first_bin: u32, face: &Face, [u, v]: [f32; 2]) -> Option<StripRows> {
     let strip = first_bin + (v * face.strip_count() as f32) as u32 * face.bin_count();
     let (rows, bin) = (chain.strips[strip as usize], bin_of(u, face.bin_count()));

@@ -1,4 +1,4 @@
-//! What pictures look like: styles, and what is laid under them.
+//! The look of pictures: styles and backgrounds.
 
 use crate::layers::in_glass;
 use crate::shapes;
@@ -26,7 +26,7 @@ fn facing(picture: &Picture, camera: &Camera, pixel: usize) -> (DVec3, DVec3) {
     (view(n), view(ray))
 }
 
-/// The colour of a style in linear light; `None` where a stripe ends within the rounding of normals.
+/// The colour of a style in linear light; `None` if a stripe ends within the rounding of normals.
 fn expected(style: Style, v: DVec3, ray: DVec3, n: DVec3, camera: &Camera) -> Option<DVec3> {
     match style {
         Style::Normals => Some((0.5 + 0.5 * v).map(srgb::decoded)),
@@ -47,7 +47,7 @@ fn expected(style: Style, v: DVec3, ray: DVec3, n: DVec3, camera: &Camera) -> Op
     }
 }
 
-/// Each colour is that of the style's formula at the normal of the picture's own image; no other image changes.
+/// Each colour is the style's formula at the normal of the picture's own image; no other image changes.
 #[test]
 fn a_style_changes_colours_alone() {
     let model = shapes::torus();
@@ -70,7 +70,7 @@ fn a_style_changes_colours_alone() {
             let Some(light) = expected(style, v, ray, n, &camera) else { continue };
             let drawn = picture.colour[pixel];
             for (light, drawn) in light.to_array().into_iter().zip(drawn) {
-                // rounding to eight bits, and a step for that of single precision
+                // rounding to eight bits, and one step for single precision
                 let off = (255.0 * srgb::encoded(light) - f64::from(drawn)).abs();
                 assert!(off <= 1.5, "{style:?}, pixel {pixel}: {drawn} is off by {off}");
             }
@@ -81,7 +81,7 @@ fn a_style_changes_colours_alone() {
     assert_silent(renderer);
 }
 
-/// A picture on nothing, laid over white in linear light, is the picture on white.
+/// A picture with an empty background, blended over white in linear light, equals the picture on white.
 #[test]
 fn what_is_drawn_on_nothing_can_be_laid_over_anything() {
     let samples = |samples| SceneSettings { samples, ..SceneSettings::default() };
