@@ -8,8 +8,9 @@
 //
 // Source and proof of the bound: edges::flatten of the geometry crate, which does the same in f64. Twin:
 // src/twin/edges.rs. `push.margin_px` is the distance beyond the picture to which lines are drawn. Needs scene.glsl,
-// view.glsl, edges.glsl, `frame`, `samplerBuffer edge_points`, and `void put_chords(uint n, uint chords, float a, float
-// b)`, which receives that many equal steps from a to b of `net`, of degree n.
+// view.glsl, edges.glsl, `frame`, `samplerBuffer edge_points`, and
+// `void put_chords(uint n, uint chords, float a, float b)`, which receives that many equal steps from a to b of `net`,
+// of degree n.
 #ifndef EDGE_DIVIDE_GLSL
 #define EDGE_DIVIDE_GLSL
 

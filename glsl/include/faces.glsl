@@ -1,5 +1,5 @@
-// Faces and placed faces, composed of texels; unused members are not fetched. Needs scene.glsl and `usamplerBuffer
-// face_instances`, two texels a placed face, and `faces`, four a face.
+// Faces and placed faces, composed of texels; unused members are not fetched. Needs scene.glsl and
+// `usamplerBuffer face_instances`, two texels a placed face, and `faces`, four a face.
 #ifndef FACES_GLSL
 #define FACES_GLSL
 

@@ -1,5 +1,5 @@
-// The intersection of the ray through a pixel with the plane of a triangle. Needs view.glsl and buffers `uint
-// triangles[]`, `vec3 positions[]`.
+// The intersection of the ray through a pixel with the plane of a triangle. Needs view.glsl and buffers
+// `uint triangles[]`, `vec3 positions[]`.
 //
 //   a + s (b - a) + t (c - a),   s, t >= 0,   s + t <= 1
 //

@@ -1,5 +1,5 @@
-// The part of a ray inside a leaf with equations. Needs solids.glsl, `usamplerBuffer leaf_surfaces`, `samplerBuffer
-// surfaces`, `samplerBuffer surface_places`.
+// The part of a ray inside a leaf with equations. Needs solids.glsl, `usamplerBuffer leaf_surfaces`,
+// `samplerBuffer surfaces`, `samplerBuffer surface_places`.
 //
 //   sides other than planes: spans, one after another ──▶ planes: the latest of their entries, the earliest of their
 //                                                                   exits

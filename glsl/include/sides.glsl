@@ -1,6 +1,7 @@
 // The owner and the orientation of a Boolean solid's side: a side of a leaf with equations, or a triangle of an
-// operand. Needs scene.glsl, solids.glsl, shells.glsl, view.glsl, eye_ray.glsl, `frame`, `usamplerBuffer
-// leaf_surfaces`, and buffers `Instance instances[]`, `OperandMesh operand_meshes[]`, and those of triangle_depth.glsl.
+// operand. Needs scene.glsl, solids.glsl, shells.glsl, view.glsl, eye_ray.glsl, `frame`,
+// `usamplerBuffer leaf_surfaces`, and buffers `Instance instances[]`, `OperandMesh operand_meshes[]`, and those of
+// triangle_depth.glsl.
 #ifndef SIDES_GLSL
 #define SIDES_GLSL
 

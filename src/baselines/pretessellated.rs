@@ -238,8 +238,8 @@ fn from_line(p: DVec3, a: DVec3, b: DVec3) -> f64 {
     p.distance(a + along * t)
 }
 
-/// A grid in each patch such that triangles between its points stay within the deflection: `|S - triangle| <= (|S_uu|
-/// h_u² + 2 |S_uv| h_u h_v + |S_vv| h_v²) / 8`.
+/// A grid in each patch such that triangles between its points stay within the deflection:
+/// `|S - triangle| <= (|S_uu| h_u² + 2 |S_uv| h_u h_v + |S_vv| h_v²) / 8`.
 fn inner(grid: &PatchGrid, deflection: f64) -> Vec<DVec2> {
     let mut points = Vec::new();
     for p in &grid.patches {

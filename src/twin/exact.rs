@@ -195,8 +195,8 @@ impl ExactArc {
 
     /// Parameter at which a coordinate, relative to the lower end, is `x`; 0 or 1 beyond the ends.
     ///
-    /// With `r = t / (1 - t)`, corner `c`, its weight `w` and chord `d`, the coordinate is `(2 w r c + r² d) / (1 + 2 w
-    /// r + r²)`: `r` is the only positive root of `(d - x) r² + 2 w (c - x) r - x`.
+    /// With `r = t / (1 - t)`, corner `c`, its weight `w` and chord `d`, the coordinate is
+    /// `(2 w r c + r² d) / (1 + 2 w r + r²)`: `r` is the only positive root of `(d - x) r² + 2 w (c - x) r - x`.
     pub(super) fn reached(&self, axis: usize, x: f32) -> f32 {
         let chord = self.chord()[axis];
         let way = if chord < 0.0 { -1.0 } else { 1.0 };

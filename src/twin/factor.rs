@@ -82,11 +82,11 @@
 pub use crate::abi::constants::factor::SPARE;
 use crate::abi::constants::factor::UP;
 
-/// Segments `(tau_u, tau_v)`, whole numbers of small product, with `bend[0] / tau_u² + 2 bend[1] / (tau_u tau_v) +
-/// bend[2] / tau_v² ≤ budget`.
+/// Segments `(tau_u, tau_v)`, whole numbers of small product, with
+/// `bend[0] / tau_u² + 2 bend[1] / (tau_u tau_v) + bend[2] / tau_v² ≤ budget`.
 ///
-/// `bend`: `|S_uu x² + 2 S_uv x y + S_vv y²| ≤ bend[0] x² + 2 bend[1] |x y| + bend[2] y²`, part units. `budget` is `8
-/// deviation_px` over the pixels that one part unit can cover. Valid for factors up to 10⁹.
+/// `bend`: `|S_uu x² + 2 S_uv x y + S_vv y²| ≤ bend[0] x² + 2 bend[1] |x y| + bend[2] y²`, part units. `budget` is
+/// `8 deviation_px` over the pixels that one part unit can cover. Valid for factors up to 10⁹.
 pub fn factors(bend: [f32; 3], budget: f32) -> [f32; 2] {
     let [a, b, c] = bend.map(|x| x / budget);
     if (a + 2.0 * b + c) * UP <= 1.0 {

@@ -8,16 +8,14 @@
 //!   └───┴───┴───┘     loops become chords within the same deviation; cells that they cross are cut into trapezoids
 //! ```
 //!
-//! *Proof.* Along one parameter a chord is within `h² |S''| / 8` of its curve, so the bilinear surface is within `h²
-//! |S_uu| / 8 + k² |S_vv| / 8` of S. Its own second derivative is the mixed one, at most `|S_uv|`. A point between a
-//! triangle's corners, with weights `w_i`, is off the bilinear surface by at most `|S_uv| Σ w_i |Δu_i| |Δv_i|`, and
-//! that is at most `|S_uv| h k / 4`: the spread of numbers that differ by h at most is h / 2 (T. Popoviciu, 1935). The
-//! sum is the bound of D. Filip, R. Magedson, R. Markot, *Surface algorithms using bounds on derivatives*, 1986, here
-//! for cut triangles.
+//! *Proof.* Along one parameter a chord is within `h² |S''| / 8` of its curve, so the bilinear surface is within
+//! `h² |S_uu| / 8 + k² |S_vv| / 8` of S. Its own second derivative is the mixed one, at most `|S_uv|`. A point with
+//! weights `w_i` of a triangle's corners is off it by at most `|S_uv| Σ w_i |Δu_i| |Δv_i|`, that is `|S_uv| h k / 4`:
+//! the spread of numbers that differ by h at most is h / 2 (T. Popoviciu, 1935). The sum is the bound of D. Filip, R.
+//! Magedson, R. Markot, *Surface algorithms using bounds on derivatives*, 1986, here for cut triangles.
 //!
-//! Corners of trapezoids lie on the bilinear surface, whose isolines are straight, so pieces on both sides of an
-//! isoline meet. All patches in a column of a face have equally many cells along u, so its triangles leave no gap
-//! except by rounding.
+//! Trapezoids' corners lie on the bilinear surface, whose isolines are straight: pieces on both sides of an isoline
+//! meet. Patches in a column have equally many cells along u, so triangles leave no gap except by rounding.
 
 use super::region::Region;
 use crate::model::Face;
@@ -293,8 +291,7 @@ impl<'a> Sheet<'a> {
     }
 }
 
-/// Whether corners lie on a line, up to rounding. At a pole, two corners are one point computed twice, and the plane
-/// through such corners is arbitrary.
+/// Whether corners lie on a line, up to rounding, as at a pole, where two of them are one point computed twice.
 fn is_line([p, q, r]: [DVec3; 3]) -> bool {
     let longest = (q - p).length().max((r - q).length()).max((p - r).length());
     let known = PLACE_ROUNDING * [p, q, r].into_iter().map(|c| c.abs().max_element()).fold(0.0, f64::max);
@@ -405,8 +402,7 @@ mod tests {
         to_side(a, b).min(to_side(b, c)).min(to_side(c, a))
     }
 
-    /// Points of a face, trimmed or not, are within the promised distance of its triangles, and the promise is nearly
-    /// attained.
+    /// Points of a face, trimmed or not, are within the promised distance, which some nearly attain.
     #[test]
     fn triangles_keep_within_the_deviation() {
         for (name, degrees, points) in [

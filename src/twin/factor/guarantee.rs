@@ -1,5 +1,5 @@
-//! Tests of the guarantee of [`factor`](super), by [`trial`](crate::fixtures). `cargo bench --bench factors --features
-//! baselines` tests any number of patches, and compares other ways.
+//! Tests of the guarantee of [`factor`](super), by [`trial`](crate::fixtures).
+//! `cargo bench --bench factors --features baselines` tests any number of patches, and compares other ways.
 
 use crate::fixtures::{Emit, Kind, Trial};
 use crate::twin::bound::DEPTH_SHARE;
