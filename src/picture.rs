@@ -22,6 +22,9 @@ pub struct FrameSettings {
     pub background: Option<Colour>,
     /// How surfaces look.
     pub style: Style,
+    /// The largest curvature on the scale of styles that show it, in 1 / units of the model; beyond it colours stay the
+    /// same. Finite and above 0.
+    pub curvature_range: f64,
     /// How finely patches are divided.
     pub levels: Levels,
     /// Record every pass in every frame, for measurements. Otherwise a frame reuses results of the previous frame,
@@ -46,6 +49,7 @@ impl Default for FrameSettings {
             tolerance_px: 0.5,
             background: Some([1.0, 1.0, 1.0, 1.0]),
             style: Style::Shaded,
+            curvature_range: 1.0,
             levels: Levels::Bound,
             all_passes: false,
         }
@@ -237,6 +241,8 @@ pub struct SceneSettings {
     /// units; surfaces farther away have no effect. `None`: no ambient occlusion. It changes only colours, and only in
     /// styles with light. It needs [`Samples::One`].
     pub ambient: Option<f64>,
+    /// Frames may have a style that shows curvature: pixels evaluate second derivatives, too.
+    pub curvature: bool,
     /// Frames may have an image of thickness: rays are followed through all solids.
     pub thickness: bool,
     /// Mark contacts and overlaps, and count their pixels: rays are followed through all solids.

@@ -44,7 +44,8 @@ void main() {
     float size = length(n);
     n = size > 0.0 ? n / size : -frame.forward;
     if (instance.mirrored != 0u) n = -n;
-    write_surface(mesh.colour, instance, n, (mesh.flags & MESH_SOLID) != 0u, f.depth, mesh.id, f.st, NO_SURFACE);
+    bool solid = (mesh.flags & MESH_SOLID) != 0u;
+    write_surface(mesh.colour, instance, n, solid, f.depth, mesh.id, f.st, NO_SURFACE, NO_CURVATURE);
 }
 
 #endif

@@ -26,6 +26,7 @@ layout(scalar, binding = 13) readonly buffer Views { View views[]; };
 #include "resolved.glsl"
 #include "sides.glsl"
 #include "visible.glsl"
+#include "side_curvature.glsl"
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -40,7 +41,10 @@ void main() {
     // the solid begins here, so its outside is before it
     if (dot(n, ray.d) > 0.0) n = -n;
     Instance nowhere = Instance(mat3(1.0), 1.0, 0u, 0u, 0u, uvec3(0u)); // leaves are not placed
-    write_surface(leaf.colour, nowhere, n, true, t, leaf.id, vec2(uintBitsToFloat(0x7fc00000u)), side.surface);
+    Curvature curvature = NO_CURVATURE;
+    if (shows_curvature()) curvature = side_curvature(seen_side(seen.x), t, ray);
+    vec2 no_uv = vec2(uintBitsToFloat(0x7fc00000u));
+    write_surface(leaf.colour, nowhere, n, true, t, leaf.id, no_uv, side.surface, curvature);
 }
 
 #endif

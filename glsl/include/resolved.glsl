@@ -4,6 +4,7 @@
 
 #include "eye_ray.glsl"
 #include "shade.glsl"
+#include "curvature.glsl"
 
 // The surface number of points on no known surface of a Boolean solid. It has the bit of OWN_PLANE, like a triangle
 // without a shared plane.
@@ -43,14 +44,24 @@ Lit lit_at(vec3 colour, vec3 n, bool two_sided, Ray ray, float depth, uint surfa
 }
 
 // Writes a point of a surface, with arguments as in `lit_at`. `own` is the surface's colour; the instance's is over it.
+// `curvature` is against `n`, and is used if `shows_curvature`.
 void write_surface(
-    uint own, Instance instance, vec3 n, bool solid, float depth, uint id, vec2 uv, uint surface
+    uint own, Instance instance, vec3 n, bool solid, float depth, uint id, vec2 uv, uint surface, Curvature curvature
 ) {
     vec4 placed = unpackUnorm4x8(instance.colour);
     vec4 under = unpackUnorm4x8(own);
     vec4 colour = placed.a < 1.0 ? mix(under, placed, placed.a) : placed;
-    Lit at = lit_at(colour.rgb, n, !solid, eye_ray(frame, gl_FragCoord.xy), depth, surface);
+    Ray ray = eye_ray(frame, gl_FragCoord.xy);
+    Lit at = lit_at(colour.rgb, n, !solid, ray, depth, surface);
     vec3 lit = at.light;
+    if (shows_curvature()) {
+        vec3 v = in_view(frame, n);
+        if (!solid && dot(n, ray.d) > 0.0) {
+            curvature.mean = -curvature.mean;
+            v = -v;
+        }
+        lit = curvature_colour(curvature, v);
+    }
     out_colour = BEHIND ? vec4(clamp(lit, 0.0, 1.0), depth) : encode(vec4(lit, 1.0), frame.encode_srgb);
     if (HAS_AOVS) {
         out_depth = depth;

@@ -5,6 +5,7 @@
 
 #include "refine.glsl"
 #include "patch_normal.glsl"
+#include "bend.glsl"
 #include "visible.glsl"
 
 // `seen` is item + 1 and packed (u, v). An operand's face may show its back, which is then a front of the solid.
@@ -24,7 +25,12 @@ void write_patch(uvec2 seen, bool operand) {
     vec2 at = patch_.domain.xy + s.uv * patch_.domain.zw;
     bool solid = (face.flags & FACE_SOLID) != 0u;
     vec2 own = face.domain.xy + at * face.domain.zw;
-    write_surface(face.colour, instance, n, solid, s.q.z, face.id, own, NO_SURFACE);
+    Curvature curvature = NO_CURVATURE;
+    if (shows_curvature()) {
+        curvature = patch_curvature(patch_, view, s);
+        if (flip) curvature.mean = -curvature.mean;
+    }
+    write_surface(face.colour, instance, n, solid, s.q.z, face.id, own, NO_SURFACE, curvature);
 }
 
 #endif

@@ -187,6 +187,7 @@ struct Frame {
     float spread_px;    // distance of samples from the centre, along each axis
     uint samples;       // of each pixel's colour
     uint style;         // STYLE_*
+    float curvature;    // styles of curvature: one over the largest on the scale, model units
     uint most_groups;   // workgroups in one row of a dispatch
     vec2 focal_px;      // across and down: pixels per unit slope; parallel view: pixels per model unit
     vec2 principal_px;  // pixel of the view axis
@@ -197,6 +198,10 @@ const uint STYLE_SHADED = 0u;
 const uint STYLE_CLAY = 1u;
 const uint STYLE_NORMALS = 2u;
 const uint STYLE_ZEBRA = 3u;
+const uint STYLE_ISOPHOTES = 4u;
+const uint STYLE_TECHNICAL = 5u;
+const uint STYLE_MEAN_CURVATURE = 6u;
+const uint STYLE_GAUSSIAN_CURVATURE = 7u;
 
 // A third value of Frame.encode_srgb: linear, clamped to the range of colour targets.
 const uint ENCODE_SUMMED = 2u;

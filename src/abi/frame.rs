@@ -58,6 +58,7 @@ pub struct Frame {
     pub spread_px: f32,
     pub samples: u32,
     pub style: u32,
+    pub curvature: f32,
     pub most_groups: u32,
     pub focal_px: [f32; 2],
     pub principal_px: [f32; 2],

@@ -48,6 +48,8 @@ pub(crate) struct Counts {
     /// The first leaf of items that rays are followed through, if there are any.
     pub followed_leaf: u32,
     pub is_followed: bool,
+    /// Styles may show curvature.
+    pub curvature: bool,
     /// The scene measures lengths within solids.
     pub thickness: bool,
     /// Instances drawn opaque, although transparent, because they are not closed.
@@ -88,6 +90,7 @@ impl Counts {
             samples: data.samples,
             followed_leaf: data.solids.followed,
             is_followed: data.solids.is_followed(),
+            curvature: data.curvature,
             thickness: data.thickness,
             open: count(data.open),
             shadowless: count(data.shadowless),

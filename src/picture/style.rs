@@ -3,7 +3,7 @@
 /// The look of surfaces. Images beside the colour are the same in every style.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 #[repr(u32)]
 pub enum Style {
@@ -17,11 +17,38 @@ pub enum Style {
     /// The stripes of a room around the camera's vertical, reflected once. At a jump of the normal the stripes jump; at
     /// a jump of the curvature they have corners.
     Zebra = 3,
+    /// Bands of equal angle to the key light, five degrees each: they have corners where normals jump.
+    Isophotes = 4,
+    /// White, a little darker where surfaces lean away: a ground for lines.
+    Technical = 5,
+    /// Mean curvature of the exact surface, half the sum of both principal ones: blue where it is hollow as the eye sees it,
+    /// red where it bulges. [`FrameSettings::curvature_range`](super::FrameSettings::curvature_range) is the end of the
+    /// scale. Needs [`SceneSettings::curvature`](super::SceneSettings::curvature). Triangles and what is seen
+    /// through are grey.
+    MeanCurvature = 6,
+    /// Gaussian curvature, the product of both: blue where the surface is a saddle, red where it is a bowl or a dome. The
+    /// end of the scale is the square of that of the mean.
+    GaussianCurvature = 7,
 }
 
 impl Style {
     /// Every style.
-    pub const ALL: &'static [Self] = &[Self::Shaded, Self::Clay, Self::Normals, Self::Zebra];
+    pub const ALL: &'static [Self] = &[
+        Self::Shaded,
+        Self::Clay,
+        Self::Technical,
+        Self::Normals,
+        Self::Zebra,
+        Self::Isophotes,
+        Self::MeanCurvature,
+        Self::GaussianCurvature,
+    ];
+
+    /// Whether it shows curvature: a scene draws it where
+    /// [`SceneSettings::curvature`](super::SceneSettings::curvature) is set.
+    pub fn is_curvature(self) -> bool {
+        matches!(self, Self::MeanCurvature | Self::GaussianCurvature)
+    }
 
     /// The name in command lines and tables.
     pub fn name(self) -> &'static str {
@@ -30,6 +57,10 @@ impl Style {
             Self::Clay => "clay",
             Self::Normals => "normals",
             Self::Zebra => "zebra",
+            Self::Isophotes => "isophotes",
+            Self::Technical => "technical",
+            Self::MeanCurvature => "mean-curvature",
+            Self::GaussianCurvature => "gaussian-curvature",
         }
     }
 }

@@ -115,6 +115,8 @@ pub(crate) struct SceneData {
     pub has_operands: bool,
     /// Something is transparent or highlighted.
     pub is_layered: bool,
+    /// Styles may show curvature.
+    pub curvature: bool,
     /// The scene measures lengths within solids.
     pub thickness: bool,
     pub highlight: Option<Highlight>,
@@ -217,6 +219,7 @@ impl SceneData {
             .flatten();
         let mut data = Self {
             is_layered: (clear || settings.highlight.is_some()) && solids.is_followed(),
+            curvature: settings.curvature,
             thickness: settings.thickness,
             highlight: settings.highlight,
             solid_budget: settings.solid_budget,

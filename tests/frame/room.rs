@@ -17,6 +17,7 @@ const BY_TABLE: SceneSettings = SceneSettings {
     samples: Samples::One,
     smooth: Smooth::None,
     ambient: None,
+    curvature: false,
     thickness: false,
     highlight: None,
     sun: None,

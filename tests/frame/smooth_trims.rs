@@ -27,6 +27,7 @@ const fn plain() -> SceneSettings {
         samples: Samples::One,
         smooth: Smooth::None,
         ambient: None,
+        curvature: false,
         thickness: false,
         highlight: None,
         sun: None,

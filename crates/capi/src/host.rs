@@ -322,8 +322,8 @@ impl SelvedgeHost {
     }
 }
 
-/// Uploads the model that later frames show. Only samples, edges, line_width, ambient and sun of `view` are read, and
-/// with edges its height: line_width counts pixels of a picture so high. The call does not wait for the GPU: objects
+/// Uploads the model that later frames show. Only samples, edges, line_width, ambient and sun of `view` are read,
+/// whether its style shows curvature, and with edges its height: line_width counts pixels of a picture so high. The call does not wait for the GPU: objects
 /// that frames in flight use are freed with their slots.
 ///
 /// # Safety
@@ -346,8 +346,8 @@ pub unsafe extern "C" fn selvedge_host_upload(
     })
 }
 
-/// Records a frame into a VkCommandBuffer of the host's. Only size, camera, style, background and tolerance of `view`
-/// are read. With a null background the host's picture stays where no model is drawn. The frame that was recorded into
+/// Records a frame into a VkCommandBuffer of the host's. Only size, camera, style, curvature_range (which a host sets:
+/// where it is 0, the whole model is sampled), background and tolerance of `view` are read. With a null background the host's picture stays where no model is drawn. The frame that was recorded into
 /// the slot before has finished.
 ///
 /// # Safety
@@ -371,7 +371,7 @@ pub unsafe extern "C" fn selvedge_host_record(
         }
         let (slot, model) = (host.slot(slot)?, host.model()?);
         // SAFETY: as the caller promises
-        let (camera, settings) = unsafe { (view.camera_of(&model)?, view.host_frame()?) };
+        let (camera, settings) = unsafe { (view.camera_of(&model)?, view.host_frame(&model)?) };
         let whole = camera.size;
         let size = if (targets.width, targets.height) == (0, 0) { whole } else { (targets.width, targets.height) };
         let corner = (size != whole || (targets.x, targets.y) != (0, 0)).then_some((targets.x, targets.y));

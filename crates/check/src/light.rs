@@ -27,10 +27,18 @@ pub fn studio(colour: DVec3, n: DVec3, camera: &Camera, key: Key) -> DVec3 {
         Key::Lamp => (v.dot(lamp), v.dot((lamp + DVec3::Z).normalize())),
         Key::Sun(towards) => (n.dot(towards), v.dot((in_view(towards) + DVec3::Z).normalize_or_zero())),
     };
-    let fill = v.dot(DVec3::new(0.71, 0.14, 0.69)).max(0.0);
+    let fill =
+        0.22 * v.dot(DVec3::new(0.71, 0.14, 0.69)).max(0.0) + 0.30 * v.dot(DVec3::new(0.64, 0.48, -0.60)).max(0.0);
     let sky = 0.12 + (0.26 - 0.12) * (0.5 + 0.5 * v.y);
     let highlight = 0.10 * shine.max(0.0).powi(48);
-    toned(colour * (0.62 * cosine.max(0.0) + 0.22 * fill + sky) + highlight)
+    toned(colour * (0.62 * cosine.max(0.0) + fill + sky) + highlight)
+}
+
+/// The sRGB colour of a curvature that is this share of the largest on the scale: from blue hollows over light grey to red
+/// bulges, which `shade.glsl` darkens where the surface leans away.
+pub fn curvature_scale(share: f64) -> DVec3 {
+    let end = if share < 0.0 { DVec3::new(0.129, 0.400, 0.675) } else { DVec3::new(0.698, 0.094, 0.169) };
+    DVec3::splat(0.941).lerp(end, share.abs().min(1.0))
 }
 
 /// The tone curve: light up to its shoulder as it is, above it nearer and nearer to 1.

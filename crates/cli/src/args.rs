@@ -27,9 +27,10 @@ pub use write::{ConvertArgs, ExportArgs};
 use crate::cut::CutArgs;
 use crate::sweep::Divided;
 use crate::trims::Way;
-use crate::values::{at_least_one, direction, mebibytes, times, tolerance, vector, zoom};
+use crate::values::{at_least_one, curvature, direction, mebibytes, times, tolerance, vector, zoom};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
+use selvedge::model::Model;
 use selvedge::picture::{Levels, Samples, Smooth, SolidWay, Style, TrimWay};
 use selvedge_io::import::Import;
 use selvedge_session::{Ambient, Backdrop, Directions};
@@ -118,10 +119,16 @@ pub struct LookArgs {
     /// colour, or the gradient
     #[arg(long, value_name = "COLOUR|gradient|none")]
     pub background: Option<Backdrop>,
-    /// How surfaces are shown: shaded, clay (one colour, no highlights), normals (as colours: right red, up green, towards
-    /// the eye blue) or zebra (stripes of a striped room, reflected: they break where surfaces do)
+    /// How surfaces are shown: shaded, clay (one colour, no highlights), technical (white, with sharp edges and outlines
+    /// unless --edges says otherwise), normals (as colours: right red, up green, towards the eye blue), zebra (stripes of a
+    /// striped room, reflected: they break where surfaces do), isophotes (bands of equal angle to the light),
+    /// mean-curvature or gaussian-curvature (of the exact surface, with a legend)
     #[arg(long, value_name = "STYLE", default_value = "shaded")]
     pub style: Style,
+    /// The largest mean curvature on the scale, 1/mm; that of Gaussian curvature ends at its square. The default is a round
+    /// number at which most of the model's curvatures are told apart
+    #[arg(long, value_name = "PER_MM", value_parser = curvature)]
+    pub curvature_range: Option<f64>,
     /// Ambient occlusion darkens corners and contacts. RADIUS is the reach of the occlusion in units of the model; auto is a
     /// twenty-fifth of the model's diagonal. The default is auto for one sample a pixel, and none for several
     #[arg(long, value_name = "RADIUS|auto|none")]
@@ -131,7 +138,13 @@ pub struct LookArgs {
 impl LookArgs {
     /// What lies behind the model of a file.
     pub fn backdrop(&self, import: &Import) -> Backdrop {
-        self.background.or(import.picture.background.map(Backdrop::Colour)).unwrap_or(Backdrop::Gradient)
+        let usual = if self.style == Style::Technical { Backdrop::Colour([1.0; 4]) } else { Backdrop::Gradient };
+        self.background.or(import.picture.background.map(Backdrop::Colour)).unwrap_or(usual)
+    }
+
+    /// The end of the scale of curvature.
+    pub fn range(&self, model: &Model) -> f64 {
+        self.curvature_range.unwrap_or_else(|| model.curvature_range())
     }
 }
 

@@ -15,7 +15,7 @@ use selvedge::headless::HeadlessRenderer;
 use selvedge::model::Camera;
 use selvedge::picture::{Outputs, Picture};
 use selvedge_io::import::Import;
-use selvedge_session::Image;
+use selvedge_session::{Image, legend};
 use std::sync::Arc;
 use std::time::Instant;
 use task::{Shot, Task};
@@ -69,11 +69,13 @@ fn drawn(
     // the renderer shares it: large models are there once
     let model = Arc::new(std::mem::take(&mut import.model));
     let begun = Instant::now();
-    let looks = (&args.edges, args.look.ao, args.lines.settings()?);
+    let look = &args.look;
+    let looks = (&args.edges, look, args.lines.settings(look.style)?);
     let mut session = Session::of_one(device()?, &args.frame, &import, &model, looks)?;
     let upload_s = begun.elapsed().as_secs_f64();
-    let backdrop = args.look.backdrop(&import);
-    session.look(backdrop.colour(), args.look.style);
+    let backdrop = look.backdrop(&import);
+    let range = if look.style.is_curvature() { look.range(&model) } else { 1.0 };
+    session.look(backdrop.colour(), look.style, range);
     let mut all = Vec::new();
     for (index, (shot, camera)) in task.shots.iter().zip(&cameras).enumerate() {
         let begun = Instant::now();
@@ -91,6 +93,7 @@ fn drawn(
             }
             None => {
                 backdrop.under(picture.size, &mut picture.colour);
+                legend(look.style, range, picture.size, &mut picture.colour);
                 let stats = shot.stats.as_ref().map(|_| session.measured(camera, wanted(&shot.aovs), &picture.stats));
                 shot.write(camera, &picture, stats.transpose()?.as_ref())?;
                 record(&drawn)?;
@@ -99,6 +102,7 @@ fn drawn(
     }
     for (sheet, path) in sheet.iter_mut().zip(&task.sheet) {
         backdrop.under(sheet.size, &mut sheet.pixels);
+        legend(look.style, range, sheet.size, &mut sheet.pixels);
         output::png(path, sheet.size, &sheet.pixels)?;
     }
     all.iter().try_for_each(record)?;

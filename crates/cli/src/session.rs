@@ -1,6 +1,6 @@
 //! Reads a model and opens a renderer; progress and warnings go to standard error.
 
-use crate::args::{EdgeArgs, FrameArgs, ReadArgs, SubdivideArgs};
+use crate::args::{EdgeArgs, FrameArgs, LookArgs, ReadArgs, SubdivideArgs};
 use crate::progress::{advancing, during, importing};
 use crate::{camera, device, openscad, output, target};
 use anyhow::{Error, Result, anyhow, bail};
@@ -179,12 +179,13 @@ impl Session {
         args: &FrameArgs,
         import: &Import,
         model: &Arc<Model>,
-        (edges, ao, lines): (&EdgeArgs, Option<Ambient>, Option<EdgeSettings>),
+        (edges, look, lines): (&EdgeArgs, &LookArgs, Option<EdgeSettings>),
     ) -> Result<Self> {
         let scene = SceneSettings {
             samples: edges.samples,
             smooth: edges.smooth(),
-            ambient: Ambient::radius(ao, edges.samples, model),
+            ambient: Ambient::radius(look.ao, edges.samples, model),
+            curvature: look.style.is_curvature(),
             edges: lines,
             ..SceneSettings::default()
         };
@@ -217,10 +218,11 @@ impl Session {
         Ok(Self { renderer, settings, first_frame: None })
     }
 
-    /// From now on frames are drawn on this colour, in this style.
-    pub fn look(&mut self, background: Colour, style: Style) {
+    /// From now on frames are drawn on this colour, in this style, with this end of the scale of curvature.
+    pub fn look(&mut self, background: Colour, style: Style, curvature_range: f64) {
         self.settings.background = Some(background);
         self.settings.style = style;
+        self.settings.curvature_range = curvature_range;
     }
 
     /// One frame.

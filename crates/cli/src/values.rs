@@ -54,6 +54,12 @@ pub fn mebibytes(text: &str) -> Result<f64, String> {
     text.parse::<f64>().ok().filter(|x| x.is_finite() && *x > 0.0).ok_or_else(|| "wants a number of MiB above 0".into())
 }
 
+/// The end of a scale of curvature.
+pub fn curvature(text: &str) -> Result<f64, String> {
+    let good = text.parse::<f64>().ok().filter(|k| k.is_finite() && *k > 0.0);
+    good.ok_or_else(|| "wants a curvature above 0, 1/mm, as in 0.05".into())
+}
+
 /// A time; longer ones are none.
 pub fn seconds(text: &str) -> Result<f64, String> {
     let good = text.parse::<f64>().ok().filter(|s| *s > 0.0 && *s <= 1e9);

@@ -17,6 +17,7 @@ mod camera;
 mod directions;
 mod error;
 mod images;
+mod legend;
 mod lines;
 mod png;
 mod read;
@@ -32,6 +33,7 @@ pub use camera::{CameraFile, FOV_DEG, FROM, Lens, Pinhole, Viewpoint, bounds, fi
 pub use directions::{Direction, Directions, NAMED};
 pub use error::{SessionError, Stop, guarded};
 pub use images::{Image, Values};
+pub use legend::legend;
 pub use lines::lines;
 pub use png::{save as save_png, write as write_png};
 pub use read::{Loaded, ReadOptions, Source, memory, read};

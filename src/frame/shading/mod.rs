@@ -57,6 +57,7 @@ pub(super) fn kinds(data: &SceneData) -> resolve::Kinds {
         }),
         operands: data.has_operands,
         sun: data.sun.is_some(),
+        curvature: data.curvature,
     }
 }
 

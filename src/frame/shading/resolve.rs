@@ -58,6 +58,8 @@ pub(crate) struct Kinds {
     pub operands: bool,
     /// The key light is a sun.
     pub sun: bool,
+    /// Styles may show curvature.
+    pub curvature: bool,
 }
 
 /// The fragment shaders of a scene, one for each kind of surface.
@@ -224,6 +226,7 @@ impl Resolve {
         let of_all = [
             (constant::HAS_AOVS, u32::from(formats.has_aovs())),
             (constant::BEHIND, u32::from(behind)),
+            (constant::SHOWS_CURVATURE, u32::from(kinds.curvature)),
             (constant::SOLIDS_HAVE, kinds.solids.map_or(abi::SURFACE_PLANE, |s| s.surfaces)),
         ];
         let of_patches = [

@@ -65,7 +65,7 @@ def losses(report):
         lines.append(
             f"* {mark}{section.number}. {contest.what}: {times:.2g} times {contest.peer}'s {interval(contest)}"
         )
-    lines += [f"* known: {told(s, p)}; {p.known}" for s, p in report.promises() if p.violated() and p.known]
+    lines += [f"* known: {told(s, p)}; {p.known}" for s, p in report.promises() if p.excepted()]
     return "\n".join(lines) or "Nowhere in this run."
 
 

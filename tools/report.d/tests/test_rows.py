@@ -41,9 +41,14 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(report(promises=[Promise("pixels", 1, 100)]).exit_status(), 1)
 
     def test_a_known_exception_is_told_and_does_not(self):
-        known = report(promises=[Promise("pixels", 7, 100, known="docs/accuracy.md says so")])
+        known = report(promises=[Promise("pixels", 7, 100, known="docs/accuracy.md says so", most=0.07)])
         self.assertEqual(known.exit_status(), 0)
         self.assertIn("pixels: 7 of 100; docs/accuracy.md says so", markdown.text(known, {}))
+
+    def test_more_than_the_exception_allows_fails_the_run(self):
+        known = report(promises=[Promise("pixels", 8, 100, known="docs/accuracy.md says so", most=0.07)])
+        self.assertEqual(known.exit_status(), 1)
+        self.assertNotIn("known: ", markdown.text(known, {}))
 
     def test_a_section_that_failed_fails_the_run(self):
         self.assertEqual(report(WON, failure="the program ended with status 3").exit_status(), 1)

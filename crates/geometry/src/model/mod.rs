@@ -20,6 +20,7 @@
 
 mod camera;
 mod check;
+mod curvature;
 mod edge;
 mod face;
 mod images;

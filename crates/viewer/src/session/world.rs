@@ -39,6 +39,7 @@ pub struct World {
     /// What was lost when files were put together.
     pub notices: Vec<String>,
     edges: OnceLock<PartEdges>,
+    curvature_range: OnceLock<f64>,
 }
 
 impl Default for World {
@@ -49,6 +50,7 @@ impl Default for World {
             bounds: Bounds::EMPTY,
             notices: Vec::new(),
             edges: OnceLock::new(),
+            curvature_range: OnceLock::new(),
         }
     }
 }
@@ -62,6 +64,11 @@ struct PartEdges {
 }
 
 impl World {
+    /// The end of the scale of curvature, found once.
+    pub fn curvature_range(&self) -> f64 {
+        *self.curvature_range.get_or_init(|| self.model.curvature_range())
+    }
+
     /// Puts files together.
     pub fn new(files: &[Arc<Loaded>]) -> Self {
         let mut world = Self::default();

@@ -18,7 +18,7 @@ use crate::watch::Watcher;
 use glam::DVec2;
 use selvedge::ash::vk;
 use selvedge::model::Camera;
-use selvedge::picture::{FrameSettings, FrameStats};
+use selvedge::picture::{FrameSettings, FrameStats, Style};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -267,7 +267,7 @@ impl App {
             state: self.session.scene.now().clone(),
             settings: self.scene_settings(),
         };
-        let (due, settings, marks) = (self.view.due(now), self.frame_settings(), self.marks());
+        let (due, mut settings, marks) = (self.view.due(now), self.frame_settings(), self.marks());
         let under = self.over_view();
         let Some(Opened { window, waiter, engine, screen, .. }) = &mut self.opened else { return Ok(()) };
         let uploaded = |proxy: &EventLoopProxy<Event>| {
@@ -275,6 +275,9 @@ impl App {
             move |uploaded| drop(proxy.send_event(Event::Uploaded(uploaded)))
         };
         engine.want(&request, uploaded(&self.proxy));
+        if settings.style.is_curvature() && !engine.has_curvature() {
+            settings.style = Style::Clay; // until the upload that was just asked for is there
+        }
         if self.session.world.is_empty() {
             screen.blank();
             self.picture = None;

@@ -75,6 +75,11 @@ impl Engine {
         self.current.as_ref().map(|(_, shown)| shown)
     }
 
+    /// What is drawn may be drawn in a style of curvature.
+    pub fn has_curvature(&self) -> bool {
+        self.current.as_ref().is_some_and(|(request, _)| request.settings.curvature)
+    }
+
     /// The renderer, when it holds a model.
     pub fn renderer(&mut self) -> Option<&mut Renderer> {
         self.renderer.as_mut().filter(|_| self.current.is_some())

@@ -18,13 +18,15 @@ impl App {
         let edges = EdgeSettings { which, silhouettes, hidden: hidden_lines, ..EdgeSettings::default() };
         let edges = (which != EdgeChoice::None || silhouettes).then_some(edges);
         let smooth = if smooth { Smooth::Borders } else { Smooth::None };
-        SceneSettings { edges, smooth, editable: self.ui.trims, ..SceneSettings::default() }
+        let curvature = self.ui.style.is_curvature();
+        SceneSettings { edges, smooth, curvature, editable: self.ui.trims, ..SceneSettings::default() }
     }
 
     /// Settings of the pictures in the window.
     pub fn frame_settings(&self) -> FrameSettings {
         FrameSettings {
             style: self.ui.style,
+            curvature_range: if self.ui.style.is_curvature() { self.session.world.curvature_range() } else { 1.0 },
             background: Some(background(self.context.style().visuals.dark_mode)),
             ..FrameSettings::default()
         }
