@@ -1,4 +1,4 @@
-// Curvature of patches: second derivatives by de Casteljau's algorithm, which ends here when three points are left.
+// Curvature of patches: second derivatives by de Casteljau's algorithm, which stops at three points here.
 //
 //        a ───── b ───── c     value  s² a + 2 s t b + t² c           s = 1 - t, degree m
 //                              slope  m ((b - a) s + (c - b) t)
@@ -8,7 +8,7 @@
 #ifndef BEND_GLSL
 #define BEND_GLSL
 
-// The three points that are left of a row.
+// The last three points of a row.
 struct Three {
     vec4 a;
     vec4 b;
@@ -71,7 +71,7 @@ Bend bend_at(uint first, uint shape, vec3 base, vec2 uv) {
     Weights w = Weights(1.0, 1.0);
     vec3 weights = vec3(0.0);
     for (uint j = 0u; j <= m; ++j) {
-        // of two rows the mean, as in `raised_point`
+        // the mean of two rows, as in `raised_point`
         uint lower = k > 1u ? j : j / 2u;
         uint upper = k > 1u ? j : (j + 1u) / 2u;
         Three row = three_of_row(first + lower * (n + 1u), n, base, uv.x);
@@ -95,8 +95,8 @@ vec3 along_axes(View view, vec3 direction) {
     return vec3((q.xy - frame.principal_px * q.w) / frame.focal_px, q.z);
 }
 
-// Of a part's surface in the model, which may stretch the part: derivatives are those along the camera's axes. The mean is
-// above 0 where the surface bends away from S_u x S_v.
+// Curvature of a part's surface in the model, which may stretch the part: derivatives are along the camera's axes. The
+// mean is above 0 where the surface bends away from S_u x S_v.
 Curvature patch_curvature(Patch patch_, View view, Sample s) {
     Net net = net_of(patch_);
     Bend b = bend_at(net.first, patch_.shape, net.less, s.uv);

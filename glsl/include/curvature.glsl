@@ -1,6 +1,6 @@
-// Mean and Gaussian curvature of what a pixel sees, the mean above 0 where the surface bulges. Patches: bend.glsl; sides
-// of Boolean solids: side_curvature.glsl. A scene without a style of curvature compiles none of it. Needs scene.glsl,
-// `frame` and shade.glsl.
+// Mean and Gaussian curvature of the visible surface; the mean is above 0 where the surface bulges. Patches: bend.glsl;
+// sides of Boolean solids: side_curvature.glsl. In scenes without styles of curvature none of it is compiled. Needs
+// scene.glsl, `frame` and shade.glsl.
 //
 // Source: M. do Carmo, Differential Geometry of Curves and Surfaces, 1976, 3-3; R. Goldman, Curvature formulas for
 // implicit curves and surfaces, 2005.

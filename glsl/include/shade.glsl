@@ -1,6 +1,6 @@
 // A neutral studio: a key light from the upper left behind the viewer, a fill from the right, a rim from behind on the
-// right, which only what turns away from the viewer meets, a sky above a darker ground. Directions are unit vectors in view
-// space and travel with the camera.
+// right, which lights only surfaces turned away from the viewer, a sky above a darker ground. Directions are unit vectors
+// in view space and travel with the camera.
 // Twin: `studio` of the judge.
 #ifndef SHADE_GLSL
 #define SHADE_GLSL
@@ -56,7 +56,7 @@ vec3 decoded(vec3 c) {
     return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));
 }
 
-// Light that tells sides apart and leaves colours as they are.
+// Light that shades sides slightly and keeps colours.
 vec3 paper(vec3 colour, vec3 v) { return colour * mix(0.7, 1.0, max(v.z, 0.0)); }
 
 // The colour of a curvature: `share` of the largest on the scale, above 0 where the surface bulges towards the eye.

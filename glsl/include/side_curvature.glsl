@@ -21,7 +21,7 @@ mat3 surface_bend(Surface s, vec3 p) {
     return transpose(s.to_local) * local * s.to_local;
 }
 
-// Of a side that is met at depth t. Planes and triangles have none.
+// Curvature of a side that the ray meets at depth t. Planes and triangles have none.
 Curvature side_curvature(uint side, float t, Ray ray) {
     if (SOLIDS_HAVE == SURFACE_PLANE || SOLIDS_HAVE_SHELLS && side >= frame.side_count) return NO_CURVATURE;
     uint word = leaf_surface_at(leaf_surfaces, side).surface;

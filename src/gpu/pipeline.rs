@@ -32,7 +32,7 @@ pub struct ComputeInfo<'a> {
     pub constants: &'a [(u32, u32)],
 }
 
-/// A pipeline with its layout. The last of those that share a Vulkan object frees it on drop; the GPU must have
+/// A pipeline with its layout. The last pipeline that shares a Vulkan object frees it on drop; the GPU must have
 /// finished with it before.
 #[derive(Debug)]
 pub struct Pipeline {

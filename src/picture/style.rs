@@ -19,12 +19,12 @@ pub enum Style {
     Zebra = 3,
     /// Bands of equal angle to the key light, five degrees each: they have corners where normals jump.
     Isophotes = 4,
-    /// White, a little darker where surfaces lean away: a ground for lines.
+    /// White, a little darker on surfaces turned from the viewer: a background for lines.
     Technical = 5,
-    /// Mean curvature of the exact surface, half the sum of both principal ones: blue where it is hollow as the eye sees it,
-    /// red where it bulges. [`FrameSettings::curvature_range`](super::FrameSettings::curvature_range) is the end of the
-    /// scale. Needs [`SceneSettings::curvature`](super::SceneSettings::curvature). Triangles and what is seen
-    /// through are grey.
+    /// Mean curvature of the exact surface, half the sum of the principal ones: blue where it is hollow towards the eye, red
+    /// where it bulges. [`FrameSettings::curvature_range`](super::FrameSettings::curvature_range) is the end of the
+    /// scale. Needs [`SceneSettings::curvature`](super::SceneSettings::curvature). Triangles and
+    /// transparent surfaces are grey.
     MeanCurvature = 6,
     /// Gaussian curvature, the product of both: blue where the surface is a saddle, red where it is a bowl or a dome. The
     /// end of the scale is the square of that of the mean.
@@ -44,7 +44,7 @@ impl Style {
         Self::GaussianCurvature,
     ];
 
-    /// Whether it shows curvature: a scene draws it where
+    /// Whether it shows curvature. A scene draws it only if
     /// [`SceneSettings::curvature`](super::SceneSettings::curvature) is set.
     pub fn is_curvature(self) -> bool {
         matches!(self, Self::MeanCurvature | Self::GaussianCurvature)

@@ -53,7 +53,7 @@ pub(crate) struct Passes {
     operands: Option<Arc<ShellPasses>>,
 }
 
-/// The passes of the way that finds the faces, and those that list each tile's leaves.
+/// The passes of the way that finds the faces, and the passes that list each tile's leaves.
 enum WayPasses {
     Events(Arc<solid_events::SolidEvents>, Arc<TilePasses>),
     Cst(Arc<solid_cst::SolidCst>, Arc<TilePasses>),
