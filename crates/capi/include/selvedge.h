@@ -245,7 +245,7 @@ typedef struct SelvedgeModelInfo {
     const char *summary;
 } SelvedgeModelInfo;
 
-// Something in the file that was left out, healed or guessed.
+// Something in the file that was left out, repaired or guessed.
 typedef struct SelvedgeWarning {
     // sizeof(SelvedgeWarning)
     size_t struct_size;

@@ -55,7 +55,7 @@ pub struct SelvedgeModelInfo {
     pub summary: *const c_char,
 }
 
-/// Something in the file that was left out, healed or guessed.
+/// Something in the file that was left out, repaired or guessed.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct SelvedgeWarning {

@@ -40,7 +40,7 @@ pub struct Loaded {
     pub model: Arc<Model>,
     /// What is drawn and what is missing.
     pub summary: Summary,
-    /// What was left out or healed.
+    /// What was left out or repaired.
     pub warnings: Vec<Warning>,
     /// Cameras that a scene names.
     pub cameras: Vec<NamedCamera>,

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   Import ──▶ Info ──┬─▶ JSON            everything
-//!                     ├─▶ text            counts, surfaces, assembly, what was healed and lost
+//!                     ├─▶ text            counts, surfaces, assembly, what was repaired and lost
 //!                     └─▶ deep (--deep)   every face; the worst of them apart
 //! ```
 
@@ -54,7 +54,7 @@ struct Info<'a> {
     /// What the file states, what of it is drawn, and why the rest is not.
     summary: Summary,
     report: &'a ImportReport,
-    /// Every face of the file: `deviation` and `gap` in millimetres, why it was healed or left out.
+    /// Every face of the file: `deviation` and `gap` in millimetres, why it was repaired or left out.
     face_records: &'a [FaceRecord],
 }
 

@@ -110,7 +110,7 @@ impl Info<'_> {
         for (kind, reasons) in &report.left_out {
             list(kind, reasons.iter().collect());
         }
-        list("healed", report.healed.iter().collect());
+        list("repaired", report.repaired.iter().collect());
         list("not drawn", named(&report.ignored));
         list("layers, items on them", named(&report.layers));
         list("warnings", named(&report.warnings));

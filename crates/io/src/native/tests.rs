@@ -1,4 +1,4 @@
-//! Round trips bit for bit, and files that nobody should have written.
+//! Round trips bit for bit, and files that no writer makes.
 
 use super::*;
 use crate::import::step;

@@ -1,4 +1,4 @@
-//! Loops of one curve whose ends nearly meet: they are there, however large the gap.
+//! Loops of one curve whose ends nearly meet: the loop is closed, however large the gap.
 
 use super::flat::rectangle;
 use super::*;

@@ -1,4 +1,4 @@
-//! Layers, hidden items, annotation and curves: told, not drawn.
+//! Layers, hidden items, annotation and curves: reported, not drawn.
 
 use super::colours::SHAPE;
 use super::import;
