@@ -1,4 +1,4 @@
-//! Which points of a domain the trim loops keep: the exact test, and the table that answers fast.
+//! Which points of a domain belong to the trimmed face: the exact test, and the table that decides fast.
 //!
 //! ```text
 //!   v ▲      ╭───<───╮         winding number of p = sum over the curves right of p on its scan line:

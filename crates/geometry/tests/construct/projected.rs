@@ -45,7 +45,7 @@ proptest! {
             for k in 0..=16 {
                 let uv = c.point(f64::from(k) / 16.0);
                 let off = (from_axis(grid.point(uv.x, uv.y), centre, along) - radius).abs();
-                // beside the bound, what the outline itself is rounded by
+                // beside the bound, the rounding of the outline itself
                 prop_assert!(off <= cast.deviation + 1e-12, "{off:e} of {:e}", cast.deviation);
             }
             let (a, b) = (c.point(0.0), c.point(1.0));

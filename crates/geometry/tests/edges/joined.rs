@@ -77,7 +77,8 @@ fn solids_that_touch_along_an_edge_stay_closed() {
     assert!(edges.closed());
 }
 
-/// A pipe between two others meets them in curves that no equation gives: fitted, on the first face, within what is said.
+/// A pipe between two others meets them in curves without an equation: fitted, on the first face, within the stated
+/// deviation.
 #[test]
 fn a_fitted_curve_says_how_far_it_is_off() {
     use glam::DVec2;
@@ -108,7 +109,7 @@ fn nothing_has_no_edges() {
     assert!(edges.edges.is_empty() && edges.vertices.is_empty() && edges.closed());
 }
 
-/// A hole smaller than the reach has no edge, and is told.
+/// A hole smaller than the reach has no edge, and is reported.
 #[test]
 fn a_loop_that_is_a_point_is_told() {
     use glam::DVec2;
