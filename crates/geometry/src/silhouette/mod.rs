@@ -10,12 +10,12 @@
 //!      │       ╱   -   │
 //!      └──────╱┴───────┘    branches that meet are one [`Fold`]
 //! ```
+//!
 //! `f` is a Bernstein polynomial, and its coefficients bound it: small closed folds are not missed, and samples are not
 //! needed to find a start. A point of a fold is the root of `f` on a line across the cell, exact to rounding. Where a
 //! side of a patch is a point in space (a pole), `f` has the side as a factor, which is divided out. Where a fold runs
 //! along a side of a patch inside the surface, the side is the fold. Along the surface's own border the fold is an edge
 //! of the face, and not found here.
-//! found here.
 //!
 //! Source: G. Elber, E. Cohen, *Hidden curve removal for free form surfaces*, SIGGRAPH 1990 (folds as zeros of a spline);
 //! T. W. Sederberg, R. J. Meyers, *Loop detection in surface patch intersections*, CAGD 5, 1988 (division until no closed

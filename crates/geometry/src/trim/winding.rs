@@ -19,10 +19,10 @@ use crate::spline::{Bezier, Control};
 use glam::{DVec2, DVec3};
 
 /// Trim loops, prepared for queries.
+///
 /// Straight curves (and curves of any degree whose control points are exactly collinear) are decided without rounding.
 /// For other curves a point farther from the curve than a few ulp of the largest coordinate is decided right; nearer
 /// points get one consistent answer, in which the loops are still closed. Straight curves of no length are dropped.
-/// still closed. Straight curves of no length are left out.
 #[derive(Clone, Debug)]
 pub struct LoopIndex {
     pub(super) curves: Vec<Bezier<DVec3>>,

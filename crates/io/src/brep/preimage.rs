@@ -111,7 +111,6 @@ impl Strand {
 ///
 /// Lines met before on the face keep their number, at the period nearest to this trace. The border of a spline counts
 /// within ten times the target: edges along it are often approximations of it, and a fit would only follow their noise.
-/// fitting their noise would serve nobody.
 fn constant_line(support: &Support, trace: &Trace, lines: &mut Lines) -> Option<(usize, f64)> {
     let (axis, value, off, speed) = trace.constant(support)?;
     let close = |x: f64, reach: f64| (x - value).abs() * speed <= reach;

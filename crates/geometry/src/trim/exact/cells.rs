@@ -60,7 +60,7 @@ pub(super) fn sorted_into(chains: Chains, flats: Flats) -> ExactTrim {
     ExactTrim { arcs: chains.arcs, grid, cells, entries }
 }
 
-/// Where arcs pass a scan line.
+/// The crossings of arcs with a scan line.
 struct Crossings {
     /// From the largest `u` to the smallest, with the sum of all up to it.
     sums: Vec<(f64, i32)>,

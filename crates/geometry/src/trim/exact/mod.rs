@@ -11,26 +11,26 @@
 //!     └───────────────────────────▶ u
 //! ```
 //!
-//! An *arc* is a piece of a trim curve that turns back neither in `u` nor in `v`: straight, or of a conic ([`conic`]), from
-//! its lower end to its higher one. Whether a point lies left of it is decided without a search, all in `f32`, the shader's
-//! arithmetic: by the side of its chord, and on the corner's side by the sign of the conic's equation.
-//!
 //! An *arc* is a piece of a trim curve that turns back neither in `u` nor in `v`: straight, or of a conic ([`conic`]),
 //! from its lower end to its higher one. Whether a point lies left of it is decided without a search, all in `f32`, the
 //! shader's arithmetic: by the side of its chord, and on the corner's side by the sign of the conic's equation.
-//! the lengthening back: that is the meaning of [`AT_LOW`] and [`AT_HIGH`]. Joints are the same bits for both
+//!
 //! **Winding.** The winding number of `p` counts crossings right of `p`. Arcs of the list are tested. The others add up
 //! to one number for all points of the box, provided that they form whole chains. A chain that leaves the list at a
 //! joint right of the box is lengthened straight upwards from that joint, at `u = ∞`, and the arc of the list subtracts
 //! the lengthening again: that is the meaning of [`AT_LOW`] and [`AT_HIGH`]. Joints are the same bits for both
 //! neighbours and are only compared, so the loops stay closed whatever an arc's own rounding is.
 //!
-//! **Memory.** See [`ExactTrim::bytes`]. Lists lie where they are read, arc for arc, and cells whose lists are the same share
-//! one. Cells are fewer where arcs cross each other, so that all of it stays linear in the number of arcs.
+//! **Accuracy.** An arc is within 2⁻²⁵ of the domain of its trim curve, proved as it is made. Corners are stored
+//! relative to the arc's lower end, so the equation is off by a few roundings times the arc's size. Joints are rounded
+//! to 2⁻²⁴ of the domain, as the fragment's own (u, v) is.
 //!
-//! Sources: D. Nehab, H. Hoppe, *Random-access rendering of general vector graphics*, 2008 (a lattice
 //! **Memory.** See [`ExactTrim::bytes`]. A list stores its arcs themselves, and cells with equal lists share one. Cells
 //! are fewer where arcs cross each other, so memory stays linear in the number of arcs.
+//!
+//! Sources: D. Nehab, H. Hoppe, *Random-access rendering of general vector graphics*, 2008 (a lattice of cells that
+//! store their winding number, and shortcuts for chains that leave them); A. Schollmeyer, B. Fröhlich, *Direct trimming
+//! of NURBS surfaces on the GPU*, 2009 (monotone pieces).
 
 mod arcs;
 mod cells;

@@ -3,8 +3,8 @@
 //! ```text
 //!   record without a body ─▶ offset ─archive, brep─▶ faces ─▶ Part, placed where it stands
 //! ```
+//!
 //! Names, colours and layers come from the decoder's other records of the object.
-//! Names, colours and layers are those that the decoder gives to what it kept of the object.
 
 use super::brep::Brep;
 use super::{NOWHERE, archive, kept, linear, object};

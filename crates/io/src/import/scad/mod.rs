@@ -8,11 +8,12 @@
 //!     # sphere(r = 1);      # kept   % left out   * left out   ! alone, as if it stood at the top
 //!   }
 //! ```
+//!
 //! Circles, balls and cylinders are round unless few segments are stated: `0 < $fn < 13` is a choice of shape (a nut)
 //! and gives exactly those facets; [`Facets::AsWritten`] gives the facets of every one. A twisted extrusion has
 //! OpenSCAD's facets, including its circles. So has everything inside a hull, a Minkowski sum, an offset, a projection
 //! (`facets`).
-//! Minkowski sum, an offset, a projection (`facets`).
+//!
 //! A node that cannot be made is left out, and a warning names its line. So is a difference whose first operand is left
 //! out, and a Minkowski sum with any operand left out; other nodes are made of the remaining children. An empty node
 //! counts as the empty set: subtracting from it, or intersecting with it, is empty. Nesting is bounded by memory alone.
