@@ -52,9 +52,8 @@ pub fn most_cells(n: u64) -> u64 {
 
 impl Bsp {
     /// Decides the half-spaces of `tree` one after the other, in the order of its leaves. `possible` receives the
-    /// decisions on the way to a child, and returns whether any point satisfies them; with `
-    /// _
-    /// true` there may be `2^n` cells.
+    /// decisions on the way to a child, and returns whether any point satisfies them; with `|_| true` there may be
+    /// `2^n` cells.
     ///
     /// # Errors
     /// [`TreeError::TooLarge`] when there are more than `most_nodes` nodes.

@@ -9,20 +9,14 @@
 //! ```
 //!
 //! Numerators and `w³` are multiplied out *exactly* as Bernstein nets of one degree, so terms that cancel do cancel (on
-//! a cylinder `S_uv` comes out as zero). With `B_i` the basis, `
-//! Σ B_i a_i
-//! / Σ B_i w_i` is at most the largest `
-//! a_i
+//! a cylinder `S_uv` comes out as zero). With `B_i` the basis, `|Σ B_i a_i| / Σ B_i w_i` is at most the largest `|a_i|
 //! / w_i`. The nets are halved where this bound is more than [`SPARE`] above a value that a derivative reaches: no
 //! bound is farther above the truth, unless [`MOST_HALVINGS`] did not suffice.
 //!
 //! **The twist.** The error of a triangulation depends on the second derivative along a step `(x, y)`, a vector.
 //! Separate bounds of its three terms add up vectors that may have different directions, or be large in different
-//! places. So the mixed term is bounded last, by the smallest `b` that makes, with `a = sup
-//! S_uu
-//! ` and `c = sup
-//! S_vv
-//! `,
+//! places. So the mixed term is bounded last, by the smallest `b` that makes, with `a = sup |S_uu|` and `c = sup
+//! |S_vv|`,
 //!
 //! ```text
 //!   |S_uu x² + 2 S_uv x y + S_vv y²| <= a x² + 2 b |x y| + c y²         for all x, y, everywhere
