@@ -1,4 +1,4 @@
-//! Files of which something or everything cannot be drawn: what is said, and the exit status.
+//! Files with something or everything left out: messages, and the exit status.
 
 use super::{refused, selvedge, text};
 use std::fs;
@@ -30,7 +30,7 @@ fn draws_nothing(folder: &TempDir, model: &str, message: &str) {
     }
     let written = [&png, &native, &step].map(|path| fs::exists(path).unwrap());
     assert_eq!(written, [false; 3]);
-    // which describes the file all the same
+    // `info` describes the file all the same
     let info = selvedge(&["info", "--json", model]);
     assert_eq!(info.status.code(), Some(2));
     assert!(text(&info.stderr).contains(message), "{}", text(&info.stderr));
@@ -80,8 +80,8 @@ fn what_is_left_out_is_told_and_strict_refuses_it() {
     assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), ""));
 }
 
-/// A Boolean solid of which nothing is left, which no reader can tell; a section that takes everything; a camera that
-/// looks past the model.
+/// A Boolean solid that is empty, which no reader can see; a section that removes everything; a camera that looks past
+/// the model.
 #[test]
 fn pictures_of_nothing_are_no_success() {
     let folder = TempDir::new().unwrap();
