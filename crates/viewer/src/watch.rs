@@ -1,4 +1,4 @@
-//! Open files on the disk: told when they change.
+//! Watches open files on the disk for changes.
 //!
 //! Folders are watched, not files: many programs write a new file and rename it over the old one.
 
@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Watched files: how they were named, by where they are.
+/// Watched files: the given name by the path.
 type Watched = Arc<Mutex<BTreeMap<PathBuf, PathBuf>>>;
 
 /// Watches files.

@@ -47,7 +47,7 @@ fn point(p: glam::DVec3) -> String {
     p.to_array().map(|x| format!("{x:.4}")).join("  ")
 }
 
-/// What the picture promises.
+/// The accuracy promise of the picture.
 fn badge(row: &mut egui::Ui, ui: &mut Ui, session: &Session, facts: &Facts<'_>) {
     let warnings: usize = session.world.files.iter().map(|file| file.warnings.len()).sum();
     let incomplete = session.world.files.iter().any(|file| !file.complete);
@@ -116,7 +116,7 @@ pub fn windows(ctx: &egui::Context, ui: &mut Ui, session: &Session, settings: &S
     ui.help = open;
 }
 
-/// Where a picture goes, and how large it is.
+/// The file and the size of a picture to write.
 fn shot(ctx: &egui::Context, ui: &mut Ui) {
     let mut open = ui.shot.open;
     let mut wanted = false;
@@ -140,7 +140,7 @@ fn shot(ctx: &egui::Context, ui: &mut Ui) {
     }
 }
 
-/// Where the model goes, as it was edited.
+/// The file for the edited model.
 fn save(ctx: &egui::Context, ui: &mut Ui) {
     let Some(path) = &mut ui.save else { return };
     let (mut open, mut wanted) = (true, false);
