@@ -38,7 +38,7 @@ impl Tiles {
         let mut reaches = whole.reaches();
         for (reach, primitive) in reaches.iter_mut().zip(whole.primitives()) {
             if !primitive.shape.is_analytic() {
-                *reach = primitive.bounds(); // frames store boxes without equations' bounds
+                *reach = primitive.bounds(); // frames store the whole box of a shape without equations
             }
         }
         let (leaves, centres): (Vec<Leaf>, Vec<[f32; 3]>) =
