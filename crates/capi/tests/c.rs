@@ -60,7 +60,7 @@ fn every_call_refuses_what_it_must() {
     good(&watched(&program).arg(bracket).output().expect("it runs"));
 }
 
-/// The sanitizer would tell.
+/// The sanitizer reports it.
 #[test]
 fn a_handle_that_is_not_freed_is_seen() {
     let into = tempfile::tempdir().expect("a folder");
