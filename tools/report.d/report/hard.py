@@ -1,4 +1,4 @@
-"""Hard cases as scene files: what could go wrong in each, and how it is looked at.
+"""Hard cases as scene files: the possible fault of each, and the options of its views.
 
 Sheets are 40 by 30 millimetres, their parameters run from 0 to 1, and a picture of a whole one at 320 x 240 shows it
 some 200 pixels wide.
@@ -99,7 +99,7 @@ def sheets(gap):
     return both + '[part.both]\nsurfaces = ["left", "right"]\n'
 
 
-# what docs/accuracy.md excepts
+# exceptions of docs/accuracy.md
 OTHER_DEGREES = "untrimmed faces that meet with other degrees may leave a pixel open between them"
 SLIVERS = "slivers narrower than a pixel are a pixel in a picture"
 TOLD = "the promise is void where a frame counts a clamp"
@@ -221,7 +221,7 @@ CASES = [
 
 
 def random_sheets(draw, count):
-    """Surfaces of degree 1 to 6, weights up to 30:1, each with up to four loops that do not meet; how many loops."""
+    """Surfaces of degree 1 to 6, weights up to 30:1, each with up to four loops that do not meet; and the loops' number."""
     text, instances, loops, side = "", "", 0, math.ceil(math.sqrt(count))
     for k in range(count):
         n, m = draw.randint(2, 7), draw.randint(2, 7)
@@ -253,7 +253,7 @@ def star(draw, name, x, y):
 
 
 def random_tree(draw, leaves):
-    """A Boolean solid of random primitives and operators; the first is large, so that something is left."""
+    """A Boolean solid of random primitives and operators; the first is large, so that the result is not empty."""
     text = solid("A0", "sphere", radius=25.0)
     tree = "A0"
     for k in range(1, leaves):
