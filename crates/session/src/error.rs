@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_unwinds_is_told_by_its_cause() {
+    fn panics_are_reported_by_their_cause() {
         let late = Stop::within(Duration::ZERO);
         let stopped: Result<(), SessionError> = guarded(|| {
             late.check();

@@ -23,7 +23,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_are_never_too_thin_to_be_told() {
+    fn lines_are_never_too_thin_to_be_seen() {
         let px = |settings: EdgeSettings, height: u32| settings.width * f64::from(height) / EdgeSettings::HEIGHT;
         assert!((px(lines(None, 1080), 1080) - 1.25).abs() < 1e-12);
         assert!((px(lines(None, 64), 64) - 1.0).abs() < 1e-12);

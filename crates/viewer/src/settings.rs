@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_file_is_told_and_not_replaced() {
+    fn a_damaged_file_is_reported_and_not_replaced() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("viewer.json");
         std::fs::write(&path, "{\n\"preset\": 3}").expect("written");

@@ -60,7 +60,7 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn files_that_are_written_or_replaced_are_told_and_others_are_not() {
+    fn written_and_replaced_files_are_reported_and_others_are_not() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = |name: &str| folder.path().join(name);
         std::fs::write(path("a"), "1").expect("written");

@@ -120,7 +120,7 @@ fn a_converted_model_is_the_same_model() {
 
 /// What Open CASCADE counts in the sample, as samples/README.md says.
 #[test]
-fn info_tells_bodies_faces_and_the_assembly() {
+fn info_reports_bodies_faces_and_the_assembly() {
     let model = concat!(env!("CARGO_MANIFEST_DIR"), "/../../samples/assembly.step");
     let plain = selvedge(&["info", model]);
     assert_eq!(plain.status.code(), Some(0));
@@ -182,7 +182,7 @@ fn polygons_are_subdivided() {
 
 /// `sweep` writes a row a setting, and beside the bound the smallest level with no larger error.
 #[test]
-fn sweeps_measure_what_they_are_asked() {
+fn sweeps_measure_the_given_quantities() {
     let out = std::env::temp_dir().join(format!("selvedge-sweep-{}.csv", std::process::id()));
     let file = out.to_string_lossy();
     let sample = concat!(env!("CARGO_MANIFEST_DIR"), "/../../samples/bracket.step");

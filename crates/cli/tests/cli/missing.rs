@@ -58,7 +58,7 @@ fn a_file_without_anything_to_draw_is_refused() {
 }
 
 #[test]
-fn what_is_left_out_is_told_and_strict_refuses_it() {
+fn omissions_are_reported_and_strict_refuses_them() {
     let folder = TempDir::new().unwrap();
     let some = file(&folder, "some.bv", &format!("{PATCH}{DAMAGED}{PATCH}{DAMAGED}"));
     let png = folder.path().join("a.png").to_str().unwrap().to_owned();
@@ -126,7 +126,7 @@ fn pictures_of_nothing_are_no_success() {
 /// does not exist.
 #[cfg(feature = "rhino")]
 #[test]
-fn a_face_that_is_left_out_of_a_rhino_file_is_told() {
+fn a_face_that_is_left_out_of_a_rhino_file_is_reported() {
     const BLOCKS: &[u8] = include_bytes!("../../../io/src/import/rhino/blocks.3dm");
     /// The first bytes of the class of spline surfaces.
     const SURFACE: [u8; 4] = 0x4ED7_D4DE_u32.to_le_bytes();

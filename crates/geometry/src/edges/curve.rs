@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_circles_and_others_are_told_apart() {
+    fn lines_circles_and_others_are_distinguished() {
         let at = |f: &dyn Fn(f64) -> DVec3| (0..=20).map(|i| f(f64::from(i) / 20.0)).collect::<Vec<_>>();
         let line = at(&|t| DVec3::new(1e3 + 3.0 * t, 4.0 * t, 0.0));
         assert!(matches!(shape_of(&line), CurveShape::Line(d) if d.distance(DVec3::new(0.6, 0.8, 0.0)) < 1e-12));

@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_is_told_with_what_is() {
+    fn an_absent_name_is_reported_with_the_present_ones() {
         let mut m = model();
         let error = m.xray(&["#3", "nut"], 0.5).unwrap_err();
         assert_eq!(error.to_string(), "nothing is called `nut`; there are `bolt`, `left`, `right`, #3, #4, #7");

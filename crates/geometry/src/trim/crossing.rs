@@ -309,7 +309,7 @@ mod tests {
 
     /// A comb of 3000 teeth whose boxes all meet, so far do they lean; upright, each is beside two others.
     #[test]
-    fn too_many_are_told() {
+    fn too_many_are_reported() {
         let comb = |lean: f64, first: u32| {
             let teeth = (first..3000).flat_map(|k| [(f64::from(2 * k), 0.0), (f64::from(2 * k + 1) + lean, 1.0)]);
             let points: Vec<(f64, f64)> = teeth.chain([(6000.0, -1.0), (0.0, -1.0)]).collect();

@@ -65,7 +65,7 @@ fn flat() -> Surface {
 }
 
 #[test]
-fn what_cannot_be_cast_is_told() {
+fn curves_that_cannot_be_cast_are_reported() {
     let ring = |x: f64, r: f64| circle(DVec3::new(x, 0.0, 1.0), DVec3::Z, DVec3::X, r, std::f64::consts::TAU).unwrap();
     let cast = |ring: BSpline<DVec4>, along: DVec3| project(&flat(), &[ring], along, 1e-6);
     let misses = |r: Result<_, ConstructError>, from: f64, to: f64| match r {

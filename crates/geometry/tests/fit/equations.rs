@@ -62,7 +62,7 @@ fn torus_closes_both_ways() {
 
 /// A cone's seam is smooth, a drop's profile creases at its seam, a Moebius strip's sides do not meet point by point.
 #[test]
-fn sides_are_told_apart() {
+fn sides_are_distinguished() {
     let options = FitOptions::new(1e-5);
     let cone = fit(|u, v| DVec3::new(v * u.cos(), v * u.sin(), v), (0.0, TAU), (0.0, 2.0), &options).unwrap();
     assert_eq!((cone.sides.u, cone.sides.poles[2]), (Side::Periodic, Some(DVec3::ZERO)));

@@ -116,7 +116,7 @@ mod tests {
     use std::sync::Mutex;
 
     #[test]
-    fn every_stage_and_every_face_is_told_once() {
+    fn every_stage_and_every_face_is_reported_once() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/bracket.step");
         let stages = Mutex::new(Vec::new());
         let tell = |stage| stages.lock().unwrap().push(stage);

@@ -229,7 +229,7 @@ mod tests {
 
     /// Files of lines, of hidden items, of parts in other files.
     #[test]
-    fn what_a_file_holds_in_place_of_surfaces_is_told() {
+    fn contents_other_than_surfaces_are_reported() {
         let around = |data: &str| {
             format!("ISO-10303-21;HEADER;FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));ENDSEC;DATA;{data}ENDSEC;END-ISO-10303-21;")
         };

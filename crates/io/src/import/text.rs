@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_character_is_told() {
+    fn invalid_characters_are_reported() {
         let cut = [&b"\xff\xfe#\0a\0"[..], b"\x00\xd8", b"b\0"].concat();
         assert_eq!(read(&cut), ("#a\u{fffd}b".into(), "it is UTF-16 with units that are no characters".into()));
     }

@@ -125,7 +125,7 @@ fn the_tree_names_every_part_and_the_search_finds_one() {
 }
 
 #[test]
-fn progress_warnings_and_the_promise_are_told() {
+fn progress_warnings_and_the_promise_are_shown() {
     let mut bench = Bench::new();
     assert!(bench.says("big.step: faces") && bench.says("exact within 0.5 px"));
     bench.click("Cancel");

@@ -84,7 +84,7 @@ fn edges_go_before_faces_and_their_ends_before_them() {
 }
 
 #[test]
-fn the_background_and_numbers_without_a_part_are_told() {
+fn the_background_and_numbers_without_a_part_are_reported() {
     let world = world();
     let (camera, pixel, sample, _) = over_face(&world, 0);
     let hit = one(pixel, NOTHING).pick(&world, &[0], &camera, pixel, PickFilter::Any);

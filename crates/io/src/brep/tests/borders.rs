@@ -60,7 +60,7 @@ fn borders_are_known_from_their_control_points() {
 }
 
 #[test]
-fn a_border_within_the_target_tells_its_gap() {
+fn a_border_within_the_target_reports_its_gap() {
     // the target is a hundredth of the tolerance; three fifths of it
     let off = DVec3::new(0.0, 0.0, 0.6e-2 * TOLERANCE);
     let (s, mut edges) = (sheet(), Vec::new());

@@ -145,7 +145,7 @@ fn faults_are_repaired_and_named() {
 /// A hole across the border takes its part of the face, and a note says so. A hole that touches the border crosses
 /// nothing.
 #[test]
-fn loops_that_cross_are_told() {
+fn loops_that_cross_are_reported() {
     let f = odd_frame();
     for (x, told) in [(5.0, true), (4.2, false)] {
         let mut edges = Vec::new();

@@ -46,7 +46,7 @@ fn vertices_win_over_a_line_beside_them() {
 }
 
 #[test]
-fn what_fits_neither_stays_and_is_told() {
+fn an_edge_that_cannot_be_repaired_stays_and_is_reported() {
     let line = |origin: DVec3, direction: DVec3| CurveGeometry::Line { origin, direction };
     // another direction: the edge cannot be repaired
     let (mut edges, mut faces) = two_sides(line(DVec3::splat(3.0), DVec3::new(1.0, 1.0, 0.0)));

@@ -223,7 +223,7 @@ fn bad_text_is_named_with_its_line() {
 }
 
 #[test]
-fn what_has_no_volume_is_empty_and_told() {
+fn an_operand_without_volume_is_empty_and_reported() {
     let flat = "multmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 0], [0, 0, 0, 1]]) { sphere(r = 1); }";
     for text in [flat, "sphere(r = nan);", "cube(size = [1, inf, 1]);", "cylinder(h = -1);"] {
         let import = import(text);

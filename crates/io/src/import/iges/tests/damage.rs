@@ -137,7 +137,7 @@ fn subfigures_without_end() {
 
 /// Thousands of subfigures, each in the next: they are followed to the limit, and a warning says that there are more.
 #[test]
-fn deep_subfigures_are_told_as_deep() {
+fn deep_subfigures_are_reported_as_deep() {
     let mut all = vec![e("308,0,1Ha,0;")];
     for level in 0..5000 {
         let definition = 1 + 4 * level;
@@ -152,7 +152,7 @@ fn deep_subfigures_are_told_as_deep() {
 
 /// A line: nothing to draw, and the summary names it.
 #[test]
-fn lines_are_told() {
+fn lines_are_reported() {
     let summary = import(&[e("110,0.,0.,0.,1.,0.,0.;")]).summary();
     assert_eq!(
         summary.to_string(),

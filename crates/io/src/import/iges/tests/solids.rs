@@ -115,7 +115,7 @@ fn rectangular_arrays() {
 }
 
 #[test]
-fn arrays_that_cannot_be_are_told() {
+fn impossible_arrays_are_reported() {
     for (array, why) in [
         ("412,1,1.,0.,0.,0.,0,2,30.,40.,0.,0,0;", "#3: the array has no places, or too many"),
         ("412,1,1.,0.,0.,0.,100000,100000,30.,40.,0.,0,0;", "#3: the array has too many places"),

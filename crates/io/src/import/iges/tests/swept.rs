@@ -83,7 +83,7 @@ fn a_swept_solid_is_a_closed_part() {
 }
 
 #[test]
-fn what_cannot_be_swept_is_told() {
+fn impossible_sweeps_are_reported() {
     let open = || e("106,1,3,0.,2.,0.,4.,0.,4.,2.;");
     let cases = [
         (open(), e("164,1,3.;"), "the curve that is swept is not closed"),

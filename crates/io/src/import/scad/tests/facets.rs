@@ -121,7 +121,7 @@ fn few_segments_turn_by_an_angle() {
 }
 
 #[test]
-fn dimensions_that_do_not_fit_are_told() {
+fn dimensions_that_do_not_fit_are_reported() {
     let mixed = import("hull() { cube(); square(); }");
     assert!(mixed.warnings[0].to_string().contains("mixed dimensions: `hull`: 1 children"), "{:?}", mixed.warnings);
     let told = |text: &str| import(text).warnings.iter().map(ToString::to_string).collect::<Vec<_>>();

@@ -47,7 +47,7 @@ fn one_item_is_enough() {
 
 /// Items that no representation lists follow the order of the relationship, with a warning.
 #[test]
-fn items_that_nobody_lists_are_told() {
+fn unlisted_items_are_reported() {
     let text = include_str!("cases/representations_swapped.stp").replace("(#177,#181)", "(#177)");
     let text = text.replace("(#159,#155)", "(#155)");
     for (representations, x) in [("#168,#182", 30.0), ("#182,#168", -30.0)] {

@@ -258,7 +258,7 @@ fn a_profile_is_not_drawn_by_itself() {
 }
 
 #[test]
-fn what_cannot_be_swept_is_told() {
+fn impossible_sweeps_are_reported() {
     let pipe = |from: &str, to: &str| {
         assert!(PIPE.contains(from), "{from}");
         format!("SWEPT_DISK_SOLID('',#130,1.,$,$,$);{}", PIPE.replace(from, to))
