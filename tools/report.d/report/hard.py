@@ -102,7 +102,7 @@ def sheets(gap):
 # exceptions of docs/accuracy.md
 OTHER_DEGREES = "untrimmed faces that meet with other degrees may leave a pixel open between them"
 SLIVERS = "slivers narrower than a pixel are a pixel in a picture"
-TOLD = "the promise is void where a frame counts a clamp"
+CLAMPS = "the promise is void where a frame counts a clamp"
 CLOSER = ["--zoom", "1,100,1000000"]
 CASES = [
     Case("poles", "collapsed edges, singular normals", solid("ball", "sphere", radius=20, faces=True)),
@@ -175,7 +175,7 @@ CASES = [
         "control points behind the eye",
         wavy("near"),
         ["--eye", "0,-14,4", "--target", "0,10,-2"],
-        TOLD,
+        CLAMPS,
     ),
     Case("shared side, other degree and direction", "a crack", sheets(0.0), known=OTHER_DEGREES),
     Case("gap of 1e-6", "a crack that the file has", sheets(1e-6), known=OTHER_DEGREES),
