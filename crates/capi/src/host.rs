@@ -97,7 +97,7 @@ pub struct SelvedgeTargets {
     pub instance: SelvedgeTarget,
 }
 
-/// What a finished frame reports.
+/// The counts of a finished frame.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct SelvedgeReport {
@@ -469,7 +469,7 @@ pub unsafe extern "C" fn selvedge_host_set_transform(
 /// Shows (not 0) or hides an instance, counted from 0.
 ///
 /// # Safety
-/// The pointer is null or points to what it says.
+/// The pointer is null or points to a value of its type.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn selvedge_host_set_visible(
     host: *const SelvedgeHost,
@@ -488,7 +488,7 @@ pub unsafe extern "C" fn selvedge_host_set_visible(
 /// Frees the renderer, and leaves the host's device as it is; null is allowed. The GPU has finished all frames.
 ///
 /// # Safety
-/// What was made here and is used by no other call at the same time.
+/// This library made it, and no other call uses it at the same time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn selvedge_host_free(host: *mut SelvedgeHost) {
     // SAFETY: as the caller promises

@@ -28,7 +28,7 @@ pub struct SelvedgeRendererOptions {
     pub struct_size: usize,
     /// Part of the device's name; null takes a discrete GPU, else an integrated one, else the CPU.
     pub device: *const c_char,
-    /// Not 0: load Vulkan's validation layer; what it says of a picture is SELVEDGE_STATUS_RENDER.
+    /// Not 0: load Vulkan's validation layer; its messages about a picture give SELVEDGE_STATUS_RENDER.
     pub validation: u32,
 }
 
@@ -42,8 +42,8 @@ pub struct SelvedgeView {
     pub width: u32,
     /// Pixels, 1 to 16384.
     pub height: u32,
-    /// iso, front, right, back, left, top, bottom, or "AZIMUTH,ELEVATION" in degrees: as large as the model fits. Null: iso,
-    /// or from `eye` where eye and target differ.
+    /// iso, front, right, back, left, top, bottom, or "AZIMUTH,ELEVATION" in degrees: the model fills the picture. Null:
+    /// iso, or from `eye` where eye and target differ.
     pub standard: *const c_char,
     /// Position of the eye, millimetres.
     pub eye: [f64; 3],
@@ -171,7 +171,7 @@ pub unsafe extern "C" fn selvedge_render(
     })
 }
 
-/// The word, or the one that stands for nothing said.
+/// The word, or the default for null.
 ///
 /// # Safety
 /// As [`text`].
@@ -184,7 +184,7 @@ where
     word.parse().map_err(|error: T::Err| argument(error.to_string()))
 }
 
-/// The vector, or what stands for zeros.
+/// The vector, or the default for zeros.
 fn or(given: [f64; 3], usual: DVec3) -> DVec3 {
     if given == [0.0; 3] { usual } else { given.into() }
 }
@@ -329,7 +329,7 @@ impl SelvedgeView {
 /// Frees the device; null is allowed.
 ///
 /// # Safety
-/// What was made here and is used by no other call at the same time.
+/// This library made it, and no other call uses it at the same time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn selvedge_renderer_free(renderer: *mut SelvedgeRenderer) {
     // SAFETY: as the caller promises

@@ -3,14 +3,14 @@
 use glam::DVec3;
 use selvedge_geometry::model::Camera;
 
-/// Where the key light comes from.
+/// The source of the key light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Key {
     /// The studio's lamp.
     Lamp,
     /// A sun in this direction, a unit vector in model space.
     Sun(DVec3),
-    /// A sun that something hides.
+    /// A sun hidden by an object.
     Shadow,
 }
 
@@ -41,7 +41,7 @@ pub fn curvature_scale(share: f64) -> DVec3 {
     DVec3::splat(0.941).lerp(end, share.abs().min(1.0))
 }
 
-/// The tone curve: light up to its shoulder as it is, above it nearer and nearer to 1.
+/// The tone curve: identity up to the shoulder, then nearer and nearer to 1.
 fn toned(light: DVec3) -> DVec3 {
     const SHOULDER: f64 = 0.76;
     let (peak, rest) = (light.max_element(), 1.0 - SHOULDER);

@@ -20,7 +20,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use task::{Shot, Task};
 
-/// Draws the pictures and writes every file asked for.
+/// Draws the pictures and writes all output files.
 pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let tasks = Task::all(args)?;
     match tasks.as_slice() {
@@ -29,7 +29,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     }
 }
 
-/// One file: what is wrong with it is what is wrong with the call.
+/// Draws one file: its error is the error of the call.
 fn alone(args: &RenderArgs, task: &Task) -> Result<Outcome> {
     target::check(&args.cut.inputs(&task.model), &task.outputs())?;
     let (import, device) =
@@ -38,7 +38,7 @@ fn alone(args: &RenderArgs, task: &Task) -> Result<Outcome> {
     Ok(if session.close() { Outcome::Broken } else { Outcome::Good })
 }
 
-/// What a picture was drawn from, and what it cost.
+/// The source and the cost of a picture.
 struct Drawn {
     camera: Camera,
     clamps: u64,
@@ -109,7 +109,7 @@ fn drawn(
     Ok(session)
 }
 
-/// What the frame cost, and what it marks.
+/// Prints the frame's cost, and the counts of marked pixels.
 fn tell(args: &RenderArgs, picture: &Picture) {
     let stats = &picture.stats;
     if args.frame.highlight {

@@ -1,4 +1,4 @@
-//! From a CAD file to pictures in memory: what the program, the C library and the Python package share.
+//! From a CAD file to pictures in memory: the common part of the program, the C library and the Python package.
 //!
 //! ```text
 //!   path, bytes ──read──▶ Loaded { model, warnings, … } ──┐
@@ -6,8 +6,8 @@
 //!                         outputs, backdrop ──────────────┘                     images ─▶ arrays, PNG
 //! ```
 //!
-//! A [`Worker`] draws one picture after another; its caller waits as long as it likes, and reads the next file
-//! meanwhile. A flag ends an import or an upload between two faces.
+//! A [`Worker`] draws one picture after another. Its caller may wait for each, and read the next file meanwhile. A flag
+//! ends an import or an upload between two faces.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! Lines along edges: `--edges` and what goes with it.
+//! Lines along edges: `--edges` and its companions.
 
 use anyhow::Result;
 use clap::Args;

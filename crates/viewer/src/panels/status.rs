@@ -77,7 +77,7 @@ fn curvature_scale(row: &mut egui::Ui, style: Style, session: &Session) {
     row.label(format!("{end} {unit}"));
 }
 
-/// What the picture promises.
+/// The accuracy promise of the picture.
 fn badge(row: &mut egui::Ui, ui: &mut Ui, session: &Session, facts: &Facts<'_>) {
     let warnings: usize = session.world.files.iter().map(|file| file.warnings.len()).sum();
     let incomplete = session.world.files.iter().any(|file| !file.complete);
@@ -146,7 +146,7 @@ pub fn windows(ctx: &egui::Context, ui: &mut Ui, session: &Session, settings: &S
     ui.help = open;
 }
 
-/// Where a picture goes, and how large it is.
+/// The file and the size of a picture to write.
 fn shot(ctx: &egui::Context, ui: &mut Ui) {
     let mut open = ui.shot.open;
     let mut wanted = false;
@@ -170,7 +170,7 @@ fn shot(ctx: &egui::Context, ui: &mut Ui) {
     }
 }
 
-/// Where the model goes, as it was edited.
+/// The file for the edited model.
 fn save(ctx: &egui::Context, ui: &mut Ui) {
     let Some(path) = &mut ui.save else { return };
     let (mut open, mut wanted) = (true, false);

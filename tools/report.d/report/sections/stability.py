@@ -50,7 +50,7 @@ def measure(context):
 
 
 def promises(known):
-    """What hard cases must keep, and where a document excepts them."""
+    """The promises for hard cases, with the documents' exceptions."""
     pixels, clamps = f"{PIXEL} in hard cases", "no clamp in a view of a hard case"
     if known is None:
         return Promise(pixels), Promise(clamps)
@@ -77,7 +77,7 @@ class Judge:
         self.context, self.options = context, options
 
     def judged(self, scene, views, device=None):
-        """What was found, or why nothing was."""
+        """The counts, or the reason why there are none."""
         path = self.context.program.folder() / "case.toml"
         path.write_text(scene)
         on = ["--device", device] if device and not self.context.program.on else []
