@@ -39,7 +39,7 @@ layout(scalar, binding = 13) readonly buffer Grids { BorderGrids grids; };
 layout(scalar, binding = 14) buffer SeenPoints { BorderPoint seen_points[]; };
 
 // No pass has asked before: there are neither patches nor meshes.
-layout(constant_id = 30) const bool ASKS_FIRST = false;
+layout(constant_id = 38) const bool ASKS_FIRST = false;
 const bool SOLIDS_HAVE_SHELLS = false;
 
 #include "crossing.glsl"

@@ -15,7 +15,7 @@ layout(scalar, binding = 2) readonly buffer Grids { BorderGrids grids; };
 layout(binding = 3, rgba32f) uniform image2D resolved; // of a mean: linear colour, less its opacity
 
 // Layers are drawn over the means, before the depths of the pixels' centres.
-layout(constant_id = 31) const bool KEEPS_DEPTH = false;
+layout(constant_id = 39) const bool KEEPS_DEPTH = false;
 
 void main() {
     uint n = thread_number();

@@ -34,7 +34,7 @@ layout(scalar, binding = 11) buffer SeenPoints { BorderPoint seen_points[]; };
 #endif
 
 // No pass has asked before: there are no patches.
-layout(constant_id = 30) const bool ASKS_FIRST = false;
+layout(constant_id = 38) const bool ASKS_FIRST = false;
 
 #include "facet.glsl"
 #include "mesh_walk.glsl"

@@ -22,8 +22,8 @@ const uint AROUND = 9u; // pixels, the own one in the middle
 const uint OWN = 4u;
 const uint NOBODY = 15u;
 
-// Rows of the points, four bits each: the share of them beside a straight line is 0.025 off that of the area on average,
-// 0.134 at most, by a search among all orders of rows.
+// Rows of the points, four bits each, found by a random search: the share of points beside a straight line is 0.025 off
+// that of the area on average, and 0.134 at most. Hammersley's are 0.031 and 0.139 off.
 const uint ROWS_OF_FIRST = 0x50c84f2au;
 const uint ROWS_OF_LAST = 0x6b1e73d9u;
 

@@ -1,25 +1,25 @@
-// Passes `solid_events` and, with FACE_IS_FOUND, `blister`: the first depth at which the pixel's ray enters the Boolean
-// solid.
+// Passes `solid_events` and, with FACE_IS_FOUND, `blister`: find the first depth at which the pixel's ray enters the
+// Boolean solid.
 //
 //      ray ──┬──────────┬────┬─────────┬──▶     events: where the ray crosses a side of some leaf
 //   A     ───┤██████████│████├─────────┼──
-//   B     ───┼──────────┤████│█████████├──      sides that coincide share their surface, so their
+//   B     ───┼──────────┤████│█████████├──      coinciding sides share their surface, so their
 //            ▲          ▲    ▲         ▲        depths are equal to the bit and make one event
 //         in A?    the Blist is walked once behind each event
 //
-// The ray is followed from the near plane until outside becomes inside: a near plane within the solid cuts
-// it open, and the first side entered from there is seen. Nothing is stored but the spans of the tile's
-// first leaves: exits of a Blist lead forward, so one scan over the leaves answers both whether the
-// solid is behind depth t and where the next event is that matters. The surfaces' equations stand once, in a loop of their own,
-// which passes over spans that are kept: a driver that runs both sides of every branch has no need to solve them again.
-// Where the depth of the face is found already, the walk begins there and tells whose it is.
+// The ray is followed from the near plane until outside becomes inside. A near plane within the solid cuts it open;
+// then the first side entered from there is visible. Only the spans of the tile's first leaves are stored. Exits of a
+// Blist lead forward, so one scan over the leaves decides both whether the solid is behind depth t and where the next
+// relevant event is. The surfaces' equations are in one loop of their own, which skips stored spans: a driver that runs
+// both sides of every branch does not solve them again. If the depth of the face is already known, the walk begins
+// there and finds its owner.
 //
-// A driver may end a long loop before its end. Such a ray goes on from the last event that it came to, by the same
-// pass drawn again: in segments, of which there are several only once a frame has told that they are needed.
+// A driver may end a long loop early. Such a ray resumes from its last event when the same pass is drawn again: in
+// segments. There are several segments only after a frame has reported that it needs them.
 //
-// An event that matters is one of a leaf that the walk asks: the others are not looked at whatever they are, so until
-// then the walk ends as it does. In A - (B + C + ...) nothing is asked before A begins. And while a gate of the tile's list
-// is shut, nothing else matters: in (A + B + ...) - C the next event within C is its end.
+// An event is relevant only if it belongs to a leaf that the walk tests: until then the walk ends at the same leaf,
+// whatever the other leaves are. In A - (B + C + ...) no other leaf is tested before A begins. While a gate of the
+// tile's list is shut, only the gate is relevant: in (A + B + ...) - C the next event within C is its end.
 #ifndef SOLID_EVENTS_GLSL
 #define SOLID_EVENTS_GLSL
 
@@ -52,19 +52,19 @@ layout(binding = 12, rg32ui) readonly uniform uimage2D found;
 #endif
 
 #ifndef FACE_IS_FOUND
-layout(scalar, binding = 13) buffer ResumePoints { uint resume_points[]; }; // of each pixel: bound where there are several ray segments
+layout(scalar, binding = 13) buffer ResumePoints { uint resume_points[]; }; // of each pixel; bound if there are several ray segments
 layout(scalar, push_constant) uniform Legs {
     uint nth;     // this segment, from 0
     uint ray_segments;    // of this drawing
-    uint is_most; // a frame may not ask for more
+    uint is_most; // a frame may not request more
 };
 
-// A resume point: the depth of the event from which the next segment goes on, its sign bit set where the solid is in front of it; 0
-// where the ray came to its end.
+// A resume point: the depth of the event from which the next segment continues, with the sign bit set if the solid is
+// in front of it; 0 if the ray is finished.
 const uint RESUME_BEFORE = 0x80000000u;
 #endif
 
-// Whether some leaf is a shell: compiled in only then.
+// Whether some leaf is a shell; the code for shells is compiled in only then.
 layout(constant_id = 13) const bool SOLIDS_HAVE_SHELLS = true;
 
 #include "crossing.glsl"
@@ -72,7 +72,7 @@ layout(constant_id = 13) const bool SOLIDS_HAVE_SHELLS = true;
 #include "solid_walk.glsl"
 
 layout(location = 0) out uvec2 visible;
-layout(location = 1) out uint operand_uv; // of a spline face: in scenes that have some
+layout(location = 1) out uint operand_uv; // of a spline face, in scenes with spline operands
 
 void main() {
     uint pixel = pixel_in_band(frame, uvec2(gl_FragCoord.xy));
@@ -106,7 +106,7 @@ void main() {
 #ifdef FACE_IS_FOUND
     if (!ended) atomicAdd(counters.clamps, 1u);
 #else
-    // from the event whose scan was the last to be trusted, if that is farther on
+    // resume from the event of the last valid scan, if it is farther on
     bool goes_on = !ended && (p.t > begun || p.t == begun && p.before != begun_before);
     if (goes_on) atomicMax(counters.ray_segments, nth + 1u);
     if (ray_segments > 1u) resume_points[pixel] = goes_on ? floatBitsToUint(p.t) | (p.before ? RESUME_BEFORE : 0u) : 0u;

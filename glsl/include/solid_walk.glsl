@@ -4,20 +4,20 @@
 #ifndef SOLID_WALK_GLSL
 #define SOLID_WALK_GLSL
 
-// Whether lists of items that rays are followed through come after those of the union.
+// Whether lists of items that rays are followed through come after the union's.
 layout(constant_id = 14) const bool SOLIDS_ARE_FOLLOWED = false;
 
 const uint NO_LEAF = 0xffffffffu;
 
-// Spans kept; those of further leaves are computed in every scan.
+// Number of stored spans; those of further leaves are computed in every scan.
 const uint KEPT = 12u;
 
-// What a scan is for.
+// The purpose of a scan.
 const uint SEARCH = 0u; // the next event
-const uint OWNER = 1u;  // does leaf `asked`, taken for what it is not, change the solid before or behind t?
-const uint SIDE = 2u;   // which side of leaf `asked` ends at t?
+const uint OWNER = 1u;  // whether flipping leaf `asked` changes the solid before or behind t
+const uint SIDE = 2u;   // the side of leaf `asked` that ends at t
 
-// The leaves whose spans begin or end at depth t: the first positive one, the first subtracted one.
+// The first positive leaf, and the first subtracted leaf, whose spans begin or end at depth t.
 struct Candidates {
     uint positive;
     uint negative;
@@ -27,12 +27,12 @@ struct Candidates {
 struct Walk {
     uint at;        // behind depth t
     uint at_before; // in front of it
-    float next;     // the next depth at which a leaf that the walk behind t asks begins or ends
+    float next;     // the next depth at which a leaf that the walk behind t tests begins or ends
     Candidates found;
     uint candidates;
 };
 
-// Leaf i of the tile, met at t; `other` is taken for what it is not, candidates count from `after` on.
+// Adds leaf i of the tile at depth t; leaf `other` is flipped, and candidates start after `after`.
 void meet(inout Walk walk, uint i, TileLeaf here, Crossing c, uint other, uint after) {
     if (i == walk.at) {
         walk.at = c.inside != (i == other) ? here.in_exit : here.out_exit;
@@ -88,8 +88,8 @@ void follow(inout Progress p, Meets meets, Ray ray) {
     uint asked = NO_LEAF;
     uint after = 0u;        // candidates from here on
     uint fallback = NO_LEAF;
-    bool negatives = false; // the candidates asked are the subtracted ones
-    // four events a leaf, at most as many questions about owners, and one about the side
+    bool negatives = false; // the candidates are the subtracted leaves
+    // four events a leaf, at most as many tests of owners, and one for the side
     uint most = 8u * (meets.end - meets.first) + 2u * meets.fragment_count + 4u;
     uint two = min(meets.end - meets.first, 1u) + 1u;
     for (uint scan = 0u; scan < most && !p.done; ++scan) {
@@ -130,8 +130,8 @@ void follow(inout Progress p, Meets meets, Ray ray) {
             }
             meet(walk, i, here, c, purpose == OWNER ? asked : NO_LEAF, after);
         }
-        // a driver that has ended a loop ends all of them from then on, this one of two steps, too: then the scan is not
-        // to be trusted
+        // a driver that has ended a loop ends all later loops, too, including this one of two steps; the scan is then
+        // invalid
         uint steps = 0u;
         for (uint i = 0u; i < two; ++i) ++steps;
         if (steps != two) break;
@@ -139,7 +139,7 @@ void follow(inout Progress p, Meets meets, Ray ray) {
         if (purpose == SIDE) {
             p.done = true;
         } else if (purpose == OWNER) {
-            // the owner is the first leaf that alone changes the solid, in front of the event or behind it
+            // the owner is the first leaf that by itself changes the solid, in front of the event or behind it
             uint other = negatives ? walk.found.negative : walk.found.positive;
             if (!inside || walk.at_before == EXIT_TRUE) {
                 purpose = SIDE;
