@@ -18,12 +18,12 @@
 //! Where a border is straight and pixels around see both of its sides, the share of sixteen points is within 0.14 of
 //! the share of the area, and within 0.03 on average over all straight lines.
 
+use super::border_list::ListBindings;
 use crate::abi;
 use crate::bindings::{Placed, Primitives};
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource};
 use crate::shaders::{self, BORDER_MIX_PLAIN, TrimTest, constant};
-use std::mem::offset_of;
 use std::ops::Range;
 
 /// Columns and rows of the picture that a workgroup of the first step looks for borders in.
@@ -55,27 +55,6 @@ pub(crate) struct BorderMix {
     /// Of scenes with patches.
     mix: Option<Kernel>,
     write: Kernel,
-}
-
-/// A list of pixels, and the grids of passes over it.
-#[derive(Clone, Copy)]
-pub(crate) struct ListBindings<'a> {
-    /// [`BorderPixel`](abi::BorderPixel)s.
-    pub pixels: &'a Buffer,
-    /// [`BorderGrids`](abi::BorderGrids); zero before.
-    pub grids: &'a Buffer,
-}
-
-impl<'a> ListBindings<'a> {
-    /// The arguments of a thread a pixel.
-    pub(super) fn of_pixels(&self) -> (&'a Buffer, u64) {
-        (self.grids, offset_of!(abi::BorderGrids, pixels) as u64)
-    }
-
-    /// The arguments of a thread a point.
-    pub(super) fn of_points(&self) -> (&'a Buffer, u64) {
-        (self.grids, offset_of!(abi::BorderGrids, points) as u64)
-    }
 }
 
 /// Their buffers and images.
