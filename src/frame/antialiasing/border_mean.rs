@@ -2,7 +2,7 @@
 //!
 //! Reads: everything that the bindings name. Writes: the means of `list`.
 
-use super::border_list::ListBindings;
+use crate::frame::common::border_list::ListBindings;
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image};
 use crate::shaders::{self, constant};

@@ -9,8 +9,8 @@
 //! Exact but for the rounding of a weight, 1e-5 of a triangle, where the triangles that lead there are at most
 //! `MOST_CROSSED` and share their sides in twos (`glsl/include/mesh_walk.glsl`).
 
-use super::border_list::ListBindings;
 use crate::bindings::Primitives;
+use crate::frame::common::border_list::ListBindings;
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource};
 use crate::shaders::{self, constant};

@@ -18,9 +18,9 @@
 //! Where a border is straight and pixels around see both of its sides, the share of sixteen points is within 0.14 of
 //! the share of the area, and within 0.03 on average over all straight lines.
 
-use super::border_list::ListBindings;
 use crate::abi;
 use crate::bindings::{Placed, Primitives};
+use crate::frame::common::border_list::ListBindings;
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource};
 use crate::shaders::{self, BORDER_MIX_PLAIN, TrimTest, constant};

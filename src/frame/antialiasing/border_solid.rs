@@ -9,9 +9,9 @@
 //! As exact as pass `solid_events`: both walk by `glsl/include/solid_walk.glsl`. Where a driver ends a ray's loop, the point
 //! keeps what was there before.
 
-use super::border_list::ListBindings;
 use crate::abi;
 use crate::bindings::Primitives;
+use crate::frame::common::border_list::ListBindings;
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource, TexelBuffer};
 use crate::shaders::{self, constant};

@@ -1,7 +1,6 @@
 //! Smooth pictures: several samples a pixel, the borders of trimmed faces mixed, or those of all that is seen.
 
 pub(crate) mod average;
-pub(crate) mod border_list;
 pub(crate) mod border_mean;
 pub(crate) mod border_mesh;
 pub(crate) mod border_mix;

@@ -10,13 +10,13 @@
 //! A list has room for every pixel of its band. A band reads the rows beside it as no pass has mixed them yet, so means are
 //! written a band later: there are two lists then.
 
-use super::border_list::ListBindings;
 use super::border_mean::{self, BorderMean};
 use super::border_mesh::{self, BorderMesh};
 use super::border_mix::{self, BorderMix, POINTS};
 use super::border_solid::{self, BorderSolid};
 use crate::abi::{BorderGrids, BorderPixel, BorderPoint};
 use crate::frame::Frame;
+use crate::frame::common::border_list::ListBindings;
 use crate::frame::common::room::Room;
 use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Image, Resource, barrier};
 use crate::scene::{SceneData, SolidData};

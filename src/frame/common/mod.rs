@@ -1,5 +1,6 @@
 //! Shared by several stages: counters that begin at 0, prefix sums, and the draws of sub-patches.
 
+pub(crate) mod border_list;
 pub(crate) mod draw;
 pub(crate) mod gate;
 pub(crate) mod kernel;

@@ -15,12 +15,12 @@ pub(crate) struct ListBindings<'a> {
 
 impl<'a> ListBindings<'a> {
     /// The arguments of a thread a pixel.
-    pub(super) fn of_pixels(&self) -> (&'a Buffer, u64) {
+    pub(crate) fn of_pixels(&self) -> (&'a Buffer, u64) {
         (self.grids, offset_of!(abi::BorderGrids, pixels) as u64)
     }
 
     /// The arguments of a thread a point.
-    pub(super) fn of_points(&self) -> (&'a Buffer, u64) {
+    pub(crate) fn of_points(&self) -> (&'a Buffer, u64) {
         (self.grids, offset_of!(abi::BorderGrids, points) as u64)
     }
 }
