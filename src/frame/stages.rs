@@ -99,6 +99,7 @@ impl Passes {
 /// The stages of a frame: those that the scene needs, for pictures of one size.
 pub(crate) struct Stages {
     /// What they were made for.
+    counts: Counts,
     capacities: Capacities,
     size: (u32, u32),
     pub(super) common: Common,
@@ -132,6 +133,7 @@ impl Stages {
         let scanned = scanned.fold(solids::buffers::scanned(room), u32::max);
         let p = passes;
         Ok(Self {
+            counts,
             capacities,
             size,
             common: Common::new(room, &p.common, scanned)?,
@@ -152,9 +154,9 @@ impl Stages {
         })
     }
 
-    /// They suffice for a picture of this size.
-    pub(crate) fn suffice(&self, capacities: Capacities, size: (u32, u32)) -> bool {
-        self.size == size && self.capacities.takes_as_much(capacities)
+    /// They suffice for a scene with so much, and for a picture of this size.
+    pub(crate) fn suffice(&self, counts: Counts, capacities: Capacities, size: (u32, u32)) -> bool {
+        self.size == size && counts.fits(self.counts) && self.capacities.takes_as_much(capacities)
     }
 
     /// Linear colour and depth, where a later pass mixes the colour from it.

@@ -88,8 +88,8 @@ impl SceneData {
 
     /// Whether an instance of the model may change; `moves`: where it is seen.
     pub(crate) fn may_change(&self, instance: usize, moves: bool) -> Result<(), InstanceError> {
-        // what is cut out for a view is cut anew
-        if !self.live.is_empty() && self.live[instance].is_none() {
+        // what is cut out for a view is cut anew, and what is not loaded yet is loaded
+        if self.live.get(instance) == Some(&None) {
             return Err(InstanceError::Followed(instance));
         }
         if moves && self.casts_shadows { Err(InstanceError::Shadows(instance)) } else { Ok(()) }
@@ -129,7 +129,7 @@ impl SceneData {
         self.trimmed.iter_mut().for_each(Trimmed::settle);
     }
 
-    fn hide(&mut self, number: u32, hidden: bool) {
+    pub(super) fn hide(&mut self, number: u32, hidden: bool) {
         if hidden || !self.hidden.is_empty() {
             self.hidden.resize(self.placements.len(), false);
             self.hidden[number as usize] = hidden;

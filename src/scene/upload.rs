@@ -17,7 +17,7 @@ use std::ops::Range;
 pub(crate) struct Scene {
     pub patches: TexelBuffer,
     /// Where nothing of their faces is; `None` where they are not asked whether they lie behind others.
-    outside: Option<Buffer>,
+    pub(super) outside: Option<Buffer>,
     /// Of the normals of each patch; `None` where no part is closed without trims.
     pub cones: Option<Buffer>,
     /// Homogeneous control points, and fine nets.
