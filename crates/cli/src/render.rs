@@ -17,7 +17,7 @@ use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::Camera;
 use selvedge::picture::{Outputs, Picture};
 use selvedge_io::import::Import;
-use selvedge_session::{Backdrop, Image};
+use selvedge_session::{Backdrop, Image, legend};
 use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
@@ -27,7 +27,7 @@ use task::{Shot, Task};
 /// and in host memory.
 const MOST_IN_FLIGHT: u64 = 1 << 24;
 
-/// Draws the pictures and writes every file asked for.
+/// Draws the pictures and writes all output files.
 pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let tasks = Task::all(args)?;
     match tasks.as_slice() {
@@ -36,7 +36,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     }
 }
 
-/// One file: what is wrong with it is what is wrong with the call.
+/// Draws one file: its error is the error of the call.
 fn alone(args: &RenderArgs, task: &Task) -> Result<Outcome> {
     target::check(&args.cut.inputs(&task.model), &task.outputs())?;
     let (import, device) =
@@ -45,7 +45,7 @@ fn alone(args: &RenderArgs, task: &Task) -> Result<Outcome> {
     Ok(if session.close() { Outcome::Broken } else { Outcome::Good })
 }
 
-/// What a picture was drawn from, and what it cost.
+/// The source and the cost of a picture.
 struct Drawn {
     camera: Camera,
     clamps: u64,
@@ -76,13 +76,16 @@ fn drawn(
     // the renderer shares it: large models are there once
     let model = Arc::new(std::mem::take(&mut import.model));
     let begun = Instant::now();
-    let looks = (&args.edges, args.look.ao, args.lines.settings()?);
+    let look = &args.look;
+    let looks = (&args.edges, look, args.lines.settings(look.style)?);
     let mut session = Session::of_one(device()?, &args.frame, &import, &model, looks)?;
     let upload_s = begun.elapsed().as_secs_f64();
-    let backdrop = args.look.backdrop(&import);
-    session.look(backdrop.colour(), args.look.style);
+    let backdrop = look.backdrop(&import);
+    let range = if look.style.is_curvature() { look.range(&model) } else { 1.0 };
+    session.look(backdrop.colour(), look.style, range);
     let images = task.shots.first().map_or(Outputs::default(), |shot| wanted(&shot.aovs));
-    let mut pictures = Pictures { args, task, cameras: &cameras, backdrop, sheet, upload_s, all: Vec::new(), record };
+    let cameras = &cameras;
+    let mut pictures = Pictures { args, task, cameras, backdrop, range, sheet, upload_s, all: Vec::new(), record };
     let mut next = 0;
     let is_small = u64::from(size.0) * u64::from(size.1) <= MOST_IN_FLIGHT;
     // a picture that is measured is drawn again before the next one
@@ -144,6 +147,8 @@ struct Pictures<'a> {
     task: &'a Task,
     cameras: &'a [Camera],
     backdrop: Backdrop,
+    /// Of curvature, in styles that show it.
+    range: f64,
     sheet: Option<Sheet>,
     upload_s: f64,
     /// On the sheet so far.
@@ -164,6 +169,7 @@ impl Pictures<'_> {
             }
             None => {
                 self.backdrop.under(picture.size, &mut picture.colour);
+                legend(self.args.look.style, self.range, picture.size, &mut picture.colour);
                 self.task.shots[index].write(&camera, &picture, stats)?;
                 (self.record)(&drawn)?;
             }
@@ -175,13 +181,14 @@ impl Pictures<'_> {
     fn finish(mut self) -> Result<()> {
         for (sheet, path) in self.sheet.iter_mut().zip(&self.task.sheet) {
             self.backdrop.under(sheet.size, &mut sheet.pixels);
+            legend(self.args.look.style, self.range, sheet.size, &mut sheet.pixels);
             output::png(path, sheet.size, &sheet.pixels)?;
         }
         self.all.iter().try_for_each(self.record)
     }
 }
 
-/// What the frame cost, and what it marks.
+/// Prints the frame's cost, and the counts of marked pixels.
 fn tell(args: &RenderArgs, picture: &Picture) {
     let stats = &picture.stats;
     if args.frame.highlight {

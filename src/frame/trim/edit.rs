@@ -1,7 +1,7 @@
-//! Edits of trim loops and of placed parts, and models that join the scene, before everything else of a frame.
+//! Copies edits of trim loops and of placed parts, and models that join the scene, at the beginning of a frame.
 //!
 //! ```text
-//!   frames before ──read──▶ the scene's arrays ◀──copies of what was edited, and of what comes behind them
+//!   frames before ──read──▶ the scene's arrays ◀──copies of edited data, and of models that join
 //!                                │                                 ▲
 //!                                ╰──copy, where there is no room──▶ larger arrays
 //! ```
