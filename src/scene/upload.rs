@@ -17,7 +17,7 @@ use std::ops::Range;
 pub(crate) struct Scene {
     pub patches: TexelBuffer,
     /// The cells of each patch that no part of the face covers; `None` without occlusion culling.
-    outside: Option<Buffer>,
+    pub(super) outside: Option<Buffer>,
     /// The cone of each patch's normals; `None` if no part is closed and without trims.
     pub cones: Option<Buffer>,
     /// Homogeneous control points, and fine nets.

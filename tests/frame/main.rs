@@ -32,6 +32,7 @@ mod light;
 mod living;
 mod look;
 mod meshes;
+mod models;
 mod narrow;
 mod objects;
 mod off_centre;
