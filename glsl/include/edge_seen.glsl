@@ -10,8 +10,9 @@
 // behind by rounding alone. A sheet of an own face counts as the edge's when the point is within `slack` of its
 // tangent plane; where two sheets come together, at a fold, that moves the end of a line by a quarter of it, across the fold. Needs
 // placed.glsl, patch.glsl, refine.glsl, visible.glsl, edges.glsl, `frame`, buffers `MeshInstance mesh_instances[]`, `uint
-// triangles[]`, `vec3 positions[]`; whoever includes this has `bool is_own_face(FaceInstance)` and
-// `bool is_own_triangle(uint instance, uint triangle)`.
+// triangles[]`, `vec3 positions[]`; whoever includes this has `bool is_own_face(FaceInstance)`,
+// `bool is_own_triangle(uint instance, uint triangle)`, and `OWN_PATCHES_HIDE`: own faces are asked here, not by
+// edge_covered.glsl.
 #ifndef EDGE_SEEN_GLSL
 #define EDGE_SEEN_GLSL
 
@@ -49,6 +50,13 @@ float own_slack(vec3 point, View view, vec2 slack) {
     return slack.x * pixel + slack.y * stretch + POINT_ROUNDING * point.z;
 }
 
+// How far the point lies before the tangent plane at a sample of a surface.
+float before_sheet(vec3 point, Sample s, View view) {
+    vec3 du = seen_from_eye(to_pixel(view, vec4(s.jet.du, 0.0)));
+    vec3 dv = seen_from_eye(to_pixel(view, vec4(s.jet.dv, 0.0)));
+    return before_plane(point, seen_from_eye(s.q), cross(normalize(du), normalize(dv)));
+}
+
 bool is_before_patch(EdgePoint e, uvec2 seen) {
     uint item = seen_item(seen.x);
     FaceInstance fi = face_instance_at(face_instance_of(item));
@@ -56,13 +64,10 @@ bool is_before_patch(EdgePoint e, uvec2 seen) {
     Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
     View view = view_at(fi.instance);
     Sample s = refine(patch_, view, unpack_uv(seen.y), e.pixel);
-    vec3 on = seen_from_eye(s.q);
-    vec3 du = seen_from_eye(to_pixel(view, vec4(s.jet.du, 0.0)));
-    vec3 dv = seen_from_eye(to_pixel(view, vec4(s.jet.dv, 0.0)));
-    float before = before_plane(e.place, on, cross(normalize(du), normalize(dv)));
-    if (is_own_face(fi)) return !(before < -own_slack(e.place, view, e.slack));
+    float before = before_sheet(e.place, s, view);
+    if (is_own_face(fi)) return !OWN_PATCHES_HIDE || !(before < -own_slack(e.place, view, e.slack));
     // its sheet ends before it gets there, at a fold: or it has no tangent plane
-    if (!(length(s.miss) <= ARRIVED_PX) || isnan(before)) return e.place.z <= on.z;
+    if (!(length(s.miss) <= ARRIVED_PX) || isnan(before)) return e.place.z <= s.q.z;
     return before >= -POINT_ROUNDING * e.place.z;
 }
 
