@@ -85,18 +85,27 @@ fn each_fault_is_seen() {
     assert!(missing > 500 && stray == 0);
 }
 
-/// A line may be half a pixel off, beyond the ends of an edge, too.
+/// A line may be half a pixel off, beyond the ends of an edge, too: around a square, wherever it lies among the pixels.
 #[test]
 fn a_line_may_reach_half_a_pixel_beyond_its_width() {
-    let (model, camera, [visible, _]) = cube();
-    let wide = |more: f64| {
-        let lines = image(&camera, |p| to_segments(&visible, p) - more);
-        judged(&model, &camera, &DrawingSettings::default(), &lines)
-    };
-    let found = wide(0.5 - 1e-6);
-    assert_eq!((found.missing, found.stray), (0, 0), "{found:?}");
-    // by a quarter more, somewhere all along the edges
-    assert!(wide(0.75).stray > 100);
+    let camera = Camera { size: (200, 150), ..parallel(DVec3::Z * 3.0, 3.0) };
+    for step in 0..8 {
+        let by = f64::from(step) / 50.0 * DVec3::new(0.13, 0.07, 0.0);
+        let low = DVec3::new(-1.0, -1.0, 0.0) + by;
+        let square = rectangle(low, DVec3::X * 2.0, DVec3::Y * 2.0);
+        let model = alone(Part { faces: vec![face(1, square, vec![])], ..Part::default() });
+        let corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)];
+        let corners = corners.map(|(x, y)| pixel(&camera, low + DVec3::new(x, y, 0.0)));
+        let sides: Vec<[DVec2; 2]> = (0..4).map(|k| [corners[k], corners[(k + 1) % 4]]).collect();
+        let wide = |more: f64| {
+            let lines = image(&camera, |p| to_segments(&sides, p) - more);
+            judged(&model, &camera, &DrawingSettings::default(), &lines)
+        };
+        let found = wide(0.5 - 1e-6);
+        assert_eq!((found.missing, found.stray), (0, 0), "{step}: {found:?}");
+        // half a pixel more, all along the sides
+        assert!(wide(1.0).stray > 100, "{step}");
+    }
 }
 
 /// Of an edge just above the picture, half a line is in it.
