@@ -39,6 +39,7 @@ bool is_own_face(FaceInstance fi) { return fi == own_face; }
 
 bool is_own_triangle(uint instance, uint triangle) { return false; }
 
+const bool OWN_PATCHES_HIDE = true;
 #include "edge_seen.glsl"
 
 // At a fold the sheet bends away from its tangent plane at once.

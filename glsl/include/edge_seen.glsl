@@ -10,7 +10,8 @@
 // own face belongs to the edge if the point is within `slack` of its tangent plane. Where two sheets meet at a fold,
 // this moves the end of a line across the fold by a quarter of the slack. Needs placed.glsl, patch.glsl, refine.glsl,
 // visible.glsl, edges.glsl, `frame`, buffers `MeshInstance mesh_instances[]`, `uint triangles[]`, `vec3 positions[]`,
-// and functions `bool is_own_face(FaceInstance)` and `bool is_own_triangle(uint instance, uint triangle)`.
+// functions `bool is_own_face(FaceInstance)` and `bool is_own_triangle(uint instance, uint triangle)`, and the constant
+// `OWN_PATCHES_HIDE`: whether patches of own faces are compared here, and not in edge_covered.glsl.
 #ifndef EDGE_SEEN_GLSL
 #define EDGE_SEEN_GLSL
 
@@ -48,6 +49,13 @@ float own_slack(vec3 point, View view, vec2 slack) {
     return slack.x * pixel + slack.y * stretch + POINT_ROUNDING * point.z;
 }
 
+// How far the point lies before the tangent plane at a sample of a surface.
+float before_sheet(vec3 point, Sample s, View view) {
+    vec3 du = seen_from_eye(to_pixel(view, vec4(s.jet.du, 0.0)));
+    vec3 dv = seen_from_eye(to_pixel(view, vec4(s.jet.dv, 0.0)));
+    return before_plane(point, seen_from_eye(s.q), cross(normalize(du), normalize(dv)));
+}
+
 bool is_before_patch(EdgePoint e, uvec2 seen) {
     uint item = seen_item(seen.x);
     FaceInstance fi = face_instance_at(face_instance_of(item));
@@ -55,13 +63,10 @@ bool is_before_patch(EdgePoint e, uvec2 seen) {
     Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
     View view = view_at(fi.instance);
     Sample s = refine(patch_, view, unpack_uv(seen.y), e.pixel);
-    vec3 on = seen_from_eye(s.q);
-    vec3 du = seen_from_eye(to_pixel(view, vec4(s.jet.du, 0.0)));
-    vec3 dv = seen_from_eye(to_pixel(view, vec4(s.jet.dv, 0.0)));
-    float before = before_plane(e.place, on, cross(normalize(du), normalize(dv)));
-    if (is_own_face(fi)) return !(before < -own_slack(e.place, view, e.slack));
+    float before = before_sheet(e.place, s, view);
+    if (is_own_face(fi)) return !OWN_PATCHES_HIDE || !(before < -own_slack(e.place, view, e.slack));
     // the sheet ends before the edge, at a fold; or it has no tangent plane
-    if (!(length(s.miss) <= ARRIVED_PX) || isnan(before)) return e.place.z <= on.z;
+    if (!(length(s.miss) <= ARRIVED_PX) || isnan(before)) return e.place.z <= s.q.z;
     return before >= -POINT_ROUNDING * e.place.z;
 }
 

@@ -70,6 +70,10 @@ pub mod coverage {
 pub mod depth_pyramid {
     pub const SQUARE: u32 = 4;
 }
+pub mod edge_covered {
+    pub const COVERS_OWN_OFF: f32 = 7.0;
+    pub const COVERS_PX: f32 = 0.01;
+}
 pub mod edge_divide {
     pub const EDGE_HALVES: u32 = 0xffffffff;
     pub const EDGE_HALVINGS: u32 = 22;

@@ -66,7 +66,8 @@ impl Passes {
             let transparency = transparency::Passes::new(device, data, formats)?;
             let smooth_trims = smooth_trims::pass(device, data, formats)?;
             let smooth_borders = smooth_borders::pass(device, data, test)?;
-            Ok::<_, GpuError>((transparency, smooth_trims, smooth_borders, edges::Passes::new(device, data, formats)?))
+            let edges = edges::Passes::new(device, data, formats, test)?;
+            Ok::<_, GpuError>((transparency, smooth_trims, smooth_borders, edges))
         };
         let ((gaps, over), (solids, (patches, pictures))) = rayon::join(
             || rayon::join(gaps, over),

@@ -24,8 +24,8 @@ use super::{Frame, WRITE_TO_READ};
 use crate::abi::Chord;
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, barrier};
 use crate::picture::EdgeSettings;
-use crate::scene::SceneData;
-use crate::shaders::constant;
+use crate::scene::{SceneData, SolidData};
+use crate::shaders::{TrimTest, constant};
 use ash::vk;
 use std::sync::Arc;
 
@@ -43,15 +43,21 @@ pub(crate) struct Passes {
 
 impl Passes {
     /// `None` where no line is drawn.
-    pub(super) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<Self>, GpuError> {
+    pub(super) fn new(
+        device: &Device,
+        data: &SceneData,
+        formats: resolve::Formats,
+        test: Option<&TrimTest>,
+    ) -> Result<Option<Self>, GpuError> {
         let Some(edges) = data.edges.as_ref().filter(|_| data.has_lines()) else { return Ok(None) };
         let constants = constants(data);
+        let kinds = line::Kinds { test, volume: data.volume.as_ref().and_then(SolidData::kinds) };
         let numbers = formats.numbers[0].then_some(NUMBER_FORMAT);
         Ok(Some(Self {
             settings: edges.settings,
             has_edge_image: formats.numbers[0],
             divide: divide::Divide::new(device)?,
-            line: line::Line::new(device, &constants)?,
+            line: line::Line::new(device, &constants, &kinds)?,
             fold: (edges.settings.silhouettes && data.has_patches)
                 .then(|| fold::Fold::new(device, &constants))
                 .transpose()?,
@@ -142,6 +148,7 @@ impl EdgeStage {
         cmd.clear(&self.best, 0);
         barrier::images(cmd, &[(&self.best, Access::TRANSFER_WRITE, written)]);
         if let (Some(edges), Some(sources)) = (&s.edges, &s.sources) {
+            let trim = frame.trim_test();
             let bindings = line::Bindings {
                 frame: frame.constants,
                 placed: s.placed(frame.views),
@@ -152,6 +159,8 @@ impl EdgeStage {
                 edges,
                 best: &self.best,
                 meshes: s.meshes.as_ref(),
+                trim: &trim,
+                volume: frame.volume(),
             };
             let params = line::Params { half_px: self.half_px, hidden: u32::from(passes.settings.hidden) };
             passes.line.record(cmd, &bindings, params, &self.draw);

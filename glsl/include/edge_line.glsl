@@ -1,12 +1,11 @@
-#version 460
-#extension GL_EXT_scalar_block_layout : require
-#extension GL_GOOGLE_include_directive : require
 // Pass `edge_line`: each pixel's best line. Where several cover it, the one that is seen, then the one that covers most of
 // it, then the last one counts: the same whatever the order in which they are drawn.
 //
 //    ●━━━━━━━━━━━━●   chord        distance of the pixel's centre ─▶ share of the pixel
 //        │            its point nearest to the centre ─▶ parameter ─▶ the exact point of the edge ─▶ seen, or hidden
 //        · pixel
+//
+// The trim test is that of one way (trim.glsl).
 #include "scene.glsl"
 #include "view.glsl"
 #include "edges.glsl"
@@ -33,9 +32,17 @@ layout(scalar, push_constant) uniform Push {
     uint hidden;
 } push;
 
+#define TRIM_BINDING 21
+#include "trim.glsl"
+#ifdef WITHIN_VOLUME
+#define VOLUME_BINDING (TRIM_BINDING + TRIM_BUFFERS)
+#include "volume.glsl"
+#endif
 #include "placed.glsl"
 #include "patch.glsl"
+#include "patch_place.glsl"
 #include "refine.glsl"
+#include "face_point.glsl"
 #include "visible.glsl"
 
 layout(location = 0) flat in uint chord;
@@ -52,7 +59,9 @@ bool is_own_face(FaceInstance fi) { return is_own(fi.instance, word_at(face_keys
 
 bool is_own_triangle(uint instance, uint triangle) { return is_own(instance, OWN_TRIANGLE | triangle); }
 
+const bool OWN_PATCHES_HIDE = false;
 #include "edge_seen.glsl"
+#include "edge_covered.glsl"
 
 // What Newton's method leaves of the way to the edge's place, and what the sheet bends on it.
 const float ON_SHEET_PX = 1.0 / 64.0;
@@ -99,7 +108,7 @@ void main() {
     EdgeItem item = edge_items[c.item];
     EdgePiece piece = edge_pieces[item.piece];
     EdgePoint e = point_at(c, share, piece, view_at(item.placement));
-    if (!is_seen(e, at)) {
+    if (!is_seen(e, at) || is_covered(e, at)) {
         steps = uint(covered * dash(along, gl_FragCoord.xy, half_px) * LINE_STEPS + 0.5);
         if (push.hidden == 0u || steps == 0u) return;
         best = steps << LINE_COVERAGE | chord;
