@@ -328,8 +328,9 @@ pub struct Picture {
     pub thickness: Vec<f32>,
     /// Number of the edge whose line covers the pixel, by a tenth or more; 0 without any. Edges are counted from 1 on, part
     /// after part as [`Model::parts`](crate::model::Model::parts) has them: of each those of [`Edges::edges`](crate::model::Edges::edges), then
-    /// [`Edges::of_meshes`](crate::model::Edges::of_meshes), drawn or not. With
-    /// [`SceneSettings::edges`]; without, 0 everywhere.
+    /// [`Edges::of_meshes`](crate::model::Edges::of_meshes), drawn or not.
+    /// 4294967295 is the outline of a curved face, 4294967294 a line of a Boolean solid. With [`SceneSettings::edges`];
+    /// without, 0 everywhere.
     pub edge: Vec<u32>,
     /// Index into [`Model::parts`](crate::model::Model::parts), plus 1; 0 for background, Boolean solids and what is seen
     /// through.

@@ -10,7 +10,8 @@
 // behind by rounding alone. A sheet of an own face counts as the edge's when the point is within `slack` of its
 // tangent plane; where two sheets come together, at a fold, that moves the end of a line by a quarter of it, across the fold. Needs
 // placed.glsl, patch.glsl, refine.glsl, visible.glsl, edges.glsl, `frame`, buffers `MeshInstance mesh_instances[]`, `uint
-// triangles[]`, `vec3 positions[]`; whoever includes this has `bool is_own_face(FaceInstance)` and
+// triangles[]`, `vec3 positions[]`, `uimage2D operand_uv`, `usamplerBuffer leaf_surfaces`, `samplerBuffer surface_places`,
+// `OperandMesh operand_meshes[]`, `uint operand_triangles[]`, `vec3 operand_positions[]`; whoever includes this has `bool is_own_face(FaceInstance)` and
 // `bool is_own_triangle(uint instance, uint triangle)`.
 #ifndef EDGE_SEEN_GLSL
 #define EDGE_SEEN_GLSL
@@ -21,6 +22,11 @@ const float POINT_ROUNDING = 1e-6;
 const float ARRIVED_PX = 0.05;
 
 layout(constant_id = 27) const bool SCENE_HAS_MESHES = false;
+layout(constant_id = 17) const bool SOLIDS_HAVE_PATCHES = false;
+layout(constant_id = 29) const bool SCENE_HAS_SOLIDS = false;
+
+#include "solids.glsl"
+#include "shells.glsl"
 
 // A point of an edge: where it is in the picture, and seen from the eye (right, down, ahead).
 struct EdgePoint {
@@ -88,8 +94,40 @@ float solid_depth(ivec2 at, uint like, float none) {
     return seen.x == like ? uintBitsToFloat(seen.y) : none;
 }
 
-// Boolean solids: the side's depth, and its slope from the pixels beside it that see the same side.
+// A plane that is a side of a Boolean solid: `plane` is seen from the eye.
+bool is_before_side(EdgePoint e, vec4 plane) {
+    vec3 p = e.place.x * frame.right - e.place.y * frame.up + e.place.z * frame.forward;
+    float towards = frame.perspective != 0u ? -plane.w : -dot(plane.xyz, frame.forward);
+    return (dot(plane.xyz, p) - plane.w) * sign(towards) >= -POINT_ROUNDING * e.place.z;
+}
+
+// A triangle of an operand.
+bool is_before_operand(EdgePoint e, uint triangle) {
+    uint from = 0u;
+    uint end = uint(operand_meshes.length());
+    while (end - from > 1u) {
+        uint middle = (from + end) / 2u;
+        if (operand_meshes[middle].first_triangle <= triangle) from = middle;
+        else end = middle;
+    }
+    View view = view_at(operand_meshes[from].instance);
+    vec3 a = operand_positions[operand_triangles[3u * triangle]];
+    vec3 ab = operand_positions[operand_triangles[3u * triangle + 1u]] - a;
+    vec3 ac = operand_positions[operand_triangles[3u * triangle + 2u]] - a;
+    vec3 b = seen_from_eye(to_pixel(view, vec4(ab, 0.0)));
+    vec3 c = seen_from_eye(to_pixel(view, vec4(ac, 0.0)));
+    float before = before_plane(e.place, seen_from_eye(to_pixel(view, vec4(a, 1.0))), cross(normalize(b), normalize(c)));
+    return !(before < -POINT_ROUNDING * e.place.z);
+}
+
+// Other sides of Boolean solids: the side's depth, and its slope from the pixels beside it that see the same side.
 bool is_before_solid(EdgePoint e, ivec2 at, uvec2 seen) {
+    if (SCENE_HAS_SOLIDS && sees_solid(seen.x) && seen_side(seen.x) < frame.side_count) {
+        uint side = side_word(leaf_surfaces, seen_side(seen.x));
+        if ((side & SIDE_PLANE) != 0u) return is_before_side(e, place_at(surface_places, side >> SIDE_SHIFT));
+    } else if (SCENE_HAS_SOLIDS && sees_solid(seen.x)) {
+        return is_before_operand(e, seen_side(seen.x) - frame.side_count);
+    }
     float depth = uintBitsToFloat(seen.y);
     vec2 step_ = e.pixel - (vec2(at) + 0.5);
     // linear in the picture: the depth itself in a parallel view, else one over it
@@ -112,6 +150,7 @@ bool is_seen(EdgePoint e, ivec2 at) {
     if (SCENE_HAS_MESHES_OR_SOLIDS && sees_nothing(seen.x)) seen = imageLoad(others, at).xy;
     if (sees_nothing(seen.x)) return true;
     if (SCENE_HAS_MESHES && sees_mesh(seen.x)) return is_before_mesh(e, seen);
+    if (SOLIDS_HAVE_PATCHES && sees_operand(seen.x)) return is_before_patch(e, uvec2(seen.x, imageLoad(operand_uv, at).x));
     if (sees_other(seen.x)) return is_before_solid(e, at, seen);
     return is_before_patch(e, seen);
 }

@@ -88,6 +88,7 @@ const uint LEAF_ELSEWHERE = 16u;     // of an item that rays are followed throug
 const uint LEAF_PLANES = 32u;        // of its sides the last are planes
 const uint LEAF_ROUNDS = 64u;        // the first are none
 const uint LEAF_FLAG_BITS = 7u;
+const uint LEAF_CAP = 128u; // the cut of a section; not in lists of tiles
 
 // In place of a surface's number: the plane of one triangle alone, and which.
 const uint OWN_PLANE = 0x80000000u;

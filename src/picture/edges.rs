@@ -20,6 +20,8 @@ pub struct EdgeSettings {
     pub width: f64,
     /// The same of thin lines.
     pub thin_width: f64,
+    /// The same of the outlines of sections: where a cut of a closed part or of a Boolean solid meets the rest, or ends.
+    pub section_width: f64,
     /// Linear light, and opacity.
     pub colour: Colour,
     /// The same of hidden lines.
@@ -27,7 +29,7 @@ pub struct EdgeSettings {
 }
 
 impl Default for EdgeSettings {
-    /// All edges, 1.25 pixels wide and nearly black, tangent ones thin, hidden ones and silhouettes not at all.
+    /// All edges, 1.25 pixels wide and nearly black, tangent ones thin, outlines of sections twice as wide, hidden ones and silhouettes not at all.
     fn default() -> Self {
         Self {
             which: EdgeChoice::All,
@@ -36,6 +38,7 @@ impl Default for EdgeSettings {
             hidden: false,
             width: 1.25,
             thin_width: 0.6,
+            section_width: 2.5,
             colour: [0.012, 0.013, 0.016, 1.0],
             hidden_colour: [0.012, 0.013, 0.016, 0.35],
         }
@@ -71,6 +74,8 @@ pub enum TangentEdges {
 pub(crate) enum LineStyle {
     Full,
     Thin,
+    /// The outline of a section.
+    Bold,
 }
 
 /// Settings that draw nothing sensible.
@@ -96,13 +101,19 @@ impl EdgeSettings {
     /// # Errors
     /// [`BadEdges`].
     pub fn check(&self) -> Result<(), BadEdges> {
-        for width in [self.width, self.thin_width] {
+        for width in [self.width, self.thin_width, self.section_width] {
             if !(0.0..=Self::MOST_WIDTH).contains(&width) {
                 return Err(BadEdges::Width(width));
             }
         }
         let bad = [self.colour, self.hidden_colour].into_iter().find(|c| !c.iter().all(|x| (0.0..=1.0).contains(x)));
         bad.map_or(Ok(()), |colour| Err(BadEdges::Colour(colour)))
+    }
+
+    /// The width of sections' outlines beside lines of another width, as much wider as here; at most
+    /// [`MOST_WIDTH`](Self::MOST_WIDTH).
+    pub fn wider(&self, width: f64) -> f64 {
+        (width * self.section_width / self.width).min(Self::MOST_WIDTH)
     }
 
     /// How an edge of this kind is drawn, if at all.

@@ -29,6 +29,7 @@ mod instance;
 mod link;
 mod mesh;
 mod mixed;
+mod operand_edges;
 mod parts;
 mod picking;
 mod request;

@@ -8,7 +8,7 @@
 //!
 //! Reads: everything that `Bindings` names. Writes: `best`, cleared to 0 before.
 
-use crate::bindings::Placed;
+use crate::bindings::{Placed, SeenSolids};
 use crate::frame::common::draw::Draw;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource, TexelBuffer};
 use crate::scene::{EdgeBuffers, MeshBuffers};
@@ -34,14 +34,15 @@ pub(crate) struct Bindings<'a> {
     pub edges: &'a EdgeBuffers,
     pub best: &'a Image,
     pub meshes: Option<&'a MeshBuffers>,
+    pub solids: SeenSolids<'a>,
 }
 
 /// How lines look that matters to where they are.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct Params {
-    /// Pixels: of full lines, of thin ones.
-    pub half_px: [f32; 2],
+    /// Pixels: of full lines, of thin ones, of bold ones.
+    pub half_px: [f32; 3],
     pub hidden: u32,
 }
 
@@ -64,6 +65,7 @@ impl Line {
             .chain(edges)
             .chain([Resource::from(&e.points), b.best.into()])
             .chain(meshes.map(Resource::from))
+            .chain(b.solids.resources())
             .collect();
         cmd.rendering(b.visibility.size(), &[], None, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&params));
