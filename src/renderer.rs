@@ -207,6 +207,7 @@ impl Renderer {
         if !(tolerance >= FrameSettings::LEAST_TOLERANCE_PX && tolerance.is_finite()) {
             return Err(RenderError::Tolerance(tolerance));
         }
+        validate::check_curvature(input.settings, self.loaded.as_ref().is_none_or(|l| l.counts.curvature))?;
         input.targets.check(&self.formats, input.camera.size)?;
         let wanted = self.loaded.as_ref().is_none_or(|l| l.counts.thickness);
         assert!(wanted || !self.formats.outputs.thickness, "the model is uploaded with SceneSettings::thickness");

@@ -1,4 +1,4 @@
-//! Host data into device-local buffers, by staging copies in a given command buffer.
+//! Copies host data into device-local buffers, by staging buffers and a given command buffer.
 
 use super::{Access, Buffer, BufferInfo, Commands, GpuError, MemoryLocation, Pool, barrier};
 use ash::vk;

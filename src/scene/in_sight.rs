@@ -108,7 +108,7 @@ impl PlacedBox {
         Range { middle: linear.dot(self.centre) + row.w, reach, terms }
     }
 
-    /// Whether pass `bound` may keep a patch of the box.
+    /// Whether pass `bound` may draw a patch of the box.
     fn is_in_sight(&self, pixels: DMat4, placement: DAffine3, camera: &Camera, reach: Reach) -> bool {
         let (margin, beyond) = (reach.beside_px + SPARE_PX, reach.beyond_px + ROUNDING_PX);
         let rows = (pixels * DMat4::from(placement)).transpose();

@@ -1,4 +1,4 @@
-//! A model turned into what the GPU keeps: Bézier patches, trim curves, instances.
+//! A model as GPU data: Bézier patches, trim curves, instances.
 //!
 //! ```text
 //!   Model (f64, any size, any distance from the origin)
@@ -10,9 +10,9 @@
 //!   SceneData (plain arrays)  ──upload──▶  Scene (persistent pool)
 //! ```
 //!
-//! Single precision suffices because nothing is stored far from where it is seen: control points are
-//! relative to the centre of their part, and the transform from there to the eye is composed in
-//! `f64` every frame. Patches too slight for that have a fine net beside their points (`fine.rs`).
+//! Single precision suffices because coordinates are small where they are seen: control points are relative to the
+//! centre of their part, and the transform from there to the eye is composed in `f64` every frame. Patches with very
+//! short sides have a fine net in addition (`fine.rs`).
 
 mod cells;
 mod cones;

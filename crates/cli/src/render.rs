@@ -15,12 +15,12 @@ use selvedge::headless::HeadlessRenderer;
 use selvedge::model::Camera;
 use selvedge::picture::{Outputs, Picture};
 use selvedge_io::import::Import;
-use selvedge_session::Image;
+use selvedge_session::{Image, legend};
 use std::sync::Arc;
 use std::time::Instant;
 use task::{Shot, Task};
 
-/// Draws the pictures and writes every file asked for.
+/// Draws the pictures and writes all output files.
 pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let tasks = Task::all(args)?;
     match tasks.as_slice() {
@@ -29,7 +29,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     }
 }
 
-/// One file: what is wrong with it is what is wrong with the call.
+/// Draws one file: its error is the error of the call.
 fn alone(args: &RenderArgs, task: &Task) -> Result<Outcome> {
     target::check(&args.cut.inputs(&task.model), &task.outputs())?;
     let (import, device) =
@@ -38,7 +38,7 @@ fn alone(args: &RenderArgs, task: &Task) -> Result<Outcome> {
     Ok(if session.close() { Outcome::Broken } else { Outcome::Good })
 }
 
-/// What a picture was drawn from, and what it cost.
+/// The source and the cost of a picture.
 struct Drawn {
     camera: Camera,
     clamps: u64,
@@ -69,11 +69,13 @@ fn drawn(
     // the renderer shares it: large models are there once
     let model = Arc::new(std::mem::take(&mut import.model));
     let begun = Instant::now();
-    let looks = (&args.edges, args.look.ao, args.lines.settings()?);
+    let look = &args.look;
+    let looks = (&args.edges, look, args.lines.settings(look.style)?);
     let mut session = Session::of_one(device()?, &args.frame, &import, &model, looks)?;
     let upload_s = begun.elapsed().as_secs_f64();
-    let backdrop = args.look.backdrop(&import);
-    session.look(backdrop.colour(), args.look.style);
+    let backdrop = look.backdrop(&import);
+    let range = if look.style.is_curvature() { look.range(&model) } else { 1.0 };
+    session.look(backdrop.colour(), look.style, range);
     let mut all = Vec::new();
     for (index, (shot, camera)) in task.shots.iter().zip(&cameras).enumerate() {
         let begun = Instant::now();
@@ -91,6 +93,7 @@ fn drawn(
             }
             None => {
                 backdrop.under(picture.size, &mut picture.colour);
+                legend(look.style, range, picture.size, &mut picture.colour);
                 let stats = shot.stats.as_ref().map(|_| session.measured(camera, wanted(&shot.aovs), &picture.stats));
                 shot.write(camera, &picture, stats.transpose()?.as_ref())?;
                 record(&drawn)?;
@@ -99,13 +102,14 @@ fn drawn(
     }
     for (sheet, path) in sheet.iter_mut().zip(&task.sheet) {
         backdrop.under(sheet.size, &mut sheet.pixels);
+        legend(look.style, range, sheet.size, &mut sheet.pixels);
         output::png(path, sheet.size, &sheet.pixels)?;
     }
     all.iter().try_for_each(record)?;
     Ok(session)
 }
 
-/// What the frame cost, and what it marks.
+/// Prints the frame's cost, and the counts of marked pixels.
 fn tell(args: &RenderArgs, picture: &Picture) {
     let stats = &picture.stats;
     if args.frame.highlight {

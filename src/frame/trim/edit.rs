@@ -1,7 +1,7 @@
-//! Edits of trim loops and of placed parts, before everything else of a frame.
+//! Copies edits of trim loops and of placed parts, at the beginning of a frame.
 //!
 //! ```text
-//!   frames before ──read──▶ patches, curves, arcs and what sorts them; placed parts ◀──copies of what was edited
+//!   frames before ──read──▶ patches, curves, arcs and their cells; placed parts ◀──copies of edited data
 //! ```
 
 use crate::frame::Frame;
@@ -22,7 +22,7 @@ impl Frame<'_> {
     }
 }
 
-/// `None` where another way trims than the one that the edit was made for: never.
+/// The buffer to write; `None` if the scene uses another way to trim than the edit's, which does not happen.
 fn target(scene: &Scene, to: EditTarget) -> Option<&Buffer> {
     if to == EditTarget::Instances {
         return Some(&scene.instances);

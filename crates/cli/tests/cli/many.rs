@@ -9,7 +9,7 @@ fn sample(name: &str) -> String {
     format!("{}/../../samples/{name}", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// A folder with a whole file, one that is none, and another whole one, in this order.
+/// A folder with a whole file, an invalid one, and another whole one, in this order.
 fn files() -> (tempfile::TempDir, Vec<String>) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).display().to_string();
@@ -100,7 +100,7 @@ fn the_first_failure_ends_it_where_that_is_wanted() {
     assert!(!folder.path().join("a_iso.png").exists());
 }
 
-/// A file that takes too long is one that fails; nothing takes less than a nanosecond.
+/// A file that takes too long fails; nothing takes less than a nanosecond.
 #[test]
 fn a_file_has_its_time() {
     let (folder, names) = files();
@@ -131,7 +131,7 @@ fn two_files_do_not_go_to_one_place() {
     refused(&["render", a, c, "-o", &out("{stem}.png"), "--aov", &format!("depth={}", out("d.npy"))], "{stem}");
 }
 
-/// The call of the file that desktops read, with what the specification puts in place of its fields.
+/// The call of the file that desktops read, with the specification's replacements for its fields.
 #[test]
 fn desktops_get_their_thumbnails() {
     let desktop = concat!(env!("CARGO_MANIFEST_DIR"), "/../../desktop/selvedge.thumbnailer");
