@@ -177,6 +177,7 @@ impl Loaded {
                 None => data.find_edges(whole, edges)?,
                 Some(cut) => data.find_edges_of_cut(whole, cut, edges)?,
             }
+            data.find_edges_of_operands(whole)?;
         }
         let picking = match &cut {
             None => data.picking(whole, |_, face| face),

@@ -211,7 +211,8 @@ impl SceneData {
         let isolated = nearest.then(|| Isolated::of(&model.solids, model.coincidence())).transpose()?.flatten();
         let union = isolated.as_ref().map_or(&model.solids, |isolated| &isolated.rest);
         let lists = items.map_or_else(|| Lists::union(union), |items| Lists::of(items, all));
-        let solids = SolidData::new(&lists, model.coincidence(), settings.solids)?;
+        let mut solids = SolidData::new(&lists, model.coincidence(), settings.solids)?;
+        solids.mark_cuts(&whole.cuts);
         // a part that a volume cuts open casts no shadow: the shadow would be that of the uncut part
         let is_cut = model.trim.is_some();
         let sun = settings.sun.map(|towards| match is_whole {
@@ -378,8 +379,8 @@ impl SceneData {
 
     /// Places the operands of Boolean solids without equations like parts, after the parts.
     fn push_operands(&mut self, trim: Trimming) {
-        let operands = std::mem::take(&mut self.solids.operands);
-        for operand in &operands {
+        let mut operands = std::mem::take(&mut self.solids.operands);
+        for operand in &mut operands {
             let first = self.faces.len();
             let cuts = Cuts::of(operand.faces());
             for face in operand.faces() {
@@ -398,6 +399,7 @@ impl SceneData {
             let transform = operand.primitive.transform;
             let instance = Instance { part: 0, transform, colour: None, name: String::new() };
             let number = self.instances.len() as u32;
+            operand.placed = Some((number, first));
             self.push_instance(&instance, operand.origin, faces, operand.shell);
             for mesh in operand.meshes.clone() {
                 self.solids.operand_meshes[mesh].instance = number;

@@ -49,6 +49,7 @@ mod shapes;
 mod smooth;
 mod smooth_borders;
 mod smooth_trims;
+mod solid_lines;
 mod solids;
 mod stair;
 mod support;

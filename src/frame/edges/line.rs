@@ -8,7 +8,7 @@
 //!
 //! Reads: everything that `Bindings` names. Writes: `best`, cleared to 0 before.
 
-use crate::bindings::{Placed, Primitives};
+use crate::bindings::{Placed, Primitives, SeenSolids};
 use crate::frame::common::draw::Draw;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource, TexelBuffer};
 use crate::scene::{EdgeBuffers, MeshBuffers};
@@ -44,6 +44,8 @@ pub(crate) struct Bindings<'a> {
     pub edges: &'a EdgeBuffers,
     pub best: &'a Image,
     pub meshes: Option<&'a MeshBuffers>,
+    /// Read where no volume trims the scene.
+    pub solids: SeenSolids<'a>,
     /// What the trim test reads, in its order.
     pub trim: &'a [Resource<'a>],
     /// The volume that trims the scene; `None` where there is none.
@@ -54,8 +56,8 @@ pub(crate) struct Bindings<'a> {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct Params {
-    /// Pixels: of full lines, of thin ones.
-    pub half_px: [f32; 2],
+    /// Pixels: of full lines, of thin ones, of bold ones.
+    pub half_px: [f32; 3],
     pub hidden: u32,
 }
 
@@ -85,6 +87,7 @@ impl Line {
             .chain(edges)
             .chain([Resource::from(&e.points), b.best.into()])
             .chain(meshes.map(Resource::from))
+            .chain(b.solids.resources().into_iter().filter(|_| b.volume.is_none()))
             .chain(b.trim.iter().copied().filter(|_| self.tests))
             .chain(b.volume.iter().flat_map(Primitives::resources))
             .collect();
