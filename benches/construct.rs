@@ -30,7 +30,7 @@ fn section(z: usize, count: usize) -> BSpline<DVec4> {
 fn lofts(c: &mut Criterion) {
     let mut group = c.benchmark_group("loft");
     for (sections, count) in [(10, 20), (50, 50), (200, 100)] {
-        // of two kinds: their union has twice the knots
+        // sections of two kinds: the union of their knots is twice as long
         let all: Vec<_> = (0..sections).map(|k| section(k % 2 + 10 * (k / 2), count)).collect();
         let surface = loft(&all, false).expect("sections at different heights");
         let (nu, nv) = surface.counts();
@@ -53,8 +53,8 @@ fn conversion(c: &mut Criterion) {
     group.finish();
 }
 
-/// A torus of `n` by `n` quadrilaterals, or twice as many triangles; with `odd`, one quadrilateral in 16 has its corner
-/// pulled to a triangle's, which makes vertices of 3 and 5.
+/// A torus of `n` by `n` quadrilaterals, or of twice as many triangles. With `odd`, a corner of one quadrilateral in 16
+/// is moved to a neighbour's, which makes vertices with 3 and 5 edges.
 fn torus(n: u32, triangles: bool, odd: bool) -> ControlMesh {
     let point = |k: u32| {
         let [(s, c), (t, d)] = [k % n, k / n].map(|i| (TAU * f64::from(i) / f64::from(n)).sin_cos());
@@ -107,6 +107,6 @@ fn written(c: &mut Criterion) {
     group.finish();
 }
 
-// fits have their own groups beside these
+// fits are timed in their own benchmark
 criterion_group!(benches, lofts, conversion, subdivision, written);
 criterion_main!(benches);

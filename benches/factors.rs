@@ -1,5 +1,5 @@
-//! Ways to choose tessellation factors, on random patches and on models: how often each breaks half a pixel, and how
-//! much finer than needed it divides.
+//! Compares ways to choose tessellation factors, on random patches and on models: how often each exceeds half a pixel,
+//! and how much finer than necessary it divides.
 //!
 //! `cargo bench --features baselines --bench factors -- [PATCHES [SEARCHED]] [MODEL ...]`
 

@@ -1,8 +1,8 @@
-//! Bindings that several passes have in common.
+//! Bindings that several passes share.
 //!
 //! ```text
-//!   constants      of the frame, or the sun, in a uniform block: a driver fetches its words once for many invocations,
-//!                  where it gathers those of a storage buffer for each
+//!   constants      of the frame, or the sun, in a uniform block: a driver loads its words once for many invocations;
+//!                  from a storage buffer it gathers them for each
 //!   placed patches views, faces' places, faces, patches, items, points           glsl/include/placed.glsl
 //!   bounded        views, instances, faces' places, faces, patches, items, taus, counters, cones, points, in_sight
 //!                                                                                  glsl/include/bound.glsl
@@ -13,12 +13,13 @@
 use crate::gpu::{Buffer, Resource, TexelBuffer};
 use crate::shaders::constant;
 
-/// Bindings of the sun, after all others of a pass: `glsl/include/sun.glsl`. Primitives that cast shadows are among them.
+/// Number of the sun's bindings, after all others of a pass: `glsl/include/sun.glsl`. They include the primitives that
+/// cast shadows.
 pub(crate) const SUN_BINDINGS: usize = 13;
-/// The first of them, which a pass needs that has the scene's primitives for itself.
+/// The first of these, for a pass that binds the scene's primitives itself.
 pub(crate) const SUN_OWN: usize = 7;
 
-/// Patches as they are placed, after the constants.
+/// Placed patches, after the constants.
 #[derive(Clone, Copy)]
 pub(crate) struct Placed<'a> {
     pub views: &'a TexelBuffer,
@@ -36,11 +37,11 @@ impl<'a> Placed<'a> {
     }
 }
 
-/// Of passes that say how finely each patch must be divided.
+/// Bindings of the passes that compute how finely each patch is divided.
 #[derive(Clone, Copy)]
 pub(crate) struct Bounded<'a> {
     pub frame: &'a Buffer,
-    /// Part to pixel, per instance.
+    /// Part to pixel, for each instance.
     pub views: &'a Buffer,
     pub instances: &'a Buffer,
     pub face_instances: &'a Buffer,
@@ -48,11 +49,11 @@ pub(crate) struct Bounded<'a> {
     pub patches: &'a Buffer,
     /// Face instance of each item.
     pub items: &'a Buffer,
-    /// `tau_u | tau_v << 16` per item; written.
+    /// `tau_u | tau_v << 16` for each item; written.
     pub taus: &'a Buffer,
     /// `clamps`; written.
     pub counters: &'a Buffer,
-    /// Of each patch's normals, where some closed part has no trims.
+    /// The cone of each patch's normals; `None` if no closed part is without trims.
     pub cones: Option<&'a Buffer>,
     /// Control points.
     pub points: &'a TexelBuffer,
@@ -68,7 +69,7 @@ impl<'a> Bounded<'a> {
 
     /// In binding order.
     pub(crate) fn resources(&self) -> [Resource<'a>; 12] {
-        let cones = self.cones.unwrap_or(self.frame); // not read then
+        let cones = self.cones.unwrap_or(self.frame); // not read in that case
         let placed = [self.views, self.instances, self.face_instances, self.faces, self.patches, self.items];
         let [views, instances, face_instances, faces, patches, items] = placed.map(Resource::from);
         let [frame, taus, counters, cones] = [self.frame, self.taus, self.counters, cones].map(Resource::from);
@@ -83,7 +84,7 @@ pub(crate) struct Primitives<'a> {
     pub leaves: &'a Buffer,
     pub leaf_surfaces: &'a TexelBuffer,
     pub surfaces: &'a TexelBuffer,
-    /// Where surfaces are, model axes, seen from the eye.
+    /// Places of surfaces, in model axes relative to the eye.
     pub surface_places: &'a TexelBuffer,
 }
 

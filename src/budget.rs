@@ -1,4 +1,4 @@
-//! The error budget: the tolerance, half a pixel, is divided among the steps that cause errors.
+//! The error budget: divides the tolerance, half a pixel, among the steps that cause errors.
 //!
 //! ```text
 //!   true border of a face                          border as one face is drawn
@@ -8,19 +8,18 @@
 //!
 //!   e = deviation + row / 2 + chord                every gap is found:            g >= e
 //!                                                  nothing is off by more than:   e + g <= tolerance
-//!   where one of two faces that meet sticks out by e, and the other falls short by row / 2 + chord,
+//!   if one of two faces that meet sticks out by e, and the other falls short by row / 2 + chord,
 //!   the eight points of the circle must reach it:  g cos(pi / 8) >= e + row / 2 + chord
 //!   three scan lines that reach as far end at most g cos(pi / 8) / cos(pi / 6) away (glsl/include/border_lines.glsl)
-//!   trims that are exact spend no row and no chord: a square does, of 0.8 g (glsl/include/border_arcs.glsl)
+//!   exact trims have no error of row and chord: a square of 0.8 g suffices (glsl/include/border_arcs.glsl)
 //! ```
 //!
-//! * *deviation*: the tessellation's point at (u, v) lies this close to the exact surface at (u, v)
-//!   on the screen ([`twin::factor`](crate::twin::factor)), so a trim decided at that (u, v) is off by
-//!   no more.
+//! * *deviation*: on the screen, the tessellation's point at (u, v) is this close to the exact surface at (u, v)
+//!   ([`twin::factor`](crate::twin::factor)), so a trim decided at that (u, v) is off by no more.
 //! * *row*: the trim test takes the nearest scan line.
 //! * *chord*: trim curves are crossed as chords.
-//! * *gap radius*: a face that looks away, or one of an open shell, is drawn this far beyond its border;
-//!   pass `gap_fill` decides who is seen there.
+//! * *gap radius*: a face that is turned away, or one of an open shell, is drawn this far beyond its border; pass
+//!   `gap_fill` decides which face is visible there.
 
 /// The shares, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,19 +31,15 @@ pub(crate) struct Budget {
 }
 
 impl Budget {
-    /// Shares of a tolerance: a quarter to the rows' spacing, a sixteenth to the chords (halving them
-    /// costs only segments), one half to the gap radius.
+    /// Shares of a tolerance: a quarter to the rows' spacing, a sixteenth to the chords (halving them costs only
+    /// segments), one half to the gap radius.
     ///
-    /// The surface gets a twelfth although a quarter would do for the sums: a deviation in depth hides
-    /// or shows a grazing surface behind a low bulge, and moves that border by more than itself. On
-    /// ten CAD files in three views, 8, 1 and 0 pixels of one file were off by more than the tolerance
-    /// with a quarter, an eighth and a twelfth; a twelfth costs 1.7 times the triangles of an eighth. Polynomial patches
-    /// that bend towards the eye may be off in space by an eighth: of impeller, tigl_d150_fuselage and gpucast_part_a, in
-    /// three views of 1920 x 1080 each, 5 pixels are off then, and 6 were before.
+    /// The surface gets a twelfth although the sums would allow a quarter: a deviation in depth hides or shows a
+    /// grazing surface behind a low bulge, and moves that border by more than itself. Polynomial patches that bend
+    /// towards the eye may deviate in space by an eighth.
     ///
-    /// Rows farther apart would be cheaper, and the first two sums have room for twice as far. The third has not: of the
-    /// open shells of impeller and gpucast_part_a, in three views of 1280 x 720 each, 0 and 3 pixels were off
-    /// with a quarter, 10 and 5 with a half; with a wider gap radius, of 0.655 and rows of 0.39, 4 and 6.
+    /// The first two sums would allow rows twice as far apart. The third does not: borders of open shells would then be
+    /// off by more than the tolerance, even with a wider gap radius.
     pub(crate) fn of(tolerance_px: f64) -> Self {
         Self {
             deviation: tolerance_px / 12.0,
@@ -54,7 +49,7 @@ impl Budget {
         }
     }
 
-    /// How far beside the picture pass `density` looks: skirts reach there, and samples by half a pixel.
+    /// Distance beside the picture that pass `density` covers: skirts reach that far, and samples by half a pixel.
     pub(crate) fn beside(&self) -> f64 {
         self.gap_radius + 1.0
     }

@@ -1,5 +1,5 @@
-//! The frame as prose: the stages in order. Each stage has a folder: its passes, its buffers, and its record, with every
-//! barrier between them.
+//! The frame in order. Each stage has a folder with its passes, its buffers and its record, which contains all barriers
+//! between its passes.
 //!
 //! ```text
 //!                 view, instances
@@ -18,8 +18,8 @@
 //!                      ▼
 //!                solid_events    where rays enter Boolean solids; solid_rects to solid_fold came before
 //!                      ▼
-//!                 visibility     tessellate, trim: item and (u, v) per pixel
-//!                      │         patches that lie behind others left out, and asked for: occlusion/
+//!                 visibility     tessellate, trim: item and (u, v) per pixel; hidden patches are not drawn: occlusion/
+//!                      │
 //!                      ▼
 //!                    gaps        pixels that look through a gap between trimmed faces
 //!                      ▼
@@ -27,13 +27,13 @@
 //!                  resolve       exact point and normal per pixel, light ──▶ the host's targets
 //!                      ▼
 //!                 coverage       scenes with smooth trims: pixels at borders, mixed of what resolve drew
-//!               solid_layers     scenes with something to see through: its faces, over what resolve drew
+//!               solid_layers     scenes with transparent solids: their faces, over what resolve drew
 //!                edge_line       scenes with lines: each pixel's best line along an edge, over what was drawn
 //!
-//!  from mesh on once for each of a pixel's samples, where there are several: antialiasing/samples.rs
-//!  nothing above seen_squares, or mesh where there are several samples, where the frame before had this view: reuse.rs
-//!  lists of solid_events and solid_layers band by band, where they are too large: solids/bands.rs
-//!  resolve and solid_layers ask the sun's tiles, in scenes with a sun: shadows/
+//!  with several samples a pixel, everything from mesh on runs for each sample: antialiasing/samples.rs
+//!  if the view has not changed, passes above seen_squares (with several samples: above mesh) are skipped: reuse.rs
+//!  if the lists of solid_events and solid_layers are too large, they are made band by band: solids/bands.rs
+//!  in scenes with a sun, resolve and solid_layers read the sun's tiles: shadows/
 //! ```
 
 use crate::abi::Counters;
@@ -75,7 +75,7 @@ pub(crate) use occlusion::OcclusionState;
 pub(crate) use solids::{Centres, Near};
 pub(crate) use stages::{Passes, Stages};
 
-/// Everything that one frame touches.
+/// The inputs and targets of one frame.
 #[derive(Clone, Copy)]
 pub(crate) struct Frame<'a> {
     pub stages: &'a Stages,
@@ -87,49 +87,49 @@ pub(crate) struct Frame<'a> {
     pub views: &'a TexelBuffer,
     /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight.
     pub in_sight: &'a Buffer,
-    /// How many items are in sight.
+    /// Number of items in sight.
     pub items_in_sight: u32,
-    /// Constants and transforms for each of a pixel's samples, where there are several.
+    /// Constants and transforms for each of a pixel's samples; empty with one sample.
     pub samples: &'a [ViewBuffers],
-    /// What the trim table is made of, where that is not this view.
+    /// The view for which the trim table is made; `None` if it is this view.
     pub table_view: Option<&'a ViewBuffers>,
     pub centres: Option<Centres<'a>>,
     pub near: Near,
     pub occlusion: OcclusionState,
-    /// What is seen, or what samples are drawn from, is that of the frame before.
+    /// The previous frame's visibility images are still valid; with several samples, its patches and trim table.
     pub keeps: bool,
-    /// So is the trim table.
+    /// The previous frame's trim table is still valid.
     pub keeps_table: bool,
     /// Pass `gate` runs: if a list overflowed before the first drawing, that drawing has no patches.
     pub counts_first: bool,
-    /// Columns and rows of the pixels that operands without equations may be in.
+    /// Columns and rows of the pixels whose rays may cross operands without equations.
     pub shell_pixels: &'a [Range<u32>; 2],
-    /// Of the surfaces of the volume that trims the scene, seen from this frame's eye.
+    /// Places of the surfaces of the volume that trims the scene, relative to this frame's eye.
     pub volume_places: Option<&'a TexelBuffer>,
-    /// Where the sun is, in a scene that has one.
+    /// The sun's constants, in a scene with a sun.
     pub sun: Option<&'a Buffer>,
-    /// Middles of the placed parts that cast shadows; where there are some.
+    /// Middles of the placed parts that cast shadows; `None` without any.
     pub sun_parts: Option<&'a TexelBuffer>,
     pub counters: &'a ReadBack,
     pub colour: &'a [Attachment<'a>],
-    /// As the colour target holds it, unless that is kept.
+    /// The background as the colour target stores it; unused if the target's colours stay.
     pub background: [f32; 4],
     pub depth: Option<Attachment<'a>>,
-    /// Length of the pixel's ray within solids; cleared to 0 when it is drawn into.
+    /// Length of the pixel's ray within solids; cleared to 0 before drawing.
     pub thickness: Option<Attachment<'a>>,
-    /// Numbers of edges, parts and instances.
+    /// Images of the numbers of edges, parts and instances.
     pub numbers: Option<[Attachment<'a>; 3]>,
 }
 
 const WRITE_TO_READ: (Access, Access) = (Access::COMPUTE_WRITE, Access::COMPUTE_READ);
 
 impl<'a> Frame<'a> {
-    /// What the trim test reads, in its order; nothing where no patch is trimmed.
+    /// The trim test's resources, in its order; empty if no patch is trimmed.
     fn trim_test(&self) -> Vec<Resource<'a>> {
         self.stages.trim.as_ref().map_or_else(Vec::new, |trim| trim.test(self))
     }
 
-    /// What tests against the volume that trims the scene read, `None` without one.
+    /// The volume that trims the scene; `None` without one.
     fn volume(&self) -> Option<Primitives<'a>> {
         let volume = self.scene.volume.as_ref()?;
         Some(volume.primitives(self.volume_places?))
@@ -158,7 +158,7 @@ impl Frame<'_> {
         self.beside(cmd, times);
     }
 
-    /// Numbers of what is seen, and lines along edges over the picture.
+    /// Draws the images of numbers, and lines along edges over the picture.
     fn beside(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
         if self.numbers.is_some() {
             times.scope(cmd, "numbers", || self.stages.shading.numbers(self, cmd));
@@ -168,7 +168,7 @@ impl Frame<'_> {
         }
     }
 
-    /// What is drawn from: the trim table, and patches divided.
+    /// Makes the input of drawing: the trim table and the divided patches.
     fn make(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
         let stages = self.stages;
         self.begin(cmd);
@@ -190,7 +190,7 @@ impl Frame<'_> {
         }
     }
 
-    /// What each pixel sees, from the patches and the trim table.
+    /// Draws the visibility images from the patches and the trim table.
     fn see(&self, cmd: &Commands<'_>, times: &mut Scopes<'_>) {
         let stages = self.stages;
         let test = self.trim_test();
@@ -216,7 +216,7 @@ impl Frame<'_> {
         barrier::images(cmd, &[(&stages.visibility.image, drawn, read)]);
     }
 
-    /// What is seen, resolved into `self.colour` and `self.depth`; the `nth` time in this frame.
+    /// Shades the visible surfaces into `self.colour` and `self.depth`; the `nth` time in this frame.
     fn show(
         &self,
         cmd: &Commands<'_>,
@@ -261,7 +261,7 @@ impl Frame<'_> {
         self.counters.record_nth(cmd, counters, size_of::<Counters>() as u64, nth);
     }
 
-    /// Clears what the passes count that make what is drawn from.
+    /// Clears the counters of the passes that prepare drawing.
     fn begin(&self, cmd: &Commands<'_>) {
         let stages = self.stages;
         if let Some(trim) = &stages.trim {
@@ -273,14 +273,14 @@ impl Frame<'_> {
         stages.common.reset(self, cmd);
     }
 
-    /// The transient buffers may still be read by what was drawn before.
+    /// Waits for earlier draws that may still read the transient buffers.
     fn wait(&self, cmd: &Commands<'_>) {
         let before = [Access::COMPUTE_WRITE, Access::VERTEX_READ, Access::FRAGMENT_READ, Access::INDIRECT_READ];
         let before = before.into_iter().fold(Access::COMPUTE_READ, |all, one| all | one);
         barrier::memory(cmd, before | Access::TRANSFER_READ, Access::COMPUTE_WRITE | Access::TRANSFER_WRITE);
     }
 
-    /// Clears what each drawing counts, and its images.
+    /// Clears the counters and images of one drawing.
     fn clear(&self, cmd: &Commands<'_>) {
         if let Some(gaps) = &self.stages.gaps {
             gaps.clear(cmd);
@@ -292,8 +292,8 @@ impl Frame<'_> {
     }
 }
 
-/// The host's image as an attachment: every pixel is written when there is a background, else what nothing is drawn into
-/// stays.
+/// The host's image as an attachment. With a background every pixel is written; without one, pixels outside the
+/// surfaces stay.
 pub(crate) fn target<'a>(image: &'a Image, keep: bool) -> Attachment<'a> {
     Attachment { image, load: if keep { Load::Keep } else { Load::Discard } }
 }

@@ -32,10 +32,11 @@
 //! }
 //! ```
 //!
-//! `README.md` has a whole program, `docs/embedding.md` the contract with a host, `ARCHITECTURE.md` the way through a frame.
+//! `README.md` has a whole program, `docs/embedding.md` the contract with a host, `docs/walkthrough.md` one patch's way
+//! through a frame.
 #![warn(missing_docs)]
 
-/// Vulkan's bindings, the allocator and the vectors, in the versions that this crate's types take.
+/// Vulkan's bindings, the allocator and the vectors, in the versions that this crate uses in its types.
 pub use {ash, glam, gpu_allocator};
 
 /// Models and their geometry: `selvedge-geometry`.
@@ -45,12 +46,12 @@ pub use selvedge_geometry::{construct, csg, edges, model, spline, trim};
 #[doc(hidden)]
 pub use selvedge_geometry::math;
 
-/// Shared test shapes name the library as its users do.
+/// lets shared test shapes name the library as its users do
 #[cfg(test)]
 extern crate self as selvedge;
 
 mod abi;
-/// Other ways to trim and to divide, for comparisons: no part of what a host uses.
+/// Baselines for comparisons; not part of the interface for hosts.
 #[cfg(feature = "baselines")]
 #[doc(hidden)]
 pub mod baselines;
@@ -71,7 +72,7 @@ mod shaders;
 #[cfg(any(test, feature = "baselines"))]
 mod twin;
 
-/// For tests and measurements, beside the baselines: what shaders read, what passes compute on the CPU, and one pass.
+/// For tests and measurements: the data that shaders read, the results of passes on the CPU, and one pass.
 #[cfg(feature = "baselines")]
 #[doc(hidden)]
 pub mod internals {

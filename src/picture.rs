@@ -15,18 +15,21 @@ use glam::DVec3;
 /// The caller's choices for one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameSettings {
-    /// Largest distance in pixels between a drawn boundary and the true one; the promise. At least
+    /// Largest distance in pixels between a drawn boundary and the true one: the promise. At least
     /// [`LEAST_TOLERANCE_PX`](Self::LEAST_TOLERANCE_PX); the default is one half.
     pub tolerance_px: f64,
-    /// Colour behind the model; with `None` the target's own content stays there.
+    /// Colour behind the model. With `None`, the target's content stays there.
     pub background: Option<Colour>,
-    /// How surfaces are shown.
+    /// How surfaces look.
     pub style: Style,
+    /// The largest curvature on the scale of styles that show it, in 1 / units of the model; beyond it colours stay the
+    /// same. Finite and above 0.
+    pub curvature_range: f64,
     /// How finely patches are divided.
     pub levels: Levels,
-    /// Record every pass in every frame, for measurements. Otherwise a frame reuses the visibility of the one before, if
-    /// view and settings are the same and no loop was edited, and the trim table, if the view is from about as far: the
-    /// same picture, bit for bit, sooner.
+    /// Record every pass in every frame, for measurements. Otherwise a frame reuses results of the previous frame,
+    /// which gives the same picture, bit for bit, in less time: its visibility, if view and settings are the same and
+    /// no loop was edited; and its trim table, if that serves the view.
     pub all_passes: bool,
 }
 
@@ -36,7 +39,7 @@ pub enum Levels {
     /// From bounds on its derivatives, for each view: the promise holds.
     #[default]
     Bound,
-    /// The same number everywhere, 1 to 64. The promise does *not* hold; for comparisons.
+    /// The same number for all patches, 1 to 64, for comparisons. The promise does *not* hold.
     Fixed(u32),
 }
 
@@ -46,6 +49,7 @@ impl Default for FrameSettings {
             tolerance_px: 0.5,
             background: Some([1.0, 1.0, 1.0, 1.0]),
             style: Style::Shaded,
+            curvature_range: 1.0,
             levels: Levels::Bound,
             all_passes: false,
         }
@@ -67,36 +71,36 @@ impl Levels {
     }
 }
 
-/// How it is decided which pixels of a patch the trim loops cut away. All ways draw the same picture within
-/// [`FrameSettings::tolerance_px`]; `docs/design/trimming.md` has the cost of each.
+/// The way to decide which pixels of a patch the trim loops cut away. All ways draw the same picture within
+/// [`FrameSettings::tolerance_px`]; `docs/design/trimming.md` compares their costs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum TrimWay {
-    /// [`Table`](Self::Table) for scenes that are expected to need few scan lines, [`Exact`](Self::Exact) for the others:
-    /// [`renderer::trim_way`](crate::renderer::trim_way) returns the choice, and [`FrameStats::trim`] the way of a frame.
-    /// Where a view needs more of the table than there can be, the scene is trimmed exactly from then on.
+    /// [`Table`](Self::Table) for scenes that are expected to need few scan lines, [`Exact`](Self::Exact) for the
+    /// others. [`renderer::trim_way`](crate::renderer::trim_way) returns the choice, and [`FrameStats::trim`] the way
+    /// of a frame. After a view that needs more scan lines than possible, the scene is trimmed exactly.
     #[default]
     Auto,
-    /// The u-intercept table: made for all views from about as far, or closer up from near by; a binary search in each of three
-    /// rows a pixel.
+    /// The u-intercept table: one table for all views from about the same distance, or for nearby views of a part of
+    /// the model; a binary search in each of three rows a pixel.
     Table,
-    /// The loops themselves, as arcs of conics in cells made once: a few of them a pixel.
+    /// The loops themselves, as arcs of conics in cells that are made once; a few arcs a pixel.
     Exact,
 }
 
-/// The way that a scene is trimmed: what [`TrimWay::Auto`] has settled for, too.
+/// The way that a scene is trimmed, after [`TrimWay::Auto`] has been resolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TakenWay {
     Table,
     Exact,
-    /// One to compare with.
+    /// A baseline.
     #[cfg(feature = "baselines")]
     Baseline(crate::baselines::TrimMethod),
 }
 
 impl TakenWay {
-    /// In a host's terms; `None` for a baseline.
+    /// The host's name for it; `None` for a baseline.
     pub(crate) fn reported(self) -> Option<TrimWay> {
         match self {
             Self::Table => Some(TrimWay::Table),
@@ -106,7 +110,7 @@ impl TakenWay {
         }
     }
 
-    /// As in messages.
+    /// The name in messages.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Table => TrimWay::Table.name(),
@@ -116,7 +120,7 @@ impl TakenWay {
         }
     }
 
-    /// By trim textures, which are made of curves as the table is.
+    /// Whether trim textures are used, which are made of curves like the table.
     pub(crate) fn is_texture(self) -> bool {
         match self {
             Self::Table | Self::Exact => false,
@@ -127,10 +131,10 @@ impl TakenWay {
 }
 
 impl TrimWay {
-    /// Every way, without [`Auto`](Self::Auto), which takes one of them.
+    /// Every way except [`Auto`](Self::Auto), which chooses one of them.
     pub const ALL: &'static [Self] = &[Self::Table, Self::Exact];
 
-    /// As in command lines and tables.
+    /// The name in command lines and tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
@@ -149,13 +153,13 @@ impl std::str::FromStr for TrimWay {
     }
 }
 
-/// No way to trim is called so.
+/// A name that no way to trim has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no way to trim is called `{0}`; there are: auto, {names}", names = TrimWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
 pub struct UnknownTrimWay(String);
 
-/// How Boolean solids are drawn. All ways draw the same picture, bit for bit, but where [`Blister`](Self::Blister)
-/// says otherwise.
+/// The way to draw Boolean solids. All ways draw the same picture, bit for bit, except as stated for
+/// [`Blister`](Self::Blister).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
@@ -163,14 +167,14 @@ pub enum SolidWay {
     /// One ray a pixel, followed from event to event until it enters the solid.
     #[default]
     Events,
-    /// The faces of each primitive, trimmed by the Blist of the others: constructive solid trimming. Scenes in
-    /// which some operand is a mesh or a spline part, or something is seen through, are drawn by events.
+    /// The faces of each primitive, trimmed by the Blist of the others: constructive solid trimming. Scenes with
+    /// operands that are meshes or spline parts, or with transparent solids, are drawn by events.
     Cst,
-    /// Layers of faces, peeled off from front to back, each tested whether it bounds the solid: by labels in a
-    /// stencil image, as Hable and Rossignac have it. Its cost is that of all primitives, once a layer. Scenes in which
-    /// some operand is a spline part, or a mesh that is not closed and turned outwards, crosses itself or lies back to back,
-    /// or something is seen through, are drawn by events. Of a mesh's face and another that coincide, the face that is not
-    /// the mesh's is seen; and a ray that enters and leaves a mesh within the rounding of a depth may see either side.
+    /// Layers of faces, peeled from front to back; each is tested whether it bounds the solid, by labels in a stencil
+    /// image (Hable and Rossignac). The cost of a layer is that of all primitives. Scenes are drawn by events if an
+    /// operand is a spline part; if an operand is a mesh that is not closed and outward-oriented, intersects itself or
+    /// has coinciding faces; or if a solid is transparent. If a mesh's face coincides with another face, the other face
+    /// is drawn. A ray that enters and leaves a mesh within the rounding of a depth may show either side.
     Blister,
 }
 
@@ -178,7 +182,7 @@ impl SolidWay {
     /// Every way.
     pub const ALL: &'static [Self] = &[Self::Events, Self::Cst, Self::Blister];
 
-    /// As in command lines and tables.
+    /// The name in command lines and tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Events => "events",
@@ -196,19 +200,19 @@ impl std::str::FromStr for SolidWay {
     }
 }
 
-/// No way to draw Boolean solids is called so.
+/// A name that no way to draw Boolean solids has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no way to draw solids is called `{0}`; there are: {names}", names = SolidWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
 pub struct UnknownSolidWay(String);
 
-/// Colours of places where solids of an assembly meet, in linear light; the opacity is that of the mark, which lies
-/// before everything. Solids here are the model's Boolean solids and closed parts, each by itself.
+/// Colours that mark where solids of an assembly meet, in linear light. A mark lies in front of everything, with this
+/// opacity. The solids are the model's Boolean solids and closed parts, each by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Highlight {
-    /// Where a pixel's ray meets coincident faces of two solids: those that share a surface with an equation, or a
-    /// triangle's plane, to the bit. Spline faces never do: a gap or overlap of rounding lies between them.
+    /// Where a pixel's ray meets coincident faces of two solids: faces on the same surface with an equation, or
+    /// triangles in exactly the same plane. Spline faces never coincide, because rounding separates them.
     pub contact: Colour,
-    /// Where it is within two solids at once.
+    /// Where the ray is inside two solids at once.
     pub overlap: Colour,
 }
 
@@ -226,44 +230,46 @@ pub struct SceneSettings {
     pub trim: TrimWay,
     /// How to draw Boolean solids.
     pub solids: SolidWay,
-    /// Loops may be edited while the scene is drawn. Costs memory, room for larger loops, and time: trimmed faces are not
-    /// cut into pieces, most of which would need no trim test.
+    /// Loops may be edited between frames. This costs memory, as room for larger loops, and time: trimmed faces are not
+    /// split into sub-patches, most of which would need no trim test.
     pub editable: bool,
-    /// Samples of each pixel's colour: edges are smoothed where there are more than one.
+    /// Samples of each pixel's colour; several samples smooth all edges.
     pub samples: Samples,
-    /// Which borders are smooth. Costs far less than [`samples`](Self::samples), of which there must be one.
+    /// The borders that are smoothed. This costs far less than [`samples`](Self::samples), and needs [`Samples::One`].
     pub smooth: Smooth,
-    /// Ambient occlusion: points close to other surfaces get less of the sky's light. The radius, in units of the
-    /// model: surfaces farther away have no effect. `None`: no ambient occlusion. It changes only colours, and only in
-    /// styles that show light. It needs [`Samples::One`].
+    /// Ambient occlusion: points near other surfaces get less of the sky's light. The value is the radius in model
+    /// units; surfaces farther away have no effect. `None`: no ambient occlusion. It changes only colours, and only in
+    /// styles with light. It needs [`Samples::One`].
     pub ambient: Option<f64>,
+    /// Frames may have a style that shows curvature: pixels evaluate second derivatives, too.
+    pub curvature: bool,
     /// Frames may have an image of thickness: rays are followed through all solids.
     pub thickness: bool,
     /// Mark contacts and overlaps, and count their pixels: rays are followed through all solids.
     pub highlight: Option<Highlight>,
-    /// Where the key light comes from: a direction from the model towards it, in model axes, of any length but 0;
-    /// `None` for a studio's light, which travels with the camera and casts no shadows.
+    /// Direction of the key light: a vector from the model towards the sun, in model axes, of any length but 0. With
+    /// `None`, a studio's light travels with the camera and casts no shadows.
     ///
-    /// It is parallel, and reaches a point where nothing opaque lies on the way: every face of the scene is shaded, and
-    /// all that is opaque casts shadows. Those of primitives with equations and of meshes are exact. Spline faces, placed
-    /// or of operands, cast them as triangles within [`FrameStats::shadow_deviation`] of the faces. Transparent
-    /// objects cast none, nor do parts that [`Model::trim_by`](crate::model::Model::trim_by) cuts open, nor triangles beyond
-    /// a million: [`FrameStats::shadowless`] counts them. Made with the scene: loops that are edited
-    /// later change no shadow.
+    /// The sun's light is parallel, and reaches a point if nothing opaque lies between. Every face of the scene is
+    /// shaded, and everything opaque casts shadows. Shadows of primitives with equations and of meshes are exact.
+    /// Spline faces, placed or of operands, cast shadows as triangles within [`FrameStats::shadow_deviation`] of the
+    /// faces. No shadows are cast by transparent objects, by parts that
+    /// [`Model::trim_by`](crate::model::Model::trim_by) cuts open, or by triangles beyond a million;
+    /// [`FrameStats::shadowless`] counts these. Shadows are made with the scene: later edits of loops do not change
+    /// them.
     pub sun: Option<DVec3>,
-    /// Lines along edges; `None`: no lines, and nothing that lines need. Edges of parts and meshes are found when the model
-    /// is uploaded; loops that are edited later move no line. Boolean solids have none.
+    /// Lines along edges; `None`: no lines. Edges of parts and meshes are found when the model is uploaded; later edits
+    /// of loops do not move lines. Boolean solids have none.
     pub edges: Option<EdgeSettings>,
-    /// Most bytes that the lists of [`SolidWay::Events`] take: which primitives each tile of 16 x 16 pixels sees, and
-    /// where each pixel's ray crosses operands that are meshes or spline parts. Where they would take more, the picture
-    /// is drawn in bands of rows of tiles, one after another, each with all geometry: the same picture, bit for bit.
-    /// `None`: as much as one storage buffer of the device holds, for each list. A row of tiles that alone wants more
-    /// is
-    /// [`RenderError::TooMany`](crate::renderer::RenderError::TooMany).
+    /// Most bytes of the lists of [`SolidWay::Events`]: the primitives of each tile of 16 x 16 pixels, and the
+    /// crossings of each pixel's ray with operands that are meshes or spline parts. If the lists would be larger, the
+    /// picture is drawn in bands of rows of tiles, one after another, each with all geometry: the same picture, bit for
+    /// bit. `None`: for each list, the size of the device's largest storage buffer. If one row of tiles alone needs
+    /// more, the frame fails with [`RenderError::TooMany`](crate::renderer::RenderError::TooMany).
     pub solid_budget: Option<u64>,
 }
 
-/// Images wanted beside the colour.
+/// Images in addition to the colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub struct Outputs {
@@ -278,8 +284,8 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Every image of the point that is seen first; those of `thickness`, for which rays are followed to the far plane,
-    /// and of numbers of edges, parts and instances are not among them.
+    /// Every image of the first visible point. `thickness`, whose rays are followed to the far plane, and the images of
+    /// numbers of edges, parts and instances are not among them.
     pub const ALL: Self = Self {
         depth: true,
         face: true,
@@ -291,20 +297,20 @@ impl Outputs {
         instance: false,
     };
 
-    /// An image of depth, face, (u, v) or normal.
+    /// Whether there is an image of depth, face, (u, v) or normal.
     pub fn has_points(self) -> bool {
         self.depth || self.face || self.uv || self.normal
     }
 
-    /// An image of edges, parts or instances.
+    /// Whether there is an image of edges, parts or instances.
     pub fn has_numbers(self) -> bool {
         self.edge || self.part || self.instance
     }
 }
 
-/// A finished picture in host memory. Row 0 is on top; samples are taken at pixel centres. Images that
-/// [`Outputs`] leaves out are empty. Depth, face, (u, v) and normal are those of the first face whose opacity is not 0,
-/// transparent or not.
+/// A finished picture in host memory. Row 0 is at the top; samples are taken at pixel centres. Images that [`Outputs`]
+/// omits are empty. Depth, face, (u, v) and normal are those of the first face whose opacity is not 0, transparent or
+/// not.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
     /// Width and height in pixels.
@@ -315,26 +321,26 @@ pub struct Picture {
     pub depth: Vec<f32>,
     /// [`Face::id`](crate::model::Face::id) or [`Mesh::id`](crate::model::Mesh::id), 0 for background.
     pub face: Vec<u32>,
-    /// Surface parameters in the face's own domain; of a mesh, the barycentric weights of the triangle's second
-    /// and third corner; NaN for background.
+    /// Surface parameters in the face's own domain; for a mesh, the barycentric weights of the triangle's second and
+    /// third corner; NaN for background.
     pub uv: Vec<[f32; 2]>,
     /// Unit outward normal in model space; 0 for background.
     pub normal: Vec<[f32; 3]>,
-    /// Whether the sun reaches the point: it faces the sun, and no shadow lies on it. Comes with the normals; empty
-    /// in scenes without [`SceneSettings::sun`]; false for background.
+    /// Whether the sun's light reaches the point: it faces the sun, and no shadow lies on it. Exists together with the
+    /// normals; empty without [`SceneSettings::sun`]; false for background.
     pub sunlit: Vec<bool>,
-    /// Length of the pixel's ray within solids, between the near and the far plane: Boolean solids and closed parts,
-    /// model units, where several overlap counted once; 0 without any.
+    /// Length of the pixel's ray inside solids, between the near and the far plane, in model units. Solids are Boolean
+    /// solids and closed parts; overlaps count once. 0 without any.
     pub thickness: Vec<f32>,
-    /// Number of the edge whose line covers the pixel, by a tenth or more; 0 without any. Edges are counted from 1 on, part
-    /// after part as [`Model::parts`](crate::model::Model::parts) has them: of each those of [`Edges::edges`](crate::model::Edges::edges), then
-    /// [`Edges::of_meshes`](crate::model::Edges::of_meshes), drawn or not. With
-    /// [`SceneSettings::edges`]; without, 0 everywhere.
+    /// Number of the edge whose line covers at least a tenth of the pixel; 0 without a line. Edges are numbered from 1,
+    /// in the order of [`Model::parts`](crate::model::Model::parts); within a part first
+    /// [`Edges::edges`](crate::model::Edges::edges), then [`Edges::of_meshes`](crate::model::Edges::of_meshes), whether
+    /// drawn or not. 0 everywhere without [`SceneSettings::edges`].
     pub edge: Vec<u32>,
-    /// Index into [`Model::parts`](crate::model::Model::parts), plus 1; 0 for background, Boolean solids and what is seen
-    /// through.
+    /// Index into [`Model::parts`](crate::model::Model::parts), plus 1; 0 for background, Boolean solids and
+    /// transparent parts.
     pub part: Vec<u32>,
-    /// The same into [`Model::instances`](crate::model::Model::instances).
+    /// Index into [`Model::instances`](crate::model::Model::instances), likewise.
     pub instance: Vec<u32>,
     /// The frame's statistics.
     pub stats: FrameStats,
@@ -359,74 +365,75 @@ impl Picture {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct FrameStats {
-    /// Name and GPU time in milliseconds of each pass, in order. Where pixels have several samples, passes are those of
-    /// the first one; the others are `more samples`, and the images beside the colour `centre sample`.
+    /// Name and GPU time in milliseconds of each pass, in order. With several samples a pixel, the passes of the first
+    /// sample are listed; the others are `more samples`, and the images beside the colour are `centre sample`.
     pub passes: Vec<PassTime>,
-    /// The visibility of each pixel is that of the frame before, which had the same view; where pixels have several
-    /// samples, only the division of patches and the trim table are. `passes` lacks the passes that made them, and the
-    /// counts are that frame's. Never with [`FrameSettings::all_passes`].
+    /// The visibility of each pixel was reused from the previous frame, which had the same view. With several samples a
+    /// pixel, only the division of patches and the trim table were. `passes` omits the passes that made them, and the
+    /// counts are those of that frame. Never with [`FrameSettings::all_passes`].
     pub reused: bool,
-    /// How faces were trimmed, never [`TrimWay::Auto`]; `None` where no face needs it.
+    /// The way in which faces were trimmed, never [`TrimWay::Auto`]; `None` if no face needs trimming.
     pub trim: Option<TrimWay>,
-    /// Patches of the loaded model, those of each instance counted; of a view from very near, those near it.
+    /// Patches of the loaded model, counted for each instance; in a very close view, the patches near it.
     pub patches: u64,
-    /// Triangles that the tessellator made, and those of meshes; for one sample. 0 where none was drawn: `reused`.
+    /// Triangles of the tessellator and of meshes, for one sample. 0 if none was drawn: `reused`.
     pub triangles: u64,
     /// Sub-patches drawn.
     pub sub_patches: u64,
     /// Scan lines of the trim table.
     pub trim_rows: u64,
-    /// Chords of trim curves that the trim table was made from.
+    /// Chords of trim curves from which the trim table was made.
     pub trim_segments: u64,
     /// u-intercepts stored in the trim table.
     pub trim_intercepts: u64,
-    /// Candidates for gap filling: pixels near borders of trimmed faces at which several faces may be seen; of the sample
-    /// with the most.
+    /// Candidates for gap filling: pixels near borders of trimmed faces where several faces may be visible. With
+    /// several samples, the largest count.
     pub gap_candidates: u64,
-    /// Patches whose tessellation factor would have exceeded the largest split; and how often a ray or a tile of Boolean
-    /// solids or a row of the trim table needed more steps than the driver lets a shader make: the promise does not hold
-    /// there. 0 in a good frame.
+    /// Patches whose tessellation factor exceeds the largest split, and rays, tiles of Boolean solids and rows of the
+    /// trim table that need more steps than the driver allows in a shader. The promise does not hold there. 0 in a good
+    /// frame.
     pub clamps: u64,
-    /// Patches left out because they lie behind others; 0 in the first frames of a scene, whose occlusion is not tested yet.
+    /// Patches that were not drawn because other surfaces hide them; 0 in the first frames of a scene, before any
+    /// occlusion test.
     pub hidden_patches: u64,
     /// Crossings of rays with operands of Boolean solids that are meshes or spline parts.
     pub fragments: u64,
-    /// Of those rays, how many slip between two faces of an operand and were given the face that is nearest
-    /// beside the gap, within the tolerance.
+    /// Rays among those that pass through a gap between two faces of an operand, and were given the nearest face beside
+    /// the gap, within the tolerance.
     pub mended: u64,
-    /// Rays that enter an operand and never leave it, or leave it without having entered: it is not closed. A ray
-    /// without an exit stays inside; an exit without an entry is ignored.
+    /// Rays that enter an operand and never leave it, or leave it without having entered: the operand is not closed. A
+    /// ray without an exit stays inside; an exit without an entry is ignored.
     pub unpaired: u64,
-    /// Pixels whose rays meet coincident faces of two solids, with [`SceneSettings::highlight`]; of the
-    /// sample with the most.
+    /// Pixels whose rays meet coincident faces of two solids, with [`SceneSettings::highlight`]. With several samples,
+    /// the largest count.
     pub contact_pixels: u64,
-    /// The same of rays that are within two solids at once.
+    /// Pixels whose rays are inside two solids at once, likewise.
     pub overlap_pixels: u64,
-    /// Instances with transparent faces that are not closed, or cut open by a volume: they have no inside, and are drawn
-    /// opaque.
+    /// Instances with transparent faces that are drawn opaque, because they are not closed or a volume cuts them open:
+    /// they have no inside.
     pub open_clear: u64,
-    /// In a scene with a sun, the number of things that cast no shadow: transparent solids and parts, parts that a volume
-    /// cuts open, and parts and spline operands that would need too many triangles. Such an operand is left out of the
+    /// With a sun, the number of things that cast no shadow: transparent solids and parts, parts that a volume cuts
+    /// open, and parts and spline operands that would need too many triangles. Such an operand is missing from the
     /// solid that casts the shadow.
     pub shadowless: u64,
-    /// In a scene with a sun: shadows that spline faces cast are those of surfaces that are no farther from them than this,
-    /// model units. At most an 8192nd of the diagonal of all that casts shadows, and a 1024th of a part's own; more where
-    /// that would need too many triangles.
+    /// With a sun: largest distance between spline faces and the triangles that cast their shadows, in model units. At
+    /// most an 8192nd of the diagonal of all that casts shadows, and a 1024th of a part's own, unless that needs too
+    /// many triangles.
     pub shadow_deviation: f64,
     /// Chords of lines along edges.
     pub edge_chords: u64,
-    /// Layers of faces that [`SolidWay::Blister`] peeled off before every pixel was decided.
+    /// Layers of faces that [`SolidWay::Blister`] peeled until every pixel was decided.
     pub layers: u64,
-    /// Bands of rows of tiles in which the lists of [`SolidWay::Events`] were made: 1 where all of them fit, 0 where
-    /// that way draws nothing. See [`SceneSettings::solid_budget`].
+    /// Bands of rows of tiles in which the lists of [`SolidWay::Events`] were made: 1 if all of them fit, 0 if that way
+    /// draws nothing. See [`SceneSettings::solid_budget`].
     pub bands: u32,
-    /// Bytes of the lists and images of Boolean solids: primitives of each of the `blocks` of 8 x 8 tiles, and of each of
-    /// the `tiles`; `crossings` with operands; images of `layers`; `resume_points`, where rays resume. Those that exist are listed;
-    /// [`SceneSettings::solid_budget`] bounds `tiles` and `crossings` together.
+    /// Bytes of the lists and images of Boolean solids: primitives of each of the `blocks` of 8 x 8 tiles, and of each
+    /// of the `tiles`; `crossings` with operands; images of `layers`; `resume_points`, where rays resume. Only existing
+    /// ones are listed; [`SceneSettings::solid_budget`] bounds `tiles` and `crossings` together.
     pub solid_bytes: Vec<PoolBytes>,
-    /// Times the frame was recorded again because a buffer was too small, or rays took more segments.
+    /// Times that the frame was recorded again because a buffer was too small, or rays needed more segments.
     pub retries: u32,
-    /// Bytes copied for edits of trim loops since the frame before.
+    /// Bytes copied for edits of trim loops since the previous frame.
     pub edit_bytes: u64,
     /// Bytes per memory pool.
     pub pools: Vec<PoolBytes>,
@@ -440,7 +447,7 @@ pub struct FrameStats {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PassTime {
-    /// The pass, as in `ARCHITECTURE.md`.
+    /// The name of the pass.
     pub name: String,
     /// Milliseconds between its first and last command.
     pub gpu_ms: f64,

@@ -4,7 +4,7 @@
 
 use crate::gpu::Binding;
 
-/// Little-endian words, for Vulkan's alignment.
+/// The bytes as little-endian words, aligned for Vulkan.
 const fn words<const COUNT: usize>(bytes: &[u8]) -> [u32; COUNT] {
     let (chunks, []) = bytes.as_chunks::<4>() else { panic!("SPIR-V is made of 4-byte words") };
     assert!(chunks.len() == COUNT);
@@ -19,23 +19,23 @@ const fn words<const COUNT: usize>(bytes: &[u8]) -> [u32; COUNT] {
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
-/// A shader, and what it needs of its pipeline.
+/// A shader, and its interface to the pipeline.
 #[derive(Debug)]
 pub struct Shader {
     /// The SPIR-V.
     pub words: &'static [u32],
-    /// Read out of it.
+    /// Read from the SPIR-V.
     pub interface: Interface,
 }
 
-/// What a shader needs of its pipeline.
+/// The interface of a shader to its pipeline.
 #[derive(Debug)]
 pub struct Interface {
-    /// Threads of a workgroup; 0 of a graphics stage.
+    /// Threads of a workgroup; 0 for graphics stages.
     pub group: [u32; 3],
     /// Bytes of the push constants.
     pub push_bytes: u32,
-    /// From binding 0 on.
+    /// Bindings, from binding 0 on.
     pub bindings: &'static [Binding],
     /// Ids of the specialisation constants.
     pub constants: &'static [u32],
@@ -44,16 +44,16 @@ pub struct Interface {
 /// Ids of specialisation constants.
 pub use interfaces::constant;
 
-/// Of every shader.
+/// The interfaces of all shaders.
 mod interfaces {
     use super::{Binding, Interface};
     include!(concat!(env!("OUT_DIR"), "/spirv/interfaces.rs"));
 }
 
-/// One way to trim, as the passes know it that ask: `glsl/include/trim.glsl`.
+/// The shaders of one way to trim: `glsl/include/trim.glsl`.
 #[derive(Clone, Copy, Debug)]
 pub struct TrimTest {
-    /// Its name in the pipelines'.
+    /// Its name in pipelines' names.
     pub way: &'static str,
     /// Fragment shader of pass `visibility`.
     pub visibility: &'static Shader,
@@ -61,15 +61,15 @@ pub struct TrimTest {
     pub operand_patch: &'static Shader,
     /// Pass `gap_fill`.
     pub gap_fill: &'static Shader,
-    /// Both again, within a volume that trims the scene; `None`: the way draws no such scene.
+    /// Both again, for a volume that trims the scene; `None` if the way draws no such scene.
     pub within: Option<Within>,
-    /// Pass `border_mix`, and within a volume; `None`: the way smooths no borders.
+    /// Pass `border_mix`, without and with a volume; `None` if the way smooths no borders.
     pub border_mix: Option<[&'static Shader; 2]>,
     /// Fragment shader of pass `edge_line`, and within a volume; `None`: [`EDGE_LINE_PLAIN`], which trusts no trimmed face.
     pub edge_line: Option<[&'static Shader; 2]>,
 }
 
-/// Pass `border_mix` of scenes without trims, and within a volume.
+/// Pass `border_mix` for scenes without trims, without and with a volume.
 pub static BORDER_MIX_PLAIN: [&Shader; 2] = [&BORDER_MIX_PLAIN_COMP, &BORDER_MIX_PLAIN_VOLUME_COMP];
 
 /// Fragment shader of pass `edge_line` of scenes without trims, and within a volume.
@@ -105,7 +105,7 @@ pub static TRIM_EXACT: TrimTest = TrimTest {
     edge_line: Some([&EDGE_LINE_EXACT_FRAG, &EDGE_LINE_EXACT_VOLUME_FRAG]),
 };
 
-/// No test at all.
+/// No test.
 #[cfg(feature = "baselines")]
 pub static TRIM_UNTRIMMED: TrimTest = TrimTest {
     way: "untrimmed",
@@ -148,7 +148,7 @@ mod tests {
     #[test]
     fn a_shader_begins_with_the_magic_number_and_is_whole() {
         assert_eq!(SCAN_ADD_COMP.words[0], 0x0723_0203);
-        // Walking the instructions by their lengths ends exactly at the last word.
+        // instruction by instruction, by their lengths, the walk ends exactly at the last word
         let mut at = 5;
         while at < SCAN_ADD_COMP.words.len() {
             at += (SCAN_ADD_COMP.words[at] >> 16) as usize;
@@ -156,7 +156,7 @@ mod tests {
         assert_eq!(at, SCAN_ADD_COMP.words.len());
     }
 
-    /// What embedders get is what the sources say. After a change: `tools/shaders`.
+    /// The committed shaders, which embedders use, match the sources. After a change: `tools/shaders`.
     #[cfg(feature = "compile-shaders")]
     #[test]
     fn the_committed_shaders_are_those_of_the_sources() {

@@ -1,10 +1,9 @@
-//! The lines of `ARCHITECTURE.md` that Cargo does not hold: who may use whom within a crate.
+//! The rules of `ARCHITECTURE.md` that Cargo does not enforce: which module may use which within a crate.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What each module of the library may use beside itself. A new module needs a line here and in
-/// `ARCHITECTURE.md`.
+/// The modules that each module of the library may use. A new module needs a line here and in `ARCHITECTURE.md`.
 const MAY_USE: &[(&str, &[&str])] = &[
     // selvedge-geometry
     ("math", &[]),
@@ -20,13 +19,13 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("import", &["brep", "construct", "csg", "native", "math", "spline", "model"]),
     ("export", &["construct", "csg", "edges", "spline", "trim", "model"]),
     ("native", &["model"]),
-    // selvedge-check: Cargo says it all
+    // selvedge-check: Cargo enforces it
     ("check", &[]),
-    // selvedge-viewer: what knows no window
+    // selvedge-viewer: without a window
     ("navigation", &[]),
     ("pacing", &[]),
     ("watch", &[]),
-    ("session", &[]), // the crate of that name, too: Cargo says it all
+    ("session", &[]), // also the crate of that name, for which Cargo enforces it
     ("settings", &["navigation"]),
     ("commands", &["navigation"]),
     ("pick", &["session"]),
@@ -38,7 +37,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "window",
         &["commands", "describe", "measure", "navigation", "panels", "pick", "session", "settings", "view", "watch"],
     ),
-    // the engine: what knows no GPU
+    // the engine: without a GPU
     ("picture", &["baselines", "model"]),
     ("budget", &[]),
     ("abi", &[]),
@@ -49,7 +48,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("gpu", &[]),
     ("shaders", &["gpu"]),
     ("bindings", &["gpu", "shaders"]),
-    // where both meet
+    // geometry and GPU
     ("scene", &["abi", "bindings", "csg", "edges", "gpu", "math", "spline", "trim", "model", "picture", "baselines"]),
     ("frame", &["abi", "baselines", "bindings", "gpu", "picture", "scene", "shaders"]),
     ("renderer", &["abi", "budget", "frame", "gpu", "model", "picture", "scene"]),
@@ -60,10 +59,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
 
 /// Modules that may name Vulkan's types.
 const VULKAN: &[&str] = &["gpu", "scene", "frame", "renderer", "headless", "window"];
-/// Modules that may hold `unsafe`: the layer itself, and those that speak for a host or to one.
+/// Modules that may contain `unsafe`: the layer itself, and modules that act as a host or talk to one.
 const UNSAFE: &[&str] = &["gpu", "renderer", "headless", "window"];
 /// Files beside `gpu` and `headless` that may record barriers: the frame, the records of its stages, and the one pass
-/// that has steps of its own.
+/// with several steps.
 const RECORDS: &[&str] = &[
     "src/frame.rs",
     "src/frame/pick.rs",
@@ -109,7 +108,7 @@ const NO_PASSES: &[&str] = &[
     "src/frame/trim/capacities.rs",
     "src/frame/trim/mod.rs",
 ];
-/// What a library leaves to its host.
+/// Calls that a library leaves to its host.
 const HOSTS: &[&str] =
     &["println!", "print!(", "eprintln!", "eprint!(", "dbg!(", "std::env::", "process::exit", "process::abort"];
 /// Sources of the library crates.
@@ -155,7 +154,7 @@ impl Source {
             None => path.trim_start_matches("src/"),
         };
         let module = module.split(['/', '.']).next().unwrap().to_owned();
-        // unit tests may use anything, and stand last
+        // unit tests may use anything, and come last
         let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
         let code = code.lines().map(|line| line.split("//").next().unwrap()).collect::<Vec<_>>().join("\n");
         Self { path, module, code }
@@ -167,14 +166,14 @@ impl Source {
         self.code.split("crate::").skip(1).map(|rest| &rest[..name(rest)]).collect()
     }
 
-    /// A pass, in the folder of its stage.
+    /// Whether it is a pass, in the folder of its stage.
     fn is_pass(&self) -> bool {
         let of_stage = self.path.strip_prefix("src/frame/").is_some_and(|within| within.contains('/'));
         let path = self.path.as_str();
         of_stage && !RECORDS.contains(&path) && !NO_PASSES.contains(&path) || path == "src/frame/common/scan.rs"
     }
 
-    /// Everything that is wrong with it.
+    /// All violations in the file.
     fn complaints(&self) -> Vec<String> {
         let mut all = Vec::new();
         let mut complain = |what: String| all.push(format!("{}: {what}", self.path));
@@ -213,7 +212,7 @@ impl Source {
     }
 }
 
-/// Whether code has a path that begins so: `ash::`, not `hash::`.
+/// Whether code has a path with this start: `ash::`, not `hash::`.
 fn names(code: &str, start: &str) -> bool {
     let is_within = |at: usize| code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_');
     code.match_indices(start).any(|(at, _)| !is_within(at))
@@ -251,7 +250,7 @@ fn nobody_uses_what_it_may_not() {
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
 
-/// The check above would see it.
+/// The check above reports violations.
 #[test]
 fn a_forbidden_use_is_seen() {
     let complaints = |path: &str, text: &str| Source::new(path.to_owned(), text).complaints().len();
@@ -304,7 +303,7 @@ fn literals(text: &str) -> Vec<(&str, &str)> {
     named.filter(|(_, value)| value.starts_with(|c: char| c.is_ascii_digit())).collect()
 }
 
-/// What GLSL states has no second home in Rust, which reads it by `abi::constants`.
+/// Constants stated in GLSL must not be stated again in Rust, which reads them by `abi::constants`.
 fn second_homes(glsl: &[String], rust: &[(String, String)]) -> Vec<String> {
     let stated: Vec<_> = glsl.iter().flat_map(|text| literals(text)).map(|(name, _)| name).collect();
     let of_rust = rust.iter().flat_map(|(path, text)| literals(text).into_iter().map(move |(name, _)| (path, name)));
@@ -315,7 +314,7 @@ fn second_homes(glsl: &[String], rust: &[(String, String)]) -> Vec<String> {
 #[test]
 fn shared_constants_have_one_home() {
     let read = |path: &PathBuf| fs::read_to_string(path).ok();
-    // other methods, in glsl/baselines, state theirs for themselves
+    // baselines, in glsl/baselines, have constants of their own
     let own = |path: &&PathBuf| !relative(path).contains("/baseline");
     let glsl: Vec<_> = files("glsl").iter().filter(own).filter_map(read).collect();
     let rust: Vec<_> = files("src").iter().filter_map(|path| Some((relative(path), read(path)?))).collect();
@@ -356,7 +355,7 @@ fn ignored(text: &str) -> Vec<String> {
     found
 }
 
-/// What `tools/test` leaves out, `tools/soak` runs.
+/// `tools/soak` runs every test that `tools/test` ignores.
 #[test]
 fn every_ignored_test_is_named_in_soak() {
     let sources =
@@ -376,4 +375,26 @@ fn every_ignored_test_is_named_in_soak() {
 fn an_ignored_test_is_found() {
     let text = "#[test]\n    #[ignore = \"minutes\"]\n    fn long() {}\n#[test]\nfn short() {}\n#[ignore]\n#[test]\nfn other() {}\n";
     assert_eq!(ignored(text), ["long", "other"]);
+}
+
+/// Paths of files between backticks, without the `::function` behind some of them.
+fn paths_of(text: &str) -> Vec<&str> {
+    let kinds = ["rs", "glsl", "comp", "vert", "tesc", "tese", "frag", "step"];
+    let spans = text.split('`').skip(1).step_by(2).map(|span| span.split("::").next().unwrap_or_default());
+    spans.filter(|path| path.rsplit_once('.').is_some_and(|(_, kind)| kinds.contains(&kind))).collect()
+}
+
+#[test]
+fn files_of_the_walkthrough_exist() {
+    let text = fs::read_to_string(root().join("docs/walkthrough.md")).unwrap();
+    let paths = paths_of(&text);
+    assert!(paths.len() > 30, "only {} paths were found", paths.len());
+    let missing: Vec<_> = paths.into_iter().filter(|path| !root().join(path).is_file()).collect();
+    assert_eq!(missing, [""; 0], "paths begin at the repository's root");
+}
+
+#[test]
+fn a_path_is_found() {
+    let text = "`Face` (`src/a.rs`), `b.rs::of` and `model::Face { u, … }`; c.rs\n";
+    assert_eq!(paths_of(text), ["src/a.rs", "b.rs"]);
 }

@@ -1,4 +1,4 @@
-//! Every example runs, and does what it says. Needs a Vulkan driver.
+//! Every example runs and does what it states. Needs a Vulkan driver.
 
 #![allow(dead_code)] // their `main`
 

@@ -1,4 +1,4 @@
-//! README's first example, as a newcomer has it: a project of its own, outside of the workspace.
+//! README's first example as a new user has it: a project of its own, outside the workspace.
 
 use std::path::Path;
 use std::process::Command;
@@ -28,7 +28,7 @@ fn the_first_example_builds_as_a_fresh_project() {
     let manifest = format!("[package]\nname = \"first\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n{dependencies}");
     fs::write(project.join("Cargo.toml"), manifest).unwrap();
     fs::write(project.join("src/main.rs"), block("rust,no_run")).unwrap();
-    // the versions that are known to be there: the test needs no network
+    // the locked versions, which are available without a network
     fs::copy(root.join("Cargo.lock"), project.join("Cargo.lock")).unwrap();
     let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), Into::into).join("readme");
     let output = Command::new(env!("CARGO"))

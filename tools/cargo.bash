@@ -5,7 +5,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
 PATH=$PATH:${CARGO_HOME:-$HOME/.cargo}/bin
 
-# After the subcommand: clippy and nextest are programs of their own, and would not see what stands before it.
+# After the subcommand: clippy and nextest are programs of their own, and would not see an argument before their name.
 linking=(--config tools/shaderc.toml) # how shaderc links on Debian
 # The doors of other languages and the window are half of all crates, and Rhino's decoder takes a sixth of the time of
 # the others: tools/test_doors has them.

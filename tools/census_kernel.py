@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""What Open CASCADE makes of a STEP or IGES file: tools/census calls this, with a Python that has cadquery-ocp and numpy.
+"""Open CASCADE's facts of a STEP or IGES file: tools/census calls this, with a Python that has cadquery-ocp and numpy.
 
     census_kernel.py MODEL                             its facts
-    census_kernel.py MODEL CAMERA.json DEPTH.npy ...   and whether it sees what was drawn, picture by picture
+    census_kernel.py MODEL CAMERA.json DEPTH.npy ...   and whether its rays agree with the picture, for each picture
 
-Prints a JSON object a line, each as soon as it is known, so that a reader keeps what came before a limit ended it:
+Prints a JSON object a line, each as soon as it is known, so that a limit costs only the later ones:
 
     counts      faces (distinct), placed (faces), solids (placed), facets (faces that are triangles only)
-    area        of the placed faces, mm², by two quadratures: fixed, and adaptive, which go wrong on different faces
+    area        of the placed faces, mm², by two quadratures: fixed, and adaptive, which fail on different faces
     box         of the placed faces, mm: [[x, y, z], [x, y, z]]
     colours     {"r,g,b": area}, by the adaptive quadrature; "none" where a face has no colour; sRGB, 0 to 255
-    picture     rays sampled, and those that see something else than the 3 x 3 pixels around them, as all near them do, by kind:
+    picture     rays sampled, and by kind those that, like all rays near them, differ from the 3 x 3 pixels around them:
                 missing (nothing drawn), extra (nothing there), behind (drawn farther off), before (drawn nearer)
 """
 import json, pathlib, sys, time
@@ -39,13 +39,13 @@ from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as S
 from OCP.collections import Sequence_TDF_Label as Labels
 from OCP.gp import gp_Dir, gp_Lin, gp_Pnt
 
-# of a face's area, what its quadrature aims at
+# error that the quadrature of a face aims at, as a share of its area
 QUADRATURE = 1e-6
 # pixels between rays
 STEP = 4
-# of the box's diagonal: depths as far apart are of different places
+# share of the box's diagonal: depths that differ by more belong to different places
 DEPTH = 1e-3
-# pixels from a ray that sees something else to those that may excuse it
+# distance in pixels from a ray that differs to the rays that may excuse it
 NEAR = [(-.4, -.3), (.4, -.3), (-.1, .2), (.1, .2), (0, 1), (1, 0), (0, -1), (-1, 0)]
 # seconds for the rays of a picture
 PATIENCE = 15.0
@@ -103,13 +103,13 @@ def colours(free, areas):
 
 
 class Areas:
-    """Of faces; each distinct one is measured once. Placements turn and shift: neither format scales an occurrence."""
+    """Areas of faces; each distinct one is measured once. Placements do not scale in either format."""
 
     def __init__(self):
         self.placed, self.distinct, self.area = Shapes(), Shapes(), {}
 
     def number(self, face):
-        """Faces are the same where both surface and place are."""
+        """Faces are the same if surface and place are."""
         return self.placed.Add(face)
 
     def of(self, face):
@@ -149,7 +149,7 @@ class Rays:
         self.shapes.Load(shape, 1e-7)
 
     def depth(self, x, y):
-        """Of the nearest point along the view axis; infinite where there is none."""
+        """Depth of the nearest point along the view axis; infinite if there is none."""
         width, height = self.size
         ray = (self.forward + self.right * ((2 * x / width - 1) * self.tan * width / height)
                + self.up * ((1 - 2 * y / height) * self.tan))

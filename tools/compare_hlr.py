@@ -6,15 +6,16 @@
 The same file, parallel view and machine, one after the other. A row a file: seconds to read and to draw of each, and
 lengths in pixels of a picture of 1920 x 1080. `both`: visible lines of selvedge (sharp, borders, silhouettes) within 0.5 px
 of any visible line of the kernel; `ours alone`: the others; `theirs alone`: visible sharp lines and outlines of the kernel
-without any visible line of selvedge within 0.5 px: along a line that selvedge has as hidden, or along none. Smooth edges count as lines to be near to, not as lines to be found:
-both programs call other edges smooth. SELVEDGE names the program; target/release/selvedge without it.
+without any visible line of selvedge within 0.5 px, in two columns: along a hidden line of selvedge, or along none.
+Smooth edges count as lines nearby, but are themselves not looked for: the programs differ about which edges are smooth.
+SELVEDGE names the program; target/release/selvedge without it.
 """
 import argparse, json, multiprocessing, os, re, subprocess, sys, tempfile, time
 import numpy as np
 
 SIZE = (1920, 1080)
 WIDTH_MM = 297.0
-# pixels: a line is there when one is as near
+# pixels: a line counts as found within this distance
 NEAR = 0.5
 # pixels between points of lines
 STEP = 0.1
@@ -23,7 +24,7 @@ FINE = 4
 
 
 def sampled(points):
-    """Points of polylines, and the length that each stands for."""
+    """Points of polylines, and the length of line that each represents."""
     out, weights = [], []
     for line in points:
         line = np.asarray(line, float)
@@ -41,7 +42,7 @@ def sampled(points):
 
 
 class Raster:
-    """Where a line is near."""
+    """Cells near a line."""
 
     def __init__(self, points):
         self.near = np.zeros((SIZE[1] * FINE, SIZE[0] * FINE), bool)
@@ -101,7 +102,7 @@ def ours(model, view, folder):
 
 
 def theirs(model, camera, answer):
-    """The same of the kernel, in a process of its own."""
+    """The same for the kernel, in a separate process."""
     from OCP.BRepAdaptor import BRepAdaptor_Curve
     from OCP.BRepLib import BRepLib
     from OCP.GCPnts import GCPnts_QuasiUniformDeflection

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Seeds and dictionaries for fuzzing the file readers, made from what the repository holds.
+"""Seeds and dictionaries for fuzzing the file readers, made from the repository's files.
 
     tools/fuzz_seeds.py FORMAT FOLDER DICTIONARY      FORMAT: step iges obj bv native scad brlcad rhino scene
 
@@ -69,7 +69,7 @@ def step() -> list[str]:
 
 
 def quoted(folder: str) -> list[str]:
-    """The texts of several words that the tests in `folder` quote; what `format!` would put in stays a name."""
+    """The texts of several words that the tests in `folder` quote; placeholders of `format!` stay as names."""
     found = []
     for path in sorted((ROOT / folder).rglob("*.rs")):
         if "tests" not in str(path.relative_to(ROOT)):
@@ -188,7 +188,7 @@ def rhino() -> list:
 
 
 def scene() -> list:
-    """The gallery, and the texts of the reader's tests; what they leave out is their first line."""
+    """The gallery, and the texts of the reader's tests, which omit the first line of a scene."""
     version = "selvedge = 1\n"
     files = [path.read_text() for path in sorted((ROOT / "samples/gallery").glob("*.toml"))]
     texts = [text if text.startswith("selvedge") else version + text for text in quoted("crates/io/src/import/scene") if "=" in text]
@@ -196,7 +196,7 @@ def scene() -> list:
 
 
 def native() -> list[bytes]:
-    """What follows the header of converted files."""
+    """The contents of converted files after the header."""
     program = pathlib.Path(os.environ.get("SELVEDGE", ROOT / "target/release/selvedge"))
     if not program.exists():
         sys.exit(f"{program} is missing: cargo build --release -p selvedge-cli")

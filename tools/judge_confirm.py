@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Asks the independent kernel once more about the pixels that it contradicts: tools/judge_all calls this.
+"""Checks the pixels that the independent kernel contradicts in a second way: tools/judge_all calls this.
 
     ORACLE=oracle judge_confirm.py MODEL FOLDER LIMIT      FOLDER: camera.json, face.npy; writes confirmed.json
 
@@ -7,9 +7,9 @@ The kernel finds where a ray meets a face from a coarse polyhedron, and misses p
 Its surfaces and trims by themselves are exact: for every judged pixel that is off by more than 1/16 pixel, Newton's
 method looks for the points of rays on the kernel's surface of the face that was drawn there. Counted are pixels
 
-    there   such a point is on a ray within 1/16 pixel, inside the kernel's own trims or on them, and in front of what
-            the kernel saw: the picture is right
-    edge    the kernel's own point lies on an edge, by the width that it gives to edges, and not inside the face
+    there   such a point is on a ray within 1/16 pixel, inside the kernel's own trims or on them, and in front of the
+            kernel's own point: the picture is right
+    edge    the kernel's own point lies on an edge, within the kernel's width of edges, and not inside the face
     left    neither
     over    those of the last two that are off by more than half a pixel
 """

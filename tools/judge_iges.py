@@ -18,7 +18,7 @@ FACES = ('IGESGeom_TrimmedSurface', 'IGESGeom_BoundedSurface', 'IGESSolid_Face')
 
 
 def load(path):
-    """As oracle.load, with numbers."""
+    """Like oracle.load, with numbers."""
     reader = IGESControl_Reader()
     if int(reader.ReadFile(path)) != 1:
         raise SystemExit('read failed')
@@ -39,7 +39,7 @@ def load(path):
 
 
 def install():
-    """From now on the kernel's reader numbers the faces of IGES files."""
+    """Makes the kernel's reader number the faces of IGES files."""
     others = K.load
     K.load = lambda path: load(path) if path.lower().endswith(('.igs', '.iges')) else others(path)
 

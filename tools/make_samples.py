@@ -224,7 +224,7 @@ def assembly():
 
 
 def neutral_header(path):
-    """Replaces everything in the header that depends on when, where and by whom the file was written."""
+    """Replaces everything in the header that depends on time, place and author of the file."""
     text = path.read_text()
     name = f"FILE_NAME('{path.name}','1970-01-01T00:00:00',(''),(''),'','','');"
     text, headers = re.subn(r"FILE_NAME\(.*?\);", name, text, count=1, flags=re.S)

@@ -11,7 +11,7 @@ import sys
 
 
 def split(text: str) -> tuple[str, str, str]:
-    """What stands before, in and behind the DATA section."""
+    """The text before, in and after the DATA section."""
     start = re.search(r"\bDATA\s*;", text).end()
     end = text.rindex("ENDSEC")
     return text[:start], text[start:end], text[end:]

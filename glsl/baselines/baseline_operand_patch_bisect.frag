@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `operand_patch`, trimmed patches, by a way to compare with: bisection of monotone pieces.
+// Pass `operand_patch`, trimmed patches, by a baseline: bisection of monotone pieces.
 #define TRIMMED
 #define TRIM_BY_BISECT
 #include "operand_patch.glsl"

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `operand_patch`, trimmed patches, by a way to compare with: no test at all.
+// Pass `operand_patch`, trimmed patches, by a baseline: no trim test.
 #define TRIMMED
 #define TRIM_BY_UNTRIMMED
 #include "operand_patch.glsl"

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `rival_slefe`, in place of `bound`: patches are divided by the largest extent in pixels of their slefe boxes.
-// Weights are left out of account, as in the source: Y. I. Yeo, L. Bin, J. Peters, Efficient pixel-accurate rendering of
-// curved surfaces, 2012. One thread an item. The same in f64: Way::Ipass of src/baselines/factors.
+// Pass `baseline_slefe`, in place of `bound`: divides patches by the largest extent of their slefe boxes in pixels.
+// Weights are ignored, as in the source: Y. I. Yeo, L. Bin, J. Peters, Efficient pixel-accurate rendering of curved
+// surfaces, 2012. One thread an item. The same in f64: Way::Ipass of src/baselines/factors.
 #include "bound.glsl"
 
 layout(scalar, binding = 12) readonly buffer Slefes {
@@ -12,7 +12,7 @@ layout(scalar, binding = 12) readonly buffer Slefes {
 };
 
 const uint MOST_DEGREE = 9u;
-// More than the engine counts: a clamp.
+// More segments than the engine counts: a clamp.
 const float NO_ANSWER = 1.0e30;
 
 struct Bounds {
@@ -20,25 +20,25 @@ struct Bounds {
     vec3 upper;
 };
 
-// A polynomial between two coefficients, without what those between them add.
+// The linear part of a polynomial, between its first and last coefficient.
 Bounds linear(Bounds first, Bounds last, float t) {
     return Bounds(mix(first.lower, last.lower, t), mix(first.upper, last.upper, t));
 }
 
-// What second difference `j` of degree `n` adds at a break point, that of the lower coefficients to the lower bound.
+// Adds the contribution of second difference `j` of degree `n` at a break point; `lower` is for the lower bound.
 void add(inout Bounds bounds, uint n, uint j, uint at, vec3 lower, vec3 upper) {
     vec2 b = basis[((n - 1u) * (n - 2u) / 2u + j - 1u) * (segments + 1u) + at];
     bounds.lower += max(lower, 0.0) * b.y + min(lower, 0.0) * b.x;
     bounds.upper += max(upper, 0.0) * b.x + min(upper, 0.0) * b.y;
 }
 
-// Relative to `origin`, so that little is lost in differences.
+// Relative to `origin`, which keeps digits in differences.
 vec3 point_at(uint i, vec3 origin) {
     vec4 p = texelFetch(points, int(i));
     return p.xyz / p.w - origin;
 }
 
-// Of the row of `n + 1` points from `first` on, at break point `at`.
+// The bounds of the row of `n + 1` points from `first` on, at break point `at`.
 Bounds row_bounds(uint first, uint n, uint at, vec3 origin) {
     vec3 a = point_at(first, origin);
     vec3 z = point_at(first + n, origin);
@@ -54,7 +54,7 @@ Bounds row_bounds(uint first, uint n, uint at, vec3 origin) {
     return row;
 }
 
-// The larger extent in pixels of the box that reaches as far from the homogeneous pixel `q`.
+// The larger extent in pixels of the box of half size `reach` around the homogeneous pixel `q`.
 float extent(View view, vec4 q, vec3 reach) {
     vec2 pixel = q.xy / q.w;
     vec2 low = vec2(0.0);

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Trim textures, third step: each texel becomes the parity of the flips up to it. A column of invocations a
-// placed face: each takes some of its rows; the first writes where the texture is.
+// Trim textures, third step: each texel becomes the parity of the flips up to it. One column of invocations for each
+// placed face; each invocation has some of the rows, and the first writes the texture's place.
 #include "scene.glsl"
 #include "baselines/texture.glsl"
 
@@ -27,7 +27,7 @@ void main() {
     if (trimmed && gl_GlobalInvocationID.y == 0u) places[fi.first_bin] = TexturePlace(size, starts[placed]);
     uint shares = gl_NumWorkGroups.y * gl_WorkGroupSize.y;
     for (uint row = gl_GlobalInvocationID.y; row < size.rows; row += shares) {
-        uint before = 0u; // all ones when the texel before is set
+        uint before = 0u; // all ones if the texel before is set
         uint word = starts[placed] + row * size.words;
         for (uint k = 0u; k < size.words; ++k) {
             uint bits = texels[word + k];

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Trim textures, second step: where a row meets a trim curve, the texel behind it flips. A column of
-// invocations a curve: each takes some of its chords.
+// Trim textures, second step: at each crossing of a row and a trim curve, flips the texel behind it. One column of
+// invocations for each curve; each invocation has some of the chords.
 #include "scene.glsl"
 #include "baselines/texture.glsl"
 
@@ -25,10 +25,10 @@ layout(scalar, binding = 10) buffer CountersBuffer { Counters counters; };
 #include "words.glsl"
 
 const uint SHARES = 64u;
-// Of a texel: what a chord may add to half a texel.
+// Error of a chord in texels, in addition to half a texel.
 const float CHORD_TEXELS = 0.0625;
 const float MAX_CHORDS = 65536.0;
-// A long straight curve is worth several invocations.
+// Rows for one invocation: a long straight curve gets several invocations.
 const float ROWS_PER_CHORD = 64.0;
 
 void flip(TextureSize size, uint start, vec2 a, vec2 b) {
@@ -64,7 +64,7 @@ void main() {
         atomicMax(counters.intercepts, end);
         if (end > frame.intercept_capacity) atomicOr(counters.failed, FAILED_INTERCEPTS);
     }
-    // else some size was cut, or there is no room: the host makes it and records again
+    // otherwise a size was cut or did not fit: the host enlarges the buffer and records again
     if (size.words == 0u || end > frame.intercept_capacity || (counters.failed & FAILED_INTERCEPTS) != 0u) return;
     vec2 texels_ = vec2(size.columns, size.rows);
     float for_chords = ceil(sqrt(dot(curve.bend, texels_) / CHORD_TEXELS));

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Trim textures, first step: how many words each takes. One thread a placed face.
+// Trim textures, first step: the number of words of each texture. One thread for each placed face.
 #include "scene.glsl"
 #include "baselines/texture.glsl"
 

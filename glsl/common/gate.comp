@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `gate`: if a list of this frame overflowed, no patch is drawn. The host then makes room and records the frame
-// again. One thread. Twin: src/twin/gate.rs.
+// Pass `gate`: if a list of this frame overflowed, no patch is drawn. The host then enlarges the list and records the
+// frame again. One thread. Twin: src/twin/gate.rs.
 #include "scene.glsl"
 
 layout(local_size_x = 1) in;

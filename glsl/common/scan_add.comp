@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Step 3 of the prefix sum: every element of a block gains the sum of the blocks before it.
+// Step 3 of the prefix sum: adds to every element of a block the sum of the blocks before it.
 #include "scan.glsl"
 
 void main() {

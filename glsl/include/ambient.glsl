@@ -1,4 +1,4 @@
-// The points that pixels see, and the surfaces they lie on, for passes `ambient_find` and `ambient_write`. Needs
+// The points visible in pixels, and the surfaces that they lie on, for passes `ambient_find` and `ambient_write`. Needs
 // scene.glsl, view.glsl, `frame`, and `float depth_at(ivec2)`, which returns UNSEEN for a pixel of the background.
 #ifndef AMBIENT_GLSL
 #define AMBIENT_GLSL
@@ -10,7 +10,7 @@ bool in_picture(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(le
 // Depth of a pixel; UNSEEN outside the picture.
 float depth_beside(ivec2 at) { return in_picture(at) ? depth_at(at) : UNSEEN; }
 
-// The point that a pixel sees, in model axes.
+// The point visible in a pixel, in model axes.
 vec3 point_at(ivec2 at, float depth) {
     Ray ray = eye_ray(frame, vec2(at) + 0.5);
     return ray.o + depth * ray.d;
@@ -19,8 +19,8 @@ vec3 point_at(ivec2 at, float depth) {
 // A function of the depth that is linear in the picture along a plane.
 float linear_depth(float depth) { return frame.perspective != 0u ? 1.0 / depth : depth; }
 
-// How far the second neighbour along an axis lies off the line through this pixel and the first, in linear depth. If
-// the second sees nothing: how far the first lies off this pixel. If the first sees nothing: UNSEEN.
+// Distance of the second neighbour along an axis from the line through this pixel and the first, in linear depth. If
+// the second is background: distance of the first from this pixel. If the first is background: UNSEEN.
 float bend(ivec2 at, ivec2 axis, float here) {
     float first = depth_beside(at + axis);
     float second = depth_beside(at + 2 * axis);
@@ -29,7 +29,7 @@ float bend(ivec2 at, ivec2 axis, float here) {
     return abs(second >= UNSEEN ? step_ : linear_depth(second) - linear_depth(first) - step_);
 }
 
-// The side of a pixel, along an axis, on which its surface continues: 1 or -1; 0 if both neighbours see nothing.
+// The side of a pixel, along an axis, on which its surface continues: 1 or -1; 0 if both neighbours are background.
 int like_beside(ivec2 at, ivec2 axis, float depth) {
     float here = linear_depth(depth);
     float after = bend(at, axis, here);

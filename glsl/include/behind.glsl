@@ -1,9 +1,9 @@
-// Whether a patch lies behind what has been drawn. Twin: src/twin/occlusion.rs, which derives it.
+// Whether a patch is hidden by the surfaces drawn so far. Twin: src/twin/occlusion.rs, which has the derivation.
 //
-//   ┌────┬────┬────┐   a patch is cut in cells of some CELL_PX; every triangle of a cell lies within `off` of what is
-//   │    │    │    │   bilinear through its corners. So it is seen within the corners' pixels, and a few more, and
-//   ├────┼────┼────┤   nowhere nearer than they are, and a little. If all squares there see something nearer, nothing
-//   │    │    │    │   of it changes the picture
+//   ┌────┬────┬────┐   a patch is divided into cells of about CELL_PX. Every triangle of a cell is within `off` of
+//   │    │    │    │   the bilinear surface through its corners. So its pixels lie within the corners' pixels, and some
+//   ├────┼────┼────┤   around them, and its depth is at most a little nearer than the corners'. If every square there
+//   │    │    │    │   is nearer, the cell does not change the picture
 //   └────┴────┴────┘
 #ifndef BEHIND_GLSL
 #define BEHIND_GLSL
@@ -14,11 +14,11 @@
 const float CELL_PX = 32.0;
 const uint OUTSIDE_CELLS = 8u;
 const uint MOST_CELLS = 8u; // along each parameter
-const uint MOST_SQUARES = 10u; // that a cell asks along each axis; else it asks larger ones
-const float DEPTH_ROUNDING = 1e-5; // of depths that the rasteriser interpolates: above STAND_BACK and its own
-const float PUSH_SLACK = 2.0; // what is pushed at a cell's corners is up to so much more between them
+const uint MOST_SQUARES = 10u; // tested along each axis of a cell; larger squares if a cell covers more
+const float DEPTH_ROUNDING = 1e-5; // of interpolated depths: more than STAND_BACK and rounding
+const float PUSH_SLACK = 2.0; // factor: skirts may be pushed farther between a cell's corners
 
-// By how much the surface may leave its tangent within such a step.
+// A bound on the distance between the surface and its tangent within such a step.
 float bend_over(Patch patch_, vec2 step_) {
     return dot(patch_.bend, vec3(step_.x * step_.x, 2.0 * step_.x * step_.y, step_.y * step_.y));
 }
@@ -28,8 +28,8 @@ float turn_of(Patch patch_) {
     return patch_.bend.y + sqrt(patch_.bend.x * patch_.bend.z);
 }
 
-// Whether nothing of the face is in a cell of `n` x `n`. `outside`: a bit for each of OUTSIDE_CELLS x OUTSIDE_CELLS, rows
-// of them from the lowest bit on.
+// Whether no part of the face lies in a cell of `n` x `n`. `outside` has a bit for each of OUTSIDE_CELLS x
+// OUTSIDE_CELLS cells, row by row from the lowest bit on.
 bool is_outside(uvec2 outside, uvec2 cell, uint n) {
     uvec2 first = cell * OUTSIDE_CELLS / n;
     uvec2 end = max((cell + 1u) * OUTSIDE_CELLS / n, first + 1u);
@@ -41,7 +41,7 @@ bool is_outside(uvec2 outside, uvec2 cell, uint n) {
     return true;
 }
 
-// What a cell covers: pixels, and how near it comes.
+// The pixels that a cell covers, and its nearest depth.
 struct Cover {
     vec2 low;
     vec2 high;
@@ -55,8 +55,8 @@ void cover(inout Cover c, vec4 q) {
     c.depth = min(c.depth, q.z);
 }
 
-// All that is seen from the first to the last square of that side is nearer than `z`. What has not been asked is not
-// known: llvmpipe ends the loops of a shader that make too many steps.
+// Whether every square of this side, from the first to the last, is nearer than `z`. False if the loop ends early:
+// llvmpipe ends loops of a shader after too many steps.
 bool all_nearer(uvec2 first, uvec2 last, uint side, float z) {
     uint base = first_square(frame, side);
     uint across = square_count(frame, side).x;
@@ -71,11 +71,11 @@ bool all_nearer(uvec2 first, uvec2 last, uint side, float z) {
     return asked == all_.x * all_.y;
 }
 
-// No pixel shows anything of what covers this, and `reach` pixels around it.
+// Whether every pixel of the cover, and of `reach` pixels around it, shows something nearer.
 bool is_covered(Cover c, float reach) {
     vec2 low = max(floor(c.low - reach), 0.0);
     vec2 high = min(ceil(c.high + reach), frame.size - 1.0);
-    if (any(greaterThan(low, high))) return true; // beside the picture
+    if (any(greaterThan(low, high))) return true; // outside the picture
     float z = reversed_depth(frame, c.depth) / (frame.perspective != 0u ? c.depth : 1.0);
     z += DEPTH_ROUNDING * z;
     uint side = TILE * BLOCK;
@@ -84,13 +84,13 @@ bool is_covered(Cover c, float reach) {
     return all_nearer(uvec2(low) / side, uvec2(high) / side, side, z);
 }
 
-// What a cell of `n` x `n` covers, triangles of these segments' size and what is pushed beyond borders among it (with
-// `all_sides` beyond the sides of the cell), and how far beside its pixels that may be. False where it comes before the
-// near plane.
+// The cover of a cell of `n` x `n`, for triangles with segments of this size, including skirts beyond borders (with
+// `all_sides` beyond every side of the cell), and the distance that they may reach beside its pixels. False if the cell
+// reaches the near plane.
 bool cover_cell(Patch patch_, View view, float scale, vec2 segment, uvec2 cell, uint n, bool all_sides, out Cover c,
                 out float beside) {
     vec2 size = vec2(1.0 / float(n));
-    // of triangles from the surface, of the surface from what is bilinear, part units
+    // distance of triangles from the surface, and of the surface from the bilinear one, part units
     float chord = bend_over(patch_, segment) / 8.0;
     float off = chord + bend_over(patch_, size) / 8.0;
     uint borders = side_of(patch_.shape) == SIDE_BOUNDARY ? borders_of(patch_.shape) : 0u;
@@ -102,7 +102,7 @@ bool cover_cell(Patch patch_, View view, float scale, vec2 segment, uvec2 cell, 
         vec4 q = to_pixel(view, vec4(jet.point, 1.0));
         if (q.z < near) return false;
         cover(c, q);
-        // at borders; and skirts of what ends beside cells without anything of the face reach into those
+        // at borders; skirts from beside reach into cells that no part of the face covers
         uvec2 far = uvec2(k & 1u, k >> 1);
         bvec2 at_end = equal(cell + far, uvec2(far.x * n, far.y * n));
         uvec2 border = uvec2(far.x == 0u ? BORDER_U0 : BORDER_U1, far.y == 0u ? BORDER_V0 : BORDER_V1);

@@ -1,27 +1,28 @@
-// The border near a pixel, by the exact arcs: the point, the corners of a square around it, and the point ahead are all told
-// by the list of the point's cell.
+// The border near a pixel, by the exact arcs. One list, that of the point's cell, decides the point, the corners of a
+// square around it, and the point ahead.
 //
-//      1 ●─────────● 0      a straight border that comes nearer than the sides has a corner beyond it (SQUARE, gap_radius.glsl)
+//      1 ●─────────● 0      a straight border nearer than the sides has a corner beyond it (SQUARE, gap_radius.glsl)
 //        │         │
-//        │    ·──▶ │        each arc that is fetched is asked about all of them: where a point is in its triangle is
-//        │         │        linear, and opposite corners are as far from the point
+//        │    ·──▶ │        each arc is fetched once and tested against all points: a point's place in the arc's
+//        │         │        triangle is linear, and opposite corners are equally far from the point
 //      2 ●─────────● 3
 //
-// What lies beyond the list's box, a quarter of a cell around it, is not told: to ask in other cells takes a loop around the
-// loop of arcs, which costs half of everything even where it ends after one round. A front that is not
-// told of a border does not grow to it: the gap is found by the back behind it, as wider ones are. Else what is not told
-// counts as a border, and pass `gap_fill` looks closer; but a solid's back that is there is drawn, since it is a candidate itself.
+// Points beyond the list's box, a quarter of a cell around the cell, remain undecided: testing other cells needs a loop
+// around the loop of arcs, which is expensive even if it runs only once. A front does not grow to a border beyond the
+// box; the back face behind finds the gap, as with wider gaps. In all other cases an undecided point counts as a
+// border, and pass `gap_fill` looks closer. A solid's back that is visible there is drawn, since it is a candidate
+// itself.
 #ifndef BORDER_ARCS_GLSL
 #define BORDER_ARCS_GLSL
 
 #include "border.glsl"
 #include "gap_radius.glsl"
 
-// Of a number at corners 0 and 1, less that at the point: the same at all corners.
+// The values of a linear function at all corners, from those at corners 0 and 1; all relative to the point.
 vec4 at_corners(vec2 two) { return vec4(two, -two); }
 
-// What an arc adds to the winding numbers of the corners, whose v are `v`; how far in u and v those are from the point, whose
-// place is known. As arc_winding, but for rounding.
+// Winding numbers that an arc adds at the corners, whose v are `v`. `far_u` and `far_v` are the offsets of corners 0
+// and 1 from the point, whose place is `place`. The same as arc_winding, up to rounding.
 ivec4 corner_windings(ExactArc arc, ArcSides sides, vec3 place, vec4 v, vec2 far_u, vec2 far_v) {
     vec4 middle = place.x + at_corners(sides.to_high.x * far_v - far_u * sides.to_high.y);
     vec4 high = arc.fullness * place.y +

@@ -1,18 +1,18 @@
-// Where trim curves pass, coarsely: a bit for each cell of the bins of a placed face's strips. Written by pass `cross` in
-// scenes with spline operands, asked by table.glsl. Twin of src/twin/border_cells.rs.
+// A coarse map of trim curves: one bit for each cell of the bins of a placed face's strips. Written by pass `cross` in
+// scenes with spline operands, read by table.glsl. Twin of src/twin/border_cells.rs.
 //
 //            128 columns of a bin, a texel of four words
 //          ┌─┬─┬─┬─┬─┬─┬─┬─┐
-//    band  │ │ │ │█│█│ │ │ │        a chord of the table is in these cells, or less than half a scan line below or above:
-//          ├─┼─┼─┼─┼─┼─┼─┼─┤        what is looked up there is that of the nearest line. Where a box meets no such cell,
-//    band  │ │ │ │ │█│█│ │ │        all of it is inside or none
+//    band  │ │ │ │█│█│ │ │ │        a chord of the table lies in these cells, or up to half a scan line below or above,
+//          ├─┼─┼─┼─┼─┼─┼─┼─┤        since the look-up uses the nearest line. A box without such a cell is inside or
+//    band  │ │ │ │ │█│█│ │ │        outside as a whole
 //          └─┴─┴─┴─┴─┴─┴─┴─┘
 #ifndef BORDER_CELLS_GLSL
 #define BORDER_CELLS_GLSL
 
-const uint BORDER_BANDS = 4u;       // of a strip
-const float BORDER_COLUMNS = 128.0; // of a band
-// Of a strip: more than v times the number of strips is rounded, at most 2^-24 of 128.
+const uint BORDER_BANDS = 4u;       // in a strip
+const float BORDER_COLUMNS = 128.0; // in a band
+// Share of a strip: more than the rounding of v times the number of strips, which is at most 2^-24 of 128.
 const float BAND_ROUNDING = 1e-4;
 
 // The bits below column `n`.
@@ -21,7 +21,7 @@ uvec4 columns_below(int n) {
     return mix((uvec4(1u) << (uvec4(bits) & 31u)) - 1u, uvec4(0xffffffffu), equal(bits, ivec4(32)));
 }
 
-// The bits of the columns that u from `lo` to `hi` meets; what is beyond the face counts as its outermost columns.
+// The bits of the columns from `lo` to `hi` in u; u beyond the face counts as its outermost column.
 uvec4 columns_between(float lo, float hi) {
     int first = int(clamp(floor(lo * BORDER_COLUMNS), 0.0, BORDER_COLUMNS - 1.0));
     int last = int(clamp(floor(hi * BORDER_COLUMNS), 0.0, BORDER_COLUMNS - 1.0));

@@ -1,25 +1,25 @@
-// The border near a pixel, by the u-intercept table: three scan lines tell what the circle's eight points would, and what is
-// between them.
+// The border near a pixel, by the u-intercept table: three scan lines replace the circle's eight points and decide what
+// lies between them, too.
 //
 //          ┌─────┐      ┐ `across`: the scan line at its end, half as long
 //        ╱         ╲    ┘
-//      ╱      ·─────▶╲    that of the point, within `along`, where u alone changes
+//      ╱      ·─────▶╲    the scan line of the point, within `along`, where only u changes
 //      ╲             ╱
 //        ╲         ╱
-//          └─────┘        and the one as far on the other side
+//          └─────┘        and one at the same distance on the other side
 //
 // The corners of gap_radius.glsl's hexagon are on the lines, turned so that the lines are scan lines.
 //
-// Always three look-ups, and one loop for the searches of all of them: a loop costs a wide machine about as much as a look-up,
-// however few rounds it takes. So where a steep front asks for the point ahead, that takes the place of one of the lines
-// across before it is known whether the point is inside: such a front grows to one side only.
+// It always makes three look-ups, with one loop for all of their searches: on a wide machine a loop costs about as much
+// as a look-up, whatever its number of rounds. For a steep front, the point ahead replaces one of the lines across
+// before it is known whether the point is inside; such a front grows to one side only.
 #ifndef BORDER_LINES_GLSL
 #define BORDER_LINES_GLSL
 
 #include "border.glsl"
 #include "gap_radius.glsl"
 
-// Some strip has several bins: a line is told within one of them.
+// Some strip has several bins. A line is looked up within one bin.
 layout(constant_id = 21) const bool TRIMS_HAVE_BINS = false;
 
 uint told_along(FacePoint p, vec2 step_, float reach) {
@@ -30,7 +30,7 @@ Search search_for(FacePoint p, vec2 step_) {
     return search_at(p.fi.first_bin, p.face.strips, p.at + step_.x * p.dx + step_.y * p.dy);
 }
 
-// The rise to the nearest point that a line tells inside, `aside` long to either side.
+// The rise to the nearest inner point of a line, `aside` long to either side.
 float rise_along(uint told, float at, float aside) {
     float rise = NO_BORDER;
     if ((told & (ALONG_INSIDE | ALONG_BEFORE)) != 0u) rise = at - aside;
@@ -39,7 +39,7 @@ float rise_along(uint told, float at, float aside) {
 }
 
 Border border_at(FacePoint p, float reach, bool from_behind, vec2 ahead, vec2 slope) {
-    // pixels, the way in which v changes most: across the scan lines
+    // the direction, in pixels, in which v changes most: across the scan lines
     vec2 upwards = vec2(p.dx.y, p.dy.y) / max(length(vec2(p.dx.y, p.dy.y)), 1e-30);
     vec2 across = APOTHEM * reach * upwards;
     vec2 along = CORNER * reach * vec2(upwards.y, -upwards.x);
@@ -67,7 +67,7 @@ Border border_at(FacePoint p, float reach, bool from_behind, vec2 ahead, vec2 sl
     if (!asks_ahead) rise = max(rise, rise_along(told_one, up, 0.5 * aside));
     rise = max(rise, rise_along(told_other, -up, 0.5 * aside));
     if (TRIMS_HAVE_BINS) {
-        // a line may end within the circle: its points do not
+        // a line may end within the circle, whose points do not
         float wide = CORNER * reach * (abs(p.dx.x) + abs(p.dy.x));
         bool one_bin = table_one_bin(p.face.strips, p.at.x - wide, p.at.x + wide);
         for (uint k = 0u; k < DIRECTION_COUNT && !one_bin; ++k) {

@@ -1,13 +1,13 @@
-// Pass `border_mix`: pixels at borders are mixed from the colours around them. One thread a pixel of the list.
+// Pass `border_mix`: mixes pixels at borders from the colours around them. One thread for each pixel of the list.
 //
-//     ┌────────────┐    sixteen points of the pixel, each in a row and a column of its own. At each of them the sheets that
-//     │·  A  ╲     │    the nine pixels around see are asked, by their exact surfaces and trims, whether they are there:
-//     │    ·  ╲  B │    the nearest is seen. Where none is, it is what the nearest of those pixels shows that see no patch.
+//     ┌────────────┐    sixteen points of the pixel, each in a row and a column of its own. At each point, the sheets
+//     │·  A  ╲     │    visible in the nine pixels around are evaluated, by their exact surfaces and trims; the nearest
+//     │    ·  ╲  B │    is visible. If there is none, the point shows the nearest of these pixels without a patch.
 //     │  ·     ╲  ·│
-//     └────────────┘    a sheet shows the colour of the pixel that sees it
+//     └────────────┘    a sheet has the colour of the pixel that shows it
 //
-// A sheet is a face as it is seen from one side: one that hides a part of itself has several. Meshes and Boolean solids
-// are as the pixel's centre has them. The trim test is that of one way (trim.glsl).
+// A sheet is one side of a face as it is seen: a face that hides a part of itself has several. Meshes and Boolean
+// solids are those at the pixel's centre. The trim test is that of one way (trim.glsl).
 #include "scene.glsl"
 #include "view.glsl"
 
@@ -15,7 +15,7 @@ layout(local_size_x = 64) in;
 #include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 8, rgba32f) readonly uniform image2D resolved; // linear colour, depth; UNSEEN where nothing is
+layout(binding = 8, rgba32f) readonly uniform image2D resolved; // linear colour, depth; UNSEEN for background
 #include "border_pixel.glsl"
 layout(scalar, binding = 9) buffer List { BorderPixel list[]; };
 layout(scalar, binding = 10) readonly buffer Dispatch { uvec3 dispatch; uint count; };
@@ -37,10 +37,10 @@ layout(scalar, binding = 10) readonly buffer Dispatch { uvec3 dispatch; uint cou
 
 const uint POINTS = 16u;
 const uint MOST_SHEETS = 4u;
-const uint AROUND = 9u; // pixels, the own one in the middle
+const uint AROUND = 9u; // pixels, the pixel itself in the middle
 const uint OWN = 4u;
 const uint NOBODY = 15u;
-// How close the points come, pixels: far less than a sixteenth.
+// Required distance to the points, in pixels: far less than a sixteenth.
 const float CLOSE_PX = 0.02;
 
 // The pixel's points: Hammersley's.
@@ -50,16 +50,16 @@ vec2 point_of(uint k) {
 
 ivec2 around(ivec2 at, uint n) { return at + ivec2(n % 3u, n / 3u) - 1; }
 
-// A sheet, as the pixel `at` sees it.
+// A sheet, as visible in the pixel `at`.
 struct Sheet {
-    vec2 pixel; // where it is seen
+    vec2 pixel; // where it is visible
     uint item;
     FaceInstance fi;
     Face face;
     Patch patch_;
     View view;
     vec2 uv;
-    mat2 uv_along; // how far (u, v) moves with the pixel
+    mat2 uv_along; // change of (u, v) a pixel
 };
 
 Sheet sheet_at(ivec2 at) {
@@ -71,7 +71,7 @@ Sheet sheet_at(ivec2 at) {
     s.face = face_at(s.fi.face);
     s.view = view_at(s.fi.instance);
     s.patch_ = patch_at(s.face.first_patch + s.item - s.fi.first_item);
-    // a word's (u, v) has 16 bits, which in a large patch are a part of a pixel
+    // a word's (u, v) has 16 bits, which in a large patch are more than a pixel
     Sample here = refine_to(s.patch_, s.view, unpack_uv(seen.y), s.pixel, CLOSE_PX);
     mat2 along = pixels_along(here, s.view);
     float det = determinant(along);
@@ -81,10 +81,10 @@ Sheet sheet_at(ivec2 at) {
     return s;
 }
 
-// Depth of a sheet at a point of the picture; UNSEEN where it is not.
+// Depth of a sheet at a point of the picture; UNSEEN if it is not there.
 float depth_at(Sheet s, vec2 pixel) {
     vec2 step_ = s.uv_along * (pixel - s.pixel);
-    // beside a fold it may lead anywhere
+    // beside a fold the step may lead anywhere
     if (any(greaterThan(abs(step_), vec2(MAX_STEP * pieces_of(s.patch_.shape))))) step_ = vec2(0.0);
     Sample there = refine_to(s.patch_, s.view, s.uv + step_, pixel, CLOSE_PX);
     vec2 uv = there.uv - s.uv_along * there.miss; // the rest of the way
@@ -95,7 +95,7 @@ float depth_at(Sheet s, vec2 pixel) {
     return is ? there.q.z : UNSEEN;
 }
 
-// Whether the own face's depth jumps between the own pixel and the one that is `step_` away: more than to the other side.
+// Whether the face's depth jumps between the pixel and the one at `step_`: by more than to the other side.
 bool jumps_to(ivec2 at, ivec2 step_, float own) {
     float ahead = imageLoad(resolved, at + step_).a - own;
     ivec2 other = at - step_;
@@ -103,7 +103,7 @@ bool jumps_to(ivec2 at, ivec2 step_, float own) {
     return abs(ahead) >= abs(back) && jumps(back, ahead, own);
 }
 
-// Which pixel, of those whose bit is set, is nearest to a point of the own one; NOBODY of none.
+// The pixel, of those whose bit is set, that is nearest to a point of the middle pixel; NOBODY if no bit is set.
 uint nearest_of(uint pixels, vec2 from) {
     uint nearest = NOBODY;
     float least = UNSEEN;
@@ -136,7 +136,7 @@ void main() {
     uint met_from[MOST_SHEETS];
     uint met_count = 0u;
     for (uint k = 0u; k < AROUND; ++k) {
-        uint from = (k + OWN) % AROUND; // the own one first
+        uint from = (k + OWN) % AROUND; // the pixel itself first
         ivec2 beside = around(at, from);
         if (!is_in_picture(beside)) continue;
         uint seen = imageLoad(visibility, beside).x;
@@ -145,7 +145,7 @@ void main() {
             continue;
         }
         uint face = face_instance_of(seen_item(seen)) << 1;
-        // a second sheet of the own face
+        // a second sheet of the pixel's own face
         if (own_patch && k > 0u && face == met[0] && jumps_to(at, beside - at, own_depth)) face |= 1u;
         bool known = met_count == MOST_SHEETS;
         for (uint i = 0u; i < met_count; ++i) known = known || met[i] == face;
@@ -153,7 +153,7 @@ void main() {
         met[met_count] = face;
         met_from[met_count++] = from;
     }
-    // a loop of its own: threads that run together meet their sheets at different pixels
+    // a separate loop: threads that run together find their sheets at different pixels
     for (uint n = 0u; n < met_count; ++n) {
         Sheet s = sheet_at(around(at, met_from[n]));
         for (uint i = 0u; i < POINTS; ++i) {

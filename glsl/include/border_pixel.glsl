@@ -4,16 +4,17 @@
 
 struct BorderPixel {
     uint pixel; // column, row << 16
-    uvec2 mean; // linear colour, multiplied by its opacity, and that: four halves
+    uvec2 mean; // linear colour times opacity, and opacity: four halves
 };
 
 ivec2 pixel_of(BorderPixel border) { return ivec2(border.pixel & 0xffffu, border.pixel >> 16); }
 
-// Bends of less are no jump: in pixels, and as a part of what the depth climbs.
+// Smaller bends are no jump: in pixels, and as a share of the depth's climb.
 const float JUMP_PX = 2.0;
 const float JUMP_OF_CLIMB = 0.5;
 
-// Whether the depth jumps beside a pixel that is `here` deep, by how much its neighbours to two opposite sides are deeper.
+// Whether the depth jumps beside a pixel at depth `here`; `before` and `behind` are the differences to two opposite
+// neighbours.
 bool jumps(float before, float behind, float here) {
     float px = (frame.perspective != 0u ? here : 1.0) / frame.focal;
     return abs(before + behind) > JUMP_PX * px + JUMP_OF_CLIMB * abs(behind - before);

@@ -1,12 +1,12 @@
-// The border near a pixel, asked point by point. Needs trim.glsl.
+// The border near a pixel, tested point by point. Needs trim.glsl.
 #ifndef BORDER_POINTS_GLSL
 #define BORDER_POINTS_GLSL
 
 #include "border.glsl"
 #include "gap_radius.glsl"
 
-// All questions are asked in one place, since a wide machine runs every place for every pixel: the point itself; then
-// the circle, or the point ahead.
+// One place in the code tests all points, since a wide machine runs every place for every pixel: first the point
+// itself, then the circle or the point ahead.
 Border border_at(FacePoint p, float reach, bool from_behind, vec2 ahead, vec2 slope) {
     Border border = Border(false, true, false, NO_BORDER);
     vec2 step_ = vec2(0.0);

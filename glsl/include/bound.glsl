@@ -1,5 +1,5 @@
-// Of passes that say how finely each patch must be divided: which patches can be seen. The entry point's `factors_of`
-// says what those need. One thread an item in sight.
+// Shared by the passes that compute how finely patches are divided: finds the patches that may be visible. The entry
+// point's `factors_of` computes their segments. One thread for each item in sight.
 #ifndef BOUND_GLSL
 #define BOUND_GLSL
 
@@ -20,7 +20,7 @@ layout(scalar, binding = 5) readonly buffer Patches { Patch patches[]; };
 layout(scalar, binding = 6) readonly buffer Items { uint item_face_instance[]; };
 layout(scalar, binding = 7) writeonly buffer Taus { uint taus[]; };
 layout(scalar, binding = 8) buffer CountersBuffer { Counters counters; };
-layout(scalar, binding = 9) readonly buffer Cones { vec4 cones[]; }; // where SCENE_HAS_CONES
+layout(scalar, binding = 9) readonly buffer Cones { vec4 cones[]; }; // only with SCENE_HAS_CONES
 layout(binding = 10) uniform samplerBuffer points;                    // one a homogeneous control point
 
 #define IN_SIGHT_BINDING 11
@@ -43,7 +43,7 @@ void main() {
     View view = views[fi.instance];
     Seen seen = see(view, frame, patch_.box_min, patch_.box_max, frame.gap_radius_px + 1.0, far_of(face, frame));
     if (seen.w < 0.0) return;
-    // nothing is drawn farther from the box: cut patches have skirts
+    // nothing is drawn farther from the box; trimmed patches have skirts
     float beyond = frame.deviation_px + frame.spread_px + (side_of(patch_.shape) == SIDE_INSIDE ? 0.0 : frame.gap_radius_px);
     if (!covers_a_centre(seen, beyond)) return;
     if (SCENE_HAS_CONES && looks_away(view, frame, patch_, cones[index])) return;

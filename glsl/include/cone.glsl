@@ -1,9 +1,9 @@
-// Patches of closed parts without trims that look away from the viewer: what is before them hides them. Twin of
-// src/twin/cone.rs, which derives it. Needs scene.glsl and view.glsl.
+// Patches of closed parts without trims that are turned away from the viewer: nearer patches hide them. Twin of
+// src/twin/cone.rs, which has the derivation. Needs scene.glsl and view.glsl.
 #ifndef CONE_GLSL
 #define CONE_GLSL
 
-// Of the eye's distance: its rounding.
+// Rounding of the eye's distance.
 const float EYE_ROUNDING = 1e-5;
 
 float times(vec3 a, vec3 b) {
@@ -16,8 +16,7 @@ vec3 across(vec3 a, vec3 b) {
     return c;
 }
 
-// `cone`: the axis of the outward normals, as long as the part reaches from its origin, 0 where there is none; the sine of half
-// its angle.
+// `cone`: the axis of the outward normals, as long as the part's radius, 0 without a cone; the sine of half its angle.
 bool looks_away(View view, Frame frame, Patch patch_, vec4 cone) {
     precise float radius = sqrt(times(cone.xyz, cone.xyz));
     precise float reach = radius * sqrt(times(view.depth.xyz, view.depth.xyz));

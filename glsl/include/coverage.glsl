@@ -1,16 +1,16 @@
-// How much of a pixel a trimmed face covers, from its exact arcs. Twin of src/twin/coverage.rs, where the formula is
-// derived. Needs exact.glsl, whose lists hold arcs along scan lines, too.
+// The area of a pixel that a trimmed face covers, from its exact arcs. Twin of src/twin/coverage.rs, which derives the
+// formula. Needs exact.glsl, whose lists also contain arcs along scan lines.
 #ifndef COVERAGE_GLSL
 #define COVERAGE_GLSL
 
 struct Cover {
     float share;  // of the pixel
-    vec2 outward; // the border in the pixel, turned a quarter away from the face and added up, pixels
+    vec2 outward; // sum of the border's pieces in the pixel, turned by 90 degrees away from the face; pixels
     bool cut;     // a border runs through the pixel
 };
 
-const uint MOST_CELLS = 128u; // that a pixel is asked in
-const uint CHORDS = 8u;      // of a bent arc, in one cell
+const uint MOST_CELLS = 128u; // most cells for one pixel
+const uint CHORDS = 8u;      // of a curved arc, in one cell
 
 // Area of the pixel that a ray from its centre sweeps, from (1, 0) to `d`.
 float swept(vec2 d) {
@@ -20,20 +20,20 @@ float swept(vec2 d) {
     return abs(d.y) <= abs(d.x) ? right : up;
 }
 
-// What a ray from the centre sweeps along a chord; positive when it turns as (1, 0) does to (0, 1).
+// The area that a ray from the centre sweeps along a chord; positive if it turns from (1, 0) to (0, 1).
 float swept_along(vec2 a, vec2 b) {
     precise float turn = swept(b) - swept(a);
     turn = turn - floor(turn + 0.5);
     return turn;
 }
 
-// Whether a point on an arc counts as left of it, as it runs from its lower end to its higher one.
+// Whether a point on an arc counts as left of it, for an arc that runs from its lower to its higher end.
 bool left_of(ExactArc arc, vec2 uv) {
     if (arc.low.y < uv.y && uv.y <= arc.high.y) return arc_right(arc, uv);
     return (uv.y > arc.high.y) == (arc.high.x > arc.low.x);
 }
 
-// Weight of an arc's corner, where the ends have 1; 0 where it is straight.
+// Weight of an arc's corner, for weights 1 at the ends; 0 for a straight arc.
 float arc_weight(ExactArc arc) {
     precise float weight = 0.5 * sqrt(arc.fullness);
     return weight;
@@ -63,7 +63,7 @@ bool clip_to_pixel(inout vec2 a, inout vec2 b) {
     return true;
 }
 
-// Parameter at which a coordinate of an arc, relative to its lower end, becomes `x`; 0 or 1 beyond its ends.
+// Parameter at which a coordinate of an arc, relative to its lower end, is `x`; 0 or 1 beyond its ends.
 float arc_reach(ExactArc arc, uint axis, float x) {
     float chord = exact_chord(arc)[axis];
     float way = chord < 0.0 ? -1.0 : 1.0;
@@ -77,14 +77,14 @@ float arc_reach(ExactArc arc, uint axis, float x) {
     precise float b = arc_weight(arc) * (corner - to);
     precise float left = end - to;
     precise float root = sqrt(b * b + left * to);
-    // of t = r / (1 + r), whichever sum has no difference in it
+    // for t = r / (1 + r), the sum without cancellation
     precise float above = to / (to + (b + root));
     precise float below = (root - b) / ((root - b) + left);
     return b > 0.0 ? above : below;
 }
 
-// Parameters between which an arc is in a box, whose corners are relative to its lower end. Along the box's upper and
-// right side it is not: cells that share a side must not both have it.
+// The parameters between which an arc lies in a box, whose corners are relative to the arc's lower end. The box
+// excludes its upper and right side, so an arc along a common side of two cells counts once.
 vec2 arc_within(ExactArc arc, vec2 lo, vec2 hi) {
     vec2 range = vec2(0.0, 1.0);
     for (uint axis = 0u; axis < 2u; ++axis) {
@@ -113,12 +113,12 @@ vec2 arc_at(ExactArc arc, float t) {
     return point;
 }
 
-// What of the pixel around `uv` is inside. `along`: how far the pixel moves with u, and with v.
+// The part of the pixel around `uv` that is inside. `along`: change of the pixel with u, and with v.
 Cover exact_cover(uint face, vec2 uv, mat2 along) {
     int winding = exact_winding(face, uv);
     Cover cover = Cover(winding != 0 ? 1.0 : 0.0, vec2(0.0), false);
     precise float det = along[0].x * along[1].y - along[0].y * along[1].x;
-    // of the pixel's box in the domain
+    // half size of the pixel's box in the domain
     precise vec2 reach = vec2(abs(along[1].y) + abs(along[1].x), abs(along[0].y) + abs(along[0].x)) * (0.5 / abs(det));
     vec2 lo = uv - reach;
     vec2 hi = uv + reach;
@@ -126,7 +126,7 @@ Cover exact_cover(uint face, vec2 uv, mat2 along) {
     ExactGrid grid = exact_grid(face);
     float hidden = 0.0;
     uint asked = 0u;
-    // one list for the whole pixel, where there is one: that of the centre's cell
+    // one list for the whole pixel, if possible: that of the centre's cell
     vec2 middle = exact_index(grid, uv);
     ExactCell cell_of_middle = exact_cell(grid, middle);
     vec2 middle_part = exact_part(grid, uv, middle, exact_halvings(cell_of_middle));
@@ -174,7 +174,7 @@ Cover exact_cover(uint face, vec2 uv, mat2 along) {
                     float sweep = swept_along(begin, end_);
                     bool left_ = (sweep > 0.0) == (det > 0.0);
                     if (abs(sweep) == 0.5) {
-                        // the centre is on it: as the exact test has it
+                        // the centre is on it: decide as the exact test does
                         left_ = left_of(arc, uv);
                         sweep = left_ == (det > 0.0) ? 0.5 : -0.5;
                     } else if (crosses && left_ != arc_right(arc, uv)) {

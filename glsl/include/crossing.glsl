@@ -1,21 +1,21 @@
-// How a leaf of a Boolean solid lies about a depth of the pixel's ray. Needs solids.glsl, shells.glsl and the
-// buffer `usamplerBuffer fragments`.
+// The state of a Boolean solid's leaf at a depth of the pixel's ray. Needs solids.glsl, shells.glsl and the buffer
+// `usamplerBuffer fragments`.
 #ifndef CROSSING_GLSL
 #define CROSSING_GLSL
 
-// What a scan wants to know of a leaf at depth t.
+// The state of a leaf at depth t, for a scan.
 struct Crossing {
     bool inside;   // just behind t
     bool before;   // just in front of it
     bool ends;     // the leaf begins or ends there
-    float next;    // where it does next
+    float next;    // the next depth where it does
 };
 
 Crossing crossing_of(Span s, float t) {
     return Crossing(inside_span(s, t), inside_before(s, t), ends_at(s, t), next_of_span(s, t));
 }
 
-// Of a shell, and its last fragment at t.
+// For a shell; `last` is its last fragment at t.
 Crossing crossing_of(uint shell, float t, uint first, uint count, out uint last) {
     Crossing c = Crossing(false, false, false, NEVER);
     last = 0u;
@@ -26,7 +26,7 @@ Crossing crossing_of(uint shell, float t, uint first, uint count, out uint last)
         bool leaves_ = (f.shell & FRAGMENT_LEAVES) != 0u;
         bool passed = f.depth <= t;
         if (f.depth > t) c.next = min(c.next, f.depth);
-        // entering and leaving follow each other: the first behind t tells, else the last before it
+        // entries and exits alternate: the first fragment behind t decides, or the last before it
         if (passed) c.inside = !leaves_;
         if (f.depth < t) c.before = !leaves_;
         if (!begun) {

@@ -9,8 +9,8 @@ vec3 curve_control(Curve curve, uint i) {
     return numbers_at(curve_points, curve.first + 3u * i);
 }
 
-// Point `i` of `n` equal steps. The ends are the stored ones, so that curves of a loop share them
-// bit for bit; inner points depend on (curve, i, n) alone, so that segments share theirs.
+// Point `i` of `n` equal steps. The ends are the stored ones, so curves of a loop share them bit for bit. Inner points
+// depend only on (curve, i, n), so segments share theirs.
 vec2 curve_point(Curve curve, uint i, uint n) {
     if (i == 0u) return curve.start;
     if (i >= n) return curve.end;

@@ -1,5 +1,5 @@
-// Trim curves of placed faces, put together from texels; members that nobody asks for are not fetched.
-// Needs scene.glsl; whoever includes this has `usamplerBuffer curves`, three texels a curve.
+// Trim curves of placed faces, composed of texels; unused members are not fetched. Needs scene.glsl and
+// `usamplerBuffer curves`, three texels a curve.
 #ifndef CURVES_GLSL
 #define CURVES_GLSL
 

@@ -1,14 +1,14 @@
-// The farthest depths that are seen: squares of SQUARE pixels a side row by row, then tiles, then blocks of tiles. Needs
-// scene.glsl and tiles.glsl. Twin: src/twin/occlusion.rs.
+// The farthest visible depths: of squares with a side of SQUARE pixels, row by row, then of tiles, then of blocks of
+// tiles. Needs scene.glsl and tiles.glsl. Twin: src/twin/occlusion.rs.
 #ifndef FARTHEST_GLSL
 #define FARTHEST_GLSL
 
 const uint SQUARE = 4u; // pixels
 
-// Squares of so many pixels a side, across and down.
+// Numbers of squares with this side in pixels, across and down.
 uvec2 square_count(Frame frame, uint side) { return (uvec2(frame.size) + side - 1u) / side; }
 
-// Where those of SQUARE, TILE or TILE * BLOCK begin.
+// Index of the first square with side SQUARE, TILE or TILE * BLOCK.
 uint first_square(Frame frame, uint side) {
     uint first = 0u;
     if (side > SQUARE) {

@@ -7,24 +7,25 @@
 //           equal steps of the parameter
 //
 // Source and proof of the bound: edges::flatten of the geometry crate, which does the same in f64. Twin:
-// src/twin/edges.rs. `push.margin_px` is how far beyond the picture lines are wanted. Needs scene.glsl, view.glsl, edges.glsl, `frame`, `samplerBuffer edge_points`; whoever includes this
-// has `void put_chords(uint n, uint chords, float a, float b)`, for that many equal steps from a to b of `net`, whose
-// degree is n.
+// src/twin/edges.rs. `push.margin_px` is the distance beyond the picture to which lines are drawn. Needs scene.glsl,
+// view.glsl, edges.glsl, `frame`, `samplerBuffer edge_points`, and
+// `void put_chords(uint n, uint chords, float a, float b)`, which receives that many equal steps from a to b of `net`,
+// of degree n.
 #ifndef EDGE_DIVIDE_GLSL
 #define EDGE_DIVIDE_GLSL
 
 const uint EDGE_MOST_POINTS = 16u;
 const uint EDGE_MOST_CHORDS = 16u;
-// Pixels: a tenth, less what rounding takes.
+// In pixels: a tenth, less the rounding.
 const float EDGE_TOLERANCE_PX = 0.09;
-// Single precision tells no finer parameters apart.
+// Most halvings: single precision resolves no finer parameters.
 const uint EDGE_HALVINGS = 22u;
 
-// What becomes of a piece.
+// Results for a piece.
 const uint EDGE_OUTSIDE = 0u;
 const uint EDGE_HALVES = 0xffffffffu;
 
-// The control points of the piece that is looked at, part coordinates.
+// Control points of the current piece, in part coordinates.
 vec4 net[EDGE_MOST_POINTS];
 
 vec4 between(vec4 a, vec4 b, float t) {
@@ -32,7 +33,7 @@ vec4 between(vec4 a, vec4 b, float t) {
     return p;
 }
 
-// `net` becomes the control points of the part of a piece from a to b.
+// Sets `net` to the control points of the part of a piece from a to b.
 void restrict_net(uint first, uint n, float a, float b) {
     for (uint i = 0u; i <= n; ++i) net[i] = texelFetch(edge_points, int(first + i));
     if (a > 0.0) {
@@ -60,7 +61,7 @@ vec4 net_at(uint n, float t) {
     return p[0];
 }
 
-// M(L) of the theorem for one axis and one place of it, without n (n - 1).
+// M(L) of the theorem, for one axis and one abscissa, without the factor n (n - 1).
 float bend_at(vec3 before, vec3 middle, vec3 next, uint axis, float x) {
     precise float a = before[axis] - x * before.z;
     precise float b = middle[axis] - x * middle.z;
@@ -69,7 +70,7 @@ float bend_at(vec3 before, vec3 middle, vec3 next, uint axis, float x) {
     return abs(bend);
 }
 
-// What becomes of `net`: EDGE_OUTSIDE, EDGE_HALVES or a number of chords. `near`: it crosses the near plane.
+// The result for `net`: EDGE_OUTSIDE, EDGE_HALVES or a number of chords. `near`: it crosses the near plane.
 uint fate_of(View view, uint n, out bool near) {
     vec2 last = frame.size + push.margin_px;
     uint outside = 63u;
@@ -108,13 +109,13 @@ uint fate_of(View view, uint n, out bool near) {
     if (near) return EDGE_HALVES;
     precise float bent = sqrt(bend.x * bend.x + bend.y * bend.y) * float(n * (n - 1u));
     precise float squared = bent / (8.0 * EDGE_TOLERANCE_PX * least);
-    // what is too large or no number is halved
+    // large numbers and NaN are halved
     if (!(squared <= float(EDGE_MOST_CHORDS * EDGE_MOST_CHORDS))) return EDGE_HALVES;
     precise float chords = ceil(sqrt(squared));
     return max(uint(chords), 1u);
 }
 
-// Walks the halves of a piece in order; true where one that bends too much could be halved no more.
+// Visits the halves of a piece in order; true if one bends too much and cannot be halved further.
 bool divide(EdgePiece piece, View view) {
     uint n = min(piece.degree, EDGE_MOST_POINTS - 1u);
     uint level = 0u;
@@ -136,7 +137,7 @@ bool divide(EdgePiece piece, View view) {
             clamped = true;
             fate = EDGE_MOST_CHORDS;
         }
-        // what still crosses the near plane is shorter than rounding
+        // the remaining part across the near plane is shorter than rounding
         if (fate != EDGE_OUTSIDE && fate != EDGE_HALVES) put_chords(n, fate, a, b);
         ++place;
         while (level > 0u && (place & 1u) == 0u) {

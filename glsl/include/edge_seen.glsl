@@ -1,45 +1,44 @@
-// Whether a point of an edge is seen from a pixel: what the pixel sees is a face of the edge, or lies behind it.
+// Whether a point of an edge is visible: the surface in the pixel is a face of the edge, or lies behind the point.
 //
-//        own face                  another's                        depth along the axis ─▶
-//   ─────────●═══ edge      ──────────────╲  O, seen at the pixel
-//      the sheet that the                  ╲
-//      pixel sees holds it           edge ● ╲    before O's tangent plane: seen; behind it: hidden
+//        own face                  another face                     depth along the axis ─▶
+//   ─────────●═══ edge      ──────────────╲  O, visible in the pixel
+//      the visible sheet                   ╲
+//      contains the edge            edge ● ╲    before O's tangent plane: visible; behind it: hidden
 //
-// The surface that the pixel's centre sees is followed to where the edge is in the picture, by Newton's method on the
-// exact surface, and the point compared with the tangent plane there. Nothing is pushed nearer: a face of another may be
-// behind by rounding alone. A sheet of an own face counts as the edge's when the point is within `slack` of its
-// tangent plane; where two sheets come together, at a fold, that moves the end of a line by a quarter of it, across the fold. Needs
-// placed.glsl, patch.glsl, refine.glsl, visible.glsl, edges.glsl, `frame`, buffers `MeshInstance mesh_instances[]`, `uint
-// triangles[]`, `vec3 positions[]`; whoever includes this has `bool is_own_face(FaceInstance)`,
-// `bool is_own_triangle(uint instance, uint triangle)`, and `OWN_PATCHES_HIDE`: own faces are asked here, not by
-// edge_covered.glsl.
+// Newton's method follows the exact surface at the pixel's centre to the edge's place in the picture, and compares the
+// point with the tangent plane there. No offset is added: another face may be behind by rounding alone. A sheet of an
+// own face belongs to the edge if the point is within `slack` of its tangent plane. Where two sheets meet at a fold,
+// this moves the end of a line across the fold by a quarter of the slack. Needs placed.glsl, patch.glsl, refine.glsl,
+// visible.glsl, edges.glsl, `frame`, buffers `MeshInstance mesh_instances[]`, `uint triangles[]`, `vec3 positions[]`,
+// functions `bool is_own_face(FaceInstance)` and `bool is_own_triangle(uint instance, uint triangle)`, and the constant
+// `OWN_PATCHES_HIDE`: own patches are tested here, not by edge_covered.glsl.
 #ifndef EDGE_SEEN_GLSL
 #define EDGE_SEEN_GLSL
 
-// Of a point's place, relative to its depth: some eight roundings.
+// Rounding of a point's place, relative to its depth: some eight roundings.
 const float POINT_ROUNDING = 1e-6;
-// Newton's method has arrived.
+// Newton's method has converged.
 const float ARRIVED_PX = 0.05;
 
 layout(constant_id = 27) const bool SCENE_HAS_MESHES = false;
 
-// A point of an edge: where it is in the picture, and seen from the eye (right, down, ahead).
+// A point of an edge: its place in the picture, and relative to the eye (right, down, ahead).
 struct EdgePoint {
     vec2 pixel;
     vec3 place;
-    vec2 slack; // from a sheet of an own face: pixels, and units of the part
+    vec2 slack; // allowed distance from a sheet of an own face: pixels, and units of the part
 };
 
 // Of a homogeneous pixel, or of a direction that moves it.
 vec3 seen_from_eye(vec4 q) { return vec3((q.xy - frame.principal_px * q.w) / frame.focal_px, q.z); }
 
-// How far the point lies before a plane through `on`, across `n`, whichever way that points.
+// Distance of the point before the plane through `on` with normal `n`, for either sign of the normal.
 float before_plane(vec3 point, vec3 on, vec3 n) {
     vec3 ray = frame.perspective != 0u ? on : vec3(0.0, 0.0, 1.0);
     return -dot(point - on, n) * sign(dot(n, ray)) / length(n);
 }
 
-// How far an own sheet may lie from the edge: pixels, and units of the part.
+// Allowed distance of an own sheet from the edge: pixels, and units of the part.
 float own_slack(vec3 point, View view, vec2 slack) {
     float stretch = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -66,7 +65,7 @@ bool is_before_patch(EdgePoint e, uvec2 seen) {
     Sample s = refine(patch_, view, unpack_uv(seen.y), e.pixel);
     float before = before_sheet(e.place, s, view);
     if (is_own_face(fi)) return !OWN_PATCHES_HIDE || !(before < -own_slack(e.place, view, e.slack));
-    // its sheet ends before it gets there, at a fold: or it has no tangent plane
+    // the sheet ends before the edge, at a fold; or it has no tangent plane
     if (!(length(s.miss) <= ARRIVED_PX) || isnan(before)) return e.place.z <= s.q.z;
     return before >= -POINT_ROUNDING * e.place.z;
 }
@@ -85,7 +84,7 @@ bool is_before_mesh(EdgePoint e, uvec2 seen) {
     return !(before < -POINT_ROUNDING * e.place.z);
 }
 
-// The word of what is no patch at a pixel, and its depth; another's where it is not `like`.
+// Depth of the mesh or solid in a pixel; `none` if its word differs from `like`.
 float solid_depth(ivec2 at, uint like, float none) {
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(frame.size)))) return none;
     uvec2 seen = imageLoad(visibility, at).xy;
@@ -93,11 +92,11 @@ float solid_depth(ivec2 at, uint like, float none) {
     return seen.x == like ? uintBitsToFloat(seen.y) : none;
 }
 
-// Boolean solids: the side's depth, and its slope from the pixels beside it that see the same side.
+// Boolean solids: the side's depth, and its slope from neighbouring pixels with the same side.
 bool is_before_solid(EdgePoint e, ivec2 at, uvec2 seen) {
     float depth = uintBitsToFloat(seen.y);
     vec2 step_ = e.pixel - (vec2(at) + 0.5);
-    // linear in the picture: the depth itself in a parallel view, else one over it
+    // linear in the picture: the depth in a parallel view, else its inverse
     float here = frame.perspective != 0u ? 1.0 / depth : depth;
     float there = here;
     for (uint axis = 0u; axis < 2u; ++axis) {

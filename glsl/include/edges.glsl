@@ -1,8 +1,8 @@
 // Lines along edges. Twin of src/abi/edges.rs; the build checks every offset.
 //
-//   EdgeItem ──▶ EdgePiece ──▶ degree + 1 control points        a rational Bézier piece of an edge, as it is placed
-//                    └───────▶ EdgeLine ──▶ own faces            what is drawn along it
-//   Chord: from a to b, pixels; of an item                       what a frame draws
+//   EdgeItem ──▶ EdgePiece ──▶ degree + 1 control points        a placed rational Bézier piece of an edge
+//                    └───────▶ EdgeLine ──▶ own faces            the line along it
+//   Chord: from a to b, pixels; of an item                       drawn by a frame
 #ifndef EDGES_GLSL
 #define EDGES_GLSL
 
@@ -17,12 +17,12 @@ struct EdgeLine {
     uint style;  // EDGE_*
     uint first_own;
     uint own_count;
-    float off; // how far it may lie off its own faces, units of the part
+    float off; // most distance from its own faces, units of the part
 };
 
 struct EdgeItem {
     uint piece;
-    uint placement; // of its control points: which view
+    uint placement; // number of its view
     uint instance;  // of the model, from 1 on
 };
 
@@ -35,10 +35,10 @@ struct Chord {
     uint style;
 };
 
-const uint EDGE_FULL = 0u; // as wide as lines are
+const uint EDGE_FULL = 0u; // the full width of lines
 const uint EDGE_THIN = 1u;
 
-// In the list of own faces: a triangle of the scene, not the number of a face.
+// In the list of own faces: the number of a triangle instead of a face.
 const uint OWN_TRIANGLE = 0x80000000u;
 
 // A pixel's line: seen << 31 | coverage << 24 | chord. The best one is the largest.
@@ -46,12 +46,12 @@ const uint LINE_SEEN = 0x80000000u;
 const uint LINE_COVERAGE = 24u;
 const float LINE_STEPS = 127.0;
 const uint LINE_CHORD = 0xffffffu;
-// In a chord's place: the outline of a curved face.
+// In place of a chord: the outline of a curved face.
 const uint LINE_FOLD = LINE_CHORD;
 // Its number in the image `edge`.
 const uint FOLD_NUMBER = 0xffffffffu;
 
-// Share of the pixel that a line covers whose middle runs so far from the pixel's centre: exact where it runs along
+// Share of the pixel covered by a line whose middle has this distance from the pixel's centre: exact for lines along
 // columns or rows.
 float line_coverage(float distance_px, float half_px) {
     return clamp(min(distance_px + 0.5, half_px) - max(distance_px - 0.5, -half_px), 0.0, 1.0);

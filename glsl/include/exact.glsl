@@ -1,9 +1,9 @@
-// The exact trim test: a cell, and the few arcs of its list. Twin of src/twin/exact.rs; what the structures mean stands
-// in src/trim/exact.
+// The exact trim test: a cell, and the few arcs of its list. Twin of src/twin/exact.rs; crates/geometry/src/trim/exact
+// describes the data structure.
 //
-//   face ──▶ cell of the first level ──▶ part of it, where it is split ──▶ winding + list ──▶ arcs
+//   face ──▶ cell of the first level ──▶ part of the cell, if it is split ──▶ winding + list ──▶ arcs
 //
-// Whoever includes this defines EXACT_BINDING, where its three buffers begin.
+// The includer defines EXACT_BINDING, the first of its three buffers.
 #ifndef EXACT_GLSL
 #define EXACT_GLSL
 
@@ -16,37 +16,37 @@ struct ExactFace {
 
 struct ExactCell {
     uint first;  // arc of its list, or CELL_SPLIT and its first part
-    int winding; // by what is not in the list; or halvings
+    int winding; // of the arcs that are not in the list; or halvings
 };
 
 struct ExactArc {
     vec2 low;
     vec2 high;
-    vec2 corner;    // where the tangents at the ends meet - low; zero where it is straight
-    float fullness; // corner² = fullness · low · high, in barycentric coordinates; 0 where it is straight
+    vec2 corner;    // where the tangents at the ends meet, less low; zero for a straight arc
+    float fullness; // corner² = fullness · low · high, in barycentric coordinates; 0 for a straight arc
     uint shape;     // AT_LOW, AT_HIGH, ARC_UP, ARC_LAST
 };
 
-// texels, which a driver fetches at once where it gathers words of storage buffers one by one
+// texels: a driver fetches them at once, but gathers words of storage buffers one by one
 layout(binding = EXACT_BINDING + 0) uniform usamplerBuffer exact_faces; // one a face
 layout(binding = EXACT_BINDING + 1) uniform usamplerBuffer exact_cells; // two cells in one
 layout(binding = EXACT_BINDING + 2) uniform usamplerBuffer exact_arcs;  // two an arc
 
 const uint CELL_SPLIT = 0x80000000u;
-const uint AT_LOW = 1u; // a chain leaves the list from this end of the arc
+const uint AT_LOW = 1u; // at this end of the arc, the loop leaves the list
 const uint AT_HIGH = 2u;
 const uint ARC_UP = 4u;   // the loop runs from low to high
 const uint ARC_LAST = 8u; // of its list
-const float MARGIN = 0.25; // around a cell, of its sides: for points there its list holds, too
-const float FAR = 1e30;   // beyond it a coordinate is none
+const float MARGIN = 0.25; // around a cell, as a share of its sides: the list is valid for points there, too
+const float FAR = 1e30;   // larger coordinates are invalid
 
-// A list of arcs, and the points that it is for.
+// A list of arcs, and the points for which it is valid.
 struct ExactList {
     uint first;  // arc
-    int winding; // by what is not in it
-    vec2 lo;     // the cell's own rectangle; infinite, as far as can be, beyond the outermost cells
+    int winding; // of the arcs that are not in it
+    vec2 lo;     // the cell's rectangle; unbounded for the outermost cells
     vec2 hi;
-    vec2 margin; // around it: of the points that the list is for
+    vec2 margin; // around the rectangle, where the list is valid, too
 };
 
 // A face's cells.
@@ -97,11 +97,11 @@ ExactCell exact_cell(ExactGrid grid, vec2 index) {
 
 uint exact_halvings(ExactCell cell) { return (cell.first & CELL_SPLIT) != 0u ? uint(cell.winding) : 0u; }
 
-// That of a part of a cell.
+// The list of a part of a cell.
 ExactList exact_list_of(ExactGrid grid, ExactCell cell, vec2 index, vec2 part) {
     uint halvings = exact_halvings(cell);
     float parts = power_of_two(int(halvings));
-    // asked for whole cells, too: a branch would be run beside it
+    // fetched for whole cells, too: a branch would run both sides
     ExactCell own = exact_cell_at((cell.first & ~CELL_SPLIT) + uint(part.y * parts + part.x));
     if ((cell.first & CELL_SPLIT) == 0u) own = cell;
     ivec2 bits = -ivec2(grid.bits + halvings);
@@ -115,7 +115,7 @@ ExactList exact_list_of(ExactGrid grid, ExactCell cell, vec2 index, vec2 part) {
     return ExactList(own.first, own.winding, mix(lo, -none, is_first), mix(hi, none, is_last), MARGIN * side);
 }
 
-// That of the cell that a point is in.
+// The list of the cell that contains a point.
 ExactList exact_list(uint face, vec2 uv) {
     ExactGrid grid = exact_grid(face);
     vec2 index = exact_index(grid, uv);
@@ -130,9 +130,9 @@ vec2 exact_chord(ExactArc arc) {
 
 // The sides of an arc's triangle.
 struct ArcSides {
-    float turned;   // 1 where the triangle is to the left of its chord, else -1; so are the sides
+    float turned;   // 1 if the triangle is left of its chord, else -1, which then flips the signs of the sides
     vec2 to_high;   // from the lower end
-    vec2 to_corner; // from there, too
+    vec2 to_corner; // from the lower end
     vec2 back;      // from the higher end to the corner
 };
 
@@ -146,16 +146,16 @@ ArcSides arc_sides(ExactArc arc) {
     return ArcSides(turned, to_high, to_corner, back);
 }
 
-// Where a point is that is `p` away from the lower and `q` from the higher end: corner, high and low, barycentric. Linear in
+// The place of a point, at `p` from the lower and `q` from the higher end: corner, high and low, barycentric. Linear in
 // both.
 vec3 arc_place(ArcSides sides, vec2 p, vec2 q) {
     precise float middle = sides.to_high.x * p.y - p.x * sides.to_high.y;
     precise float high = p.x * sides.to_corner.y - sides.to_corner.x * p.y;
-    precise float low = sides.back.x * q.y - q.x * sides.back.y; // as a rest it would have the rounding of the longer sides
+    precise float low = sides.back.x * q.y - q.x * sides.back.y; // as a difference it would have the longer sides' rounding
     return vec3(middle, high, low);
 }
 
-// Of such a point between its ends an arc is to the right.
+// Whether an arc is to the right of a point between its ends.
 bool arc_right_of(ExactArc arc, ArcSides sides, vec3 place) {
     precise float square = place.x * place.x;
     precise float product = max(place.z, 0.0) * (arc.fullness * max(place.y, 0.0));
@@ -169,10 +169,10 @@ vec3 arc_place_of(ExactArc arc, ArcSides sides, vec2 uv) {
     return arc_place(sides, p, q);
 }
 
-// The arc passes uv.y, low.y < uv.y <= high.y, at some u > uv.x; `place` is where uv is.
+// Whether the arc passes uv.y, low.y < uv.y <= high.y, at some u > uv.x; `place` is the place of uv.
 bool arc_right_at(ExactArc arc, ArcSides sides, vec3 place, vec2 uv) {
     bool right = arc_right_of(arc, sides, place);
-    return uv.y == arc.high.y ? arc.high.x > uv.x : right; // at the end as its neighbour has it
+    return uv.y == arc.high.y ? arc.high.x > uv.x : right; // at the end, the same as the neighbouring arc
 }
 
 bool arc_right(ExactArc arc, vec2 uv) {
@@ -180,7 +180,7 @@ bool arc_right(ExactArc arc, vec2 uv) {
     return arc_right_at(arc, sides, arc_place_of(arc, sides, uv), uv);
 }
 
-// What an arc adds to the winding number of a point at v; `right`: it is to the right of it there.
+// The winding number that an arc adds to a point at v; `right`: it is to the right there.
 int arc_winding(ExactArc arc, float v, bool right) {
     int direction = (arc.shape & ARC_UP) != 0u ? 1 : -1;
     int low = (arc.shape & AT_LOW) != 0u ? direction : 0;
@@ -194,7 +194,7 @@ bool holds_for(ExactList list, vec2 uv) {
     return all(greaterThanEqual(uv, list.lo - list.margin)) && all(lessThanEqual(uv, list.hi + list.margin));
 }
 
-// Winding number of a point in a list's box; 0 for what is no number.
+// Winding number of a point in a list's box; 0 for NaN.
 int exact_winding_in(ExactList list, vec2 uv) {
     int winding = list.winding;
     bool more = true;
@@ -206,7 +206,7 @@ int exact_winding_in(ExactList list, vec2 uv) {
     return is_number(uv) ? winding : 0;
 }
 
-// Winding number of the face's loops around uv; 0 for what is no number.
+// Winding number of the face's loops around uv; 0 for NaN.
 int exact_winding(uint face, vec2 uv) {
     return is_number(uv) ? exact_winding_in(exact_list(face, uv), uv) : 0;
 }

@@ -1,5 +1,5 @@
-// The exact point of a fragment, for the volume that trims the scene. Its pixel is as near to the fragment's as
-// the tessellation is fine. The includer defines VOLUME_BINDING and declares `frame`.
+// The exact point of a fragment, for the volume that trims the scene. Its pixel differs from the fragment's by the
+// tessellation's deviation. The includer defines VOLUME_BINDING and declares `frame`.
 #ifndef EXACT_POINT_GLSL
 #define EXACT_POINT_GLSL
 

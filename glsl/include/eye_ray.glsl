@@ -1,4 +1,4 @@
-// The ray through a pixel's sample, seen from the eye: points o + t d at depth t along the view axis.
+// The ray through a pixel's sample, relative to the eye: points o + t d at depth t along the view axis.
 #ifndef EYE_RAY_GLSL
 #define EYE_RAY_GLSL
 
@@ -8,7 +8,7 @@ struct Ray {
 };
 
 Ray eye_ray(Frame frame, vec2 pixel) {
-    // in every pass the same bits
+    // the same bits in every pass
     precise vec2 p = (pixel + frame.offset - frame.principal_px) / frame.focal_px;
     precise vec3 across = p.x * frame.right - p.y * frame.up;
     precise vec3 ahead = frame.forward + across;

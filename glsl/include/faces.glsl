@@ -1,6 +1,5 @@
-// Faces and where they are placed, put together from texels; those whose members nobody asks for are not fetched.
-// Needs scene.glsl; whoever includes this has `usamplerBuffer face_instances`, two texels a placed face, and `faces`, four a
-// face.
+// Faces and placed faces, composed of texels; unused members are not fetched. Needs scene.glsl and
+// `usamplerBuffer face_instances`, two texels a placed face, and `faces`, four a face.
 #ifndef FACES_GLSL
 #define FACES_GLSL
 

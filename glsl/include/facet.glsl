@@ -1,10 +1,10 @@
-// Where the ray through a pixel meets the plane of a triangle. Needs view.glsl and buffers
+// The intersection of the ray through a pixel with the plane of a triangle. Needs view.glsl and buffers
 // `uint triangles[]`, `vec3 positions[]`.
 //
 //   a + s (b - a) + t (c - a),   s, t >= 0,   s + t <= 1
 //
-// The rasteriser rounds corners to a fraction of a pixel, so the ray may pass a little beside the
-// triangle: the nearest point of the triangle counts then. In every pass the same bits.
+// The rasteriser rounds corners to a fraction of a pixel, so the ray may miss the triangle slightly; then the
+// triangle's nearest point is taken. The result has the same bits in every pass.
 #ifndef FACET_GLSL
 #define FACET_GLSL
 
@@ -20,7 +20,7 @@ float cross2(vec2 a, vec2 b) {
     return area;
 }
 
-// Across two sides, `ab` and `ac`: of sides near 1, since the product of small ones would underflow.
+// The normal of two sides, divided by their size, since the product of small sides would underflow.
 vec3 across(vec3 ab, vec3 ac) {
     float side = max(max(dot(ab, ab), dot(ac, ac)), 1e-36);
     return cross(ab * inversesqrt(side), ac * inversesqrt(side));
@@ -36,7 +36,7 @@ Facet facet_at(uint triangle, View view, vec2 pixel) {
     vec3 a = positions[triangles[3u * triangle]];
     f.ab = positions[triangles[3u * triangle + 1u]] - a;
     f.ac = positions[triangles[3u * triangle + 2u]] - a;
-    // pixels times W, relative to the pixel: zero at the point that is sought
+    // pixels times W, relative to the pixel: zero at the wanted point
     vec4 q = to_pixel(view, vec4(a, 1.0));
     vec4 qb = to_pixel(view, vec4(f.ab, 0.0));
     vec4 qc = to_pixel(view, vec4(f.ac, 0.0));

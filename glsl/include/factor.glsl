@@ -2,11 +2,10 @@
 #ifndef FACTOR_GLSL
 #define FACTOR_GLSL
 
-const float SPARE = 0.125; // quads, over the fewest, that may be spent on less slender ones
+const float SPARE = 0.125; // share of additional quads that less slender ones may cost
 const float UP = 1.00001;  // a few ulp up, so that rounding never breaks the bound
 
-// A pair of small product tau_u tau_v with
-// bend.x / tau_u^2 + 2 bend.y / (tau_u tau_v) + bend.z / tau_v^2 <= budget.
+// A pair tau_u, tau_v of small product with bend.x / tau_u^2 + 2 bend.y / (tau_u tau_v) + bend.z / tau_v^2 <= budget.
 vec2 factors(vec3 bend, float budget) {
     float a = bend.x / budget;
     float b = bend.y / budget;

@@ -1,10 +1,11 @@
-// Pass `gap_fill`: which face is seen at a gap candidate? One thread a pixel. The trim test is that of one way (trim.glsl).
+// Pass `gap_fill`: decides the visible face of each gap candidate. One thread a pixel. The trim test is that of one way
+// (trim.glsl).
 //
 //   list ──▶ situation ──gather──▶ evidence ──decide──▶ list
 //            gap_gather.glsl        gap_decide.glsl
 //
-// The decision is written into the list, and shown by pass `gap_write`, so neighbours tell what was drawn and the order of
-// the threads does not matter.
+// The decision goes into the list, and pass `gap_write` writes it to the pixel. So neighbours show what was drawn, and
+// the order of threads does not matter.
 #include "scene.glsl"
 #include "view.glsl"
 

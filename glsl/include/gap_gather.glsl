@@ -1,20 +1,20 @@
 // The candidates of a gap candidate's neighbourhood. Needs gap_surface.glsl and gap_decide.glsl.
 //
 //        ┌───┬───┬───┐     the faces of the eight neighbours, each by its exact surface at this pixel's centre.
-//        │ A │ A │ B │     Other gap candidates do not count, but for open shells'. Where a front and a back nearly
-//        ├───┼───┼───┤     touch, they fill a band: then the first pixel beyond it counts, in each of the eight
-//        │ A │ ? │ B │     directions
+//        │ A │ A │ B │     Other gap candidates do not count, except those of open shells. Where a front and a back
+//        ├───┼───┼───┤     nearly touch, gap candidates form a band: then the first pixel beyond it counts, in each
+//        │ A │ ? │ B │     of the eight directions
 //        └───┴───┴───┘
 #ifndef GAP_GATHER_GLSL
 #define GAP_GATHER_GLSL
 
-// How far away a neighbour is looked for; WIDE_BAND_PX from within a face from behind.
+// Distance to which neighbours are searched; WIDE_BAND_PX for an eye within a face's solid.
 const uint BAND_PX = 4u;
-// How far across a fold, in widths of the patch.
+// Distance across a fold, in widths of the patch.
 const float ACROSS = 0.2;
 
-// Whether what a neighbour shows counts. The mark of a gap candidate on an open shell is that of a border before it: as it
-// is drawn, it is there.
+// Whether a neighbour's surface counts. On an open shell, the mark of a gap candidate means a border before it; the
+// surface itself is there as drawn.
 bool counts(uint word) {
     if ((word & GAP_CANDIDATE) == 0u) return true;
     if (sees_nothing(word)) return false;
@@ -23,7 +23,8 @@ bool counts(uint word) {
 
 bool in_picture(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(frame.size))); }
 
-// Whether at least three in four pixels around this one see a solid's face from behind: then the eye is within it.
+// Whether at least three in four pixels around this one show the back of a solid's face: then the eye is within the
+// solid.
 bool among_backs(ivec2 at) {
     int more = 0;
     for (uint k = 0u; k < DIRECTION_COUNT; ++k) {
@@ -38,13 +39,13 @@ bool among_backs(ivec2 at) {
     return more > 0;
 }
 
-// Depth of a mesh or solid that is seen at a pixel.
+// Depth of the mesh or solid that a pixel shows.
 float other_depth(uvec2 seen, vec2 pixel) {
     if (!sees_mesh(seen.x)) return uintBitsToFloat(seen.y);
     return facet_at(seen.y, view_at(mesh_instances[seen_mesh_instance(seen.x)].instance), pixel).depth;
 }
 
-// The situation but for the own face and what the neighbours show.
+// The situation without the own face and the neighbours.
 Situation situation_at(uint listed, ivec2 at, vec2 pixel, bool within) {
     uvec2 seen = imageLoad(visibility, at).xy;
     uvec2 other = SCENE_HAS_MESHES_OR_SOLIDS ? imageLoad(others, at).xy : uvec2(0u);
@@ -66,7 +67,7 @@ Situation situation_at(uint listed, ivec2 at, vec2 pixel, bool within) {
     return s;
 }
 
-// The first pixel that counts, `step_` by `step_`; returns how many steps away, 0 without one.
+// The first pixel that counts, `step_` by `step_`; returns the number of steps, 0 if there is none.
 uint first_that_counts(ivec2 at, ivec2 step_, uint band, bool within, out ivec2 beside, out uvec2 seen) {
     beside = at;
     seen = uvec2(0u);
@@ -80,7 +81,7 @@ uint first_that_counts(ivec2 at, ivec2 step_, uint band, bool within, out ivec2 
     return found;
 }
 
-// A face to ask about the pixel: the arguments of `candidate_at`, and whether there is one.
+// The arguments of a call of `candidate_at`, and whether there is one.
 struct Question {
     bool asked;
     uvec2 seen;
@@ -93,13 +94,14 @@ Question ask_own(Situation s) {
     return Question(!s.empty, s.seen, FROM_BESIDE, radius);
 }
 
-// A curved face can show its front at the same pixel, narrower than the tessellation's error: across the fold.
+// A curved face may show its front at the same pixel, across the fold, if the front is narrower than the tessellation's
+// error.
 Question ask_across_fold(Situation s, vec2 direction) {
     uvec2 seen = uvec2(s.seen.x, pack_uv(unpack_uv(s.seen.y) + ACROSS * direction));
     return Question(true, seen, FROM_FOLD, RADIUS_OF_OUTSIDE);
 }
 
-// A neighbour; or, where it shows no patch, what that tells the situation.
+// A neighbour; if it shows no patch, adds to the situation.
 Question ask_beside(inout Situation s, ivec2 at, ivec2 step_, bool within) {
     ivec2 beside;
     uvec2 seen;
@@ -112,9 +114,8 @@ Question ask_beside(inout Situation s, ivec2 at, ivec2 step_, bool within) {
     return Question(steps != 0u && !sees_nothing(seen.x), seen, steps > 1u ? FROM_BEYOND : FROM_BESIDE, RADIUS_OF_OUTSIDE);
 }
 
-// All candidates, the own face first, and what the neighbours show beside patches. `within`: the eye is within a solid, so
-// what is seen of it is from behind, and counts though it is marked. One call of `candidate_at`, which drivers copy to
-// where it is called:
+// Collects all candidates, the own face first, and the neighbours without patches. `within`: the eye is within a solid,
+// so the solid's faces show their backs and count although marked. One call of `candidate_at`, which drivers inline:
 //
 //     n   0     1 … 8             9 … 16
 //         own   across its fold   the neighbours

@@ -3,23 +3,23 @@
 #ifndef GAP_SURFACE_GLSL
 #define GAP_SURFACE_GLSL
 
-// Points of the gap radius at which a face is tested: where the centre is inside, whether all are; where it is outside,
+// The points of the gap radius at which a face is tested: if the centre is inside, whether all are; if it is outside,
 // whether some are.
 const uint RADIUS_OF_INSIDE = 1u;
 const uint RADIUS_OF_OUTSIDE = 2u;
 
-// Whether the face's point at (u, v), which it has, lies within the gap radius of the pixel.
+// Whether the face's point at (u, v), which is inside its trims, lies within the gap radius of the pixel.
 bool reaches(Patch patch_, View view, vec2 uv, vec2 pixel) {
     vec4 q = to_pixel(view, vec4(patch_jet(patch_.first, patch_.shape, uv).point, 1.0));
 #ifdef WITHIN_VOLUME
-    // each alone may reach to the pixel from beside the corner in which they meet
+    // faces that meet in a corner may each reach the pixel from beside it
     if (!in_volume(q, ON_PX)) return false;
 #endif
     return distance(q.xy / q.w, pixel) <= GAP_SLACK * frame.gap_radius_px;
 }
 
-// The face that `seen` names, at the pixel's centre, and, as RADIUS_OF_ of `radius` says, at points of the gap radius. One
-// call of what takes long, which drivers copy to where it is called.
+// The face of the word `seen` at the pixel's centre and, as the RADIUS_OF_ bits of `radius` say, at points of the gap
+// radius. The expensive part is called once, since drivers inline it.
 Candidate candidate_at(uvec2 seen, vec2 pixel, uint from, uint radius) {
     uint item = seen_item(seen.x);
     FaceInstance fi = face_instance_at(face_instance_of(item));
@@ -78,12 +78,12 @@ Outline outline_of(Candidate c, vec2 pixel) {
     View view = view_at(fi.instance);
     Sample s = sample_at(patch_, net_of(patch_), view, unpack_uv(c.word.y), pixel);
     mat2 uv_along = inverse(pixels_along(s, view));
-    // a word's (u, v) has 16 bits, which in a large patch are a part of a pixel
+    // a word's (u, v) has 16 bits, which in a large patch are more than a pixel
     vec2 at = s.uv - uv_along * s.miss;
     vec2 sum = vec2(0.0);
     bool there;
     for (uint k = 0u; k <= DIRECTION_COUNT; ++k) {
-        bool last = k == DIRECTION_COUNT; // the other way
+        bool last = k == DIRECTION_COUNT; // the opposite direction
         vec2 step_ = frame.gap_radius_px * DIRECTIONS[k % DIRECTION_COUNT];
         if (last) step_ = -0.5 * frame.gap_radius_px / max(length(sum), 1e-6) * sum;
         there = is_there(fi, face, item, patch_, at + uv_along * step_);

@@ -1,4 +1,4 @@
-// Numbers the items of the placed parts in sight without gaps. An item out of sight has no thread, and no place in
+// Numbers the items of the placed parts in sight without gaps. An item out of sight has no thread and no place in
 // lists. Needs the frame's constants, and IN_SIGHT_BINDING. Twin: src/twin/in_sight.rs.
 //
 //   items   0 1 2 3 4 5 6 7 8 9 …        parts in sight: runs of consecutive items

@@ -1,8 +1,8 @@
-// Tiles that are drawn, as few squares: so that few pixels lie beside a square's diagonal, where both of its triangles
-// are at work. Whoever includes this has defined `bool is_drawn(uvec2 tile)`. Twin: src/twin/squares.rs.
+// Covers the drawn tiles by few squares, so that few pixels lie on a square's diagonal, where both of its triangles
+// cost time. The includer defines `bool is_drawn(uvec2 tile)`. Twin: src/twin/squares.rs.
 //
-//   ┌───────┬───┐     the largest square of 8, 4, 2 or 1 tiles a side, aligned to its own side, all of whose tiles
-//   │       ├───┘     (of those within the picture) are drawn: its first tile draws it
+//   ┌───────┬───┐     the largest square of 8, 4, 2 or 1 tiles a side, aligned to its own size, all of whose tiles
+//   │       ├───┘     within the picture are drawn: its first tile draws it
 //   │       │
 //   └───────┘
 #ifndef LARGEST_SQUARE_GLSL
@@ -10,8 +10,8 @@
 
 #include "tiles.glsl"
 
-// The side of the square that a tile of `tiles` draws, in tiles; 0 where it is not drawn, or another's square has it.
-// `ends`: no tiles follow below these, so squares may reach beyond them.
+// The side of the square that a tile of `tiles` draws, in tiles; 0 if it is not drawn, or belongs to another tile's
+// square. `ends`: no tiles follow below these, so squares may extend beyond them.
 uint largest_square(uvec2 tile, uvec2 tiles, bool ends) {
     for (uint side = BLOCK; side > 0u; side /= 2u) {
         uvec2 first = tile / side * side;

@@ -1,17 +1,17 @@
-// The part of a ray inside of a leaf with equations. Needs solids.glsl, `usamplerBuffer leaf_surfaces`,
+// The part of a ray inside a leaf with equations. Needs solids.glsl, `usamplerBuffer leaf_surfaces`,
 // `samplerBuffer surfaces`, `samplerBuffer surface_places`.
 //
-//   sides that are no planes: spans, one after another ──▶ planes: the later of what they begin, the earlier of what
-//                                                                   they end
+//   sides other than planes: spans, one after another ──▶ planes: the latest of their entries, the earliest of their
+//                                                                   exits
 #ifndef LEAF_SPAN_GLSL
 #define LEAF_SPAN_GLSL
 
-// The part of the ray o + t d, seen from the eye; `own` is TileLeaf.of. `side` becomes the last of the leaf's sides that
-// begins or ends at `at`.
+// The part of the ray o + t d, relative to the eye; `own` is TileLeaf.of. `side` becomes the last of the leaf's sides
+// at which it begins or ends at `at`.
 Span leaf_span(uint own, vec3 o, vec3 d, float at, inout uint side) {
     uint k = own >> LEAF_FLAG_BITS;
     Span s = EVERYTHING;
-    // loops are asked at their end, for drivers that count how often they are gone through, and end them
+    // loops test at their end, for drivers that count the rounds of a loop and end it
     if (SOLIDS_HAVE != SURFACE_PLANE && (own & LEAF_ROUNDS) != 0u) {
         bool more;
         do {
@@ -23,7 +23,7 @@ Span leaf_span(uint own, vec3 o, vec3 d, float at, inout uint side) {
             ++k;
         } while (more);
     }
-    // most sides are planes: a loop of their own, for drivers that run both sides of every branch
+    // most sides are planes: they have a loop of their own, for drivers that run both sides of every branch
     if ((own & LEAF_PLANES) != 0u && s.lo < s.hi) {
         float lo = -NEVER;
         float hi = NEVER;

@@ -1,11 +1,11 @@
-// The point of a side that faces share: whoever asks, it is evaluated from the control points of its piece's owner, at
-// the same parameter, and so the same bit for bit. Needs placed.glsl and patch.glsl; the includer defines LINK_BINDING.
+// The point of a shared side. Every patch evaluates it from the control points of its piece's owner, at the same
+// parameter, and gets the same bits. Needs placed.glsl and patch.glsl; the includer defines LINK_BINDING.
 #ifndef LINK_GLSL
 #define LINK_GLSL
 
 layout(scalar, binding = LINK_BINDING) readonly buffer Links { Link links[]; };
 
-// Exact at both ends: the control point there.
+// Exact at both ends, where it is the control point.
 vec3 side_point(uint side, float x) {
     Patch owner = patch_at(side >> 2);
     int n = int(degree_u(owner.shape));
@@ -27,12 +27,12 @@ vec3 side_point(uint side, float x) {
     return SCENE_HAS_RATIONAL && is_rational(owner.shape) ? a.xyz * (1.0 / a.w) : a.xyz;
 }
 
-// The point of a patch's side at `x` along it; `own` where nobody shares it.
+// The point of a patch's side at `x` along it; `own` if the side is not shared.
 vec3 linked_point(uint patch_, uint side, float x, vec3 own) {
     uint at = 4u * patch_ + side;
     Link link = links[at];
     if (!link_shared(link)) return own;
-    // of the whole curve; numbers of segments are powers of two where others are drawn, and then this is exact
+    // parameter of the whole curve; exact, because the numbers of segments of linked sides are powers of two
     float t = (float(link_start(link)) + (link_reversed(link) ? 1.0 - x : x)) / float(1u << link_halvings(link));
     for (uint k = 0u; k < LINK_MOST_SIDES; ++k) {
         if (link_owner(link)) {

@@ -1,13 +1,12 @@
-// A pixel's colour as a mean of linear ones, into the host's target. Needs `frame` and scene.glsl.
+// Writes a pixel's colour, as a mean of linear colours, to the host's target. Needs `frame` and scene.glsl.
 #ifndef MEAN_GLSL
 #define MEAN_GLSL
 
 #include "shade.glsl"
 
-layout(location = 0) out vec4 out_colour; // multiplied by its opacity where the host keeps its picture
+layout(location = 0) out vec4 out_colour; // multiplied by its opacity if the host's picture stays
 
-// Of colours that are multiplied by their opacities, in alpha. Where the host keeps its picture, what saw nothing lets it
-// through.
+// `mean`: colours times their opacities, and the mean opacity. If the host's picture stays, it shows through the rest.
 void write_mean(vec4 mean) {
     bool keeps = frame.background.a < 0.0;
     out_colour = encode(mean, frame.encode_srgb);

@@ -1,10 +1,10 @@
-// Directions as two 16-bit numbers: points of the octahedron |x| + |y| + |z| = 1, unfolded to a square. Source: Z. H. Cigolle
-// et al., A Survey of Efficient Representations for Independent Unit Vectors, JCGT 3 (2), 2014. Twin of
-// src/math/octahedral.rs.
+// Directions as two 16-bit numbers: points of the octahedron |x| + |y| + |z| = 1, unfolded to a square. Source: Z. H.
+// Cigolle et al., A Survey of Efficient Representations for Independent Unit Vectors, JCGT 3 (2), 2014. Twin of
+// crates/geometry/src/math/octahedral.rs.
 #ifndef OCTAHEDRAL_GLSL
 #define OCTAHEDRAL_GLSL
 
-// On the octahedron: not a unit vector.
+// A point of the octahedron, not a unit vector.
 vec3 octahedral(uint word) {
     precise vec2 e = vec2(ivec2(word << 16, word) >> 16) / 32767.0;
     precise float z = 1.0 - abs(e.x) - abs(e.y);

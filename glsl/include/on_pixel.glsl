@@ -1,7 +1,7 @@
 #ifndef ON_PIXEL_GLSL
 #define ON_PIXEL_GLSL
 
-// A surface passes a point of the picture when its nearest point projects this close to it.
+// A surface passes a point of the picture if its nearest point projects within this distance.
 const float ON_PIXEL_PX = 0.05;
 
 #endif

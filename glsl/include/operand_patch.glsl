@@ -1,9 +1,9 @@
-// Pass `operand_patch`: a ray crosses a spline face of an operand, after the tessellation of pass
+// Pass `operand_patch`: crossings of rays with spline faces of operands, found by the tessellation of pass
 // `visibility`. The depth is that of the exact surface at the pixel's centre.
 //
-// Faces that meet along an edge are trimmed apart from each other, so a ray may slip between them. The skirt
-// around each trimmed face gives fragments of its own, which pass `operand_sort` takes where a ray would
-// else leave without having entered, or the reverse. The entry point defines TRIMMED and its way to trim.
+// Faces that meet along an edge are trimmed separately, so a ray may pass between them. The skirt around each trimmed
+// face gives fragments of its own. Pass `operand_sort` uses them if a ray would otherwise leave without having entered,
+// or enter without leaving. The entry point defines TRIMMED and its way to trim.
 #include "scene.glsl"
 #include "view.glsl"
 #include "shells.glsl"
@@ -40,7 +40,7 @@ void main() {
     if (looks_away(dx, dy, face, instance)) shell |= FRAGMENT_LEAVES;
 #ifdef TRIMMED
     vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
-    vec2 around = frame.gap_radius_px * (abs(dx) + abs(dy)); // of the point: its circle is in that box
+    vec2 around = frame.gap_radius_px * (abs(dx) + abs(dy)); // the point's circle is in this box
     uint area = trim_area(fi, face, at - around, at + around);
     if (area == TRIM_OUT) discard;
     bool inside = area == TRIM_IN || trim_inside(fi, face, at);

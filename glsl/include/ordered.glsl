@@ -1,4 +1,4 @@
-// Numbers as words that order alike. Twins: `ordered_bits` of src/twin/cross.rs, `from_ordered` of src/twin/sort.rs.
+// Numbers as words with the same order. Twins: `ordered_bits` of src/twin/cross.rs, `from_ordered` of src/twin/sort.rs.
 #ifndef ORDERED_GLSL
 #define ORDERED_GLSL
 

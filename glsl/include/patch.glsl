@@ -1,9 +1,8 @@
-// Evaluation of a rational Bézier patch. Twin of src/spline/patch.rs.
+// Evaluation of a rational Bézier patch. Twin of crates/geometry/src/spline/patch.rs.
 //
-// Needs `samplerBuffer points` (one texel a homogeneous control point; weight 1 where a patch is
-// polynomial) and, as specialisation constant 0, whether any patch of the scene
-// is rational. Exact at the corners and along the sides: at u = 1 the row's last control point is
-// returned bit for bit, so neighbouring patches meet without a crack.
+// Needs `samplerBuffer points` (one texel a homogeneous control point; weight 1 for polynomial patches) and, as
+// specialisation constant 0, whether any patch of the scene is rational. Exact at the corners and along the sides: at u
+// = 1 the row's last control point is returned bit for bit, so neighbouring patches meet without a crack.
 #ifndef PATCH_GLSL
 #define PATCH_GLSL
 
@@ -15,7 +14,7 @@ struct Jet {
     vec3 dv;
 };
 
-// Binomials times powers, one after another: w_i = (m over i) t^i.
+// Binomials times powers, one by one: w_i = (m over i) t^i.
 struct Weights {
     float power;
     float choose;
@@ -29,14 +28,15 @@ void advance(inout Weights w, uint m, uint i, float t) {
     w.choose = i + 1u < m ? w.choose * (float(m - i) / float(i + 1u)) : 1.0;
 }
 
-// A homogeneous control point, seen from `base`.
+// A homogeneous control point relative to `base`.
 vec4 control_point(int at, vec3 base) {
     vec4 p = texelFetch(points, at);
     return vec4(p.xyz - base * p.w, p.w);
 }
 
-// Value and slope of row `j`: Horner's scheme on the first n and on the last n control points. One loop as long as the
-// row, here and below: a rasterizer in software runs what follows a branch, and any loop once, for nothing.
+// Value and slope of row `j`: Horner's scheme on the first n and on the last n control points. One loop over the whole
+// row, here and below: a software rasteriser runs the code behind a branch, and each loop once, even if no lane needs
+// it.
 void patch_row(uint first, uint n, uint j, vec3 base, float u, out vec4 value, out vec4 slope) {
     int at = int(first + j * (n + 1u));
     float s = 1.0 - u;
@@ -55,8 +55,9 @@ void patch_row(uint first, uint n, uint j, vec3 base, float u, out vec4 value, o
     slope = (b - a) * float(n);
 }
 
-// Point, less `base`, and first derivatives at (u, v); parameters outside [0, 1] extrapolate. Derivatives are differences:
-// those of a small patch far from the origin keep only the digits that its points do, unless `base` is among them.
+// Point, less `base`, and first derivatives at (u, v); parameters outside [0, 1] extrapolate. Derivatives are
+// differences of points. For a small patch far from the origin they keep only the points' digits, unless `base` is
+// near.
 Jet patch_jet_from(uint first, uint shape, vec3 base, vec2 uv) {
     uint n = degree_u(shape);
     uint k = degree_v(shape);

@@ -1,18 +1,18 @@
-// The point of the exact surface of a face under a pixel, with its normal where it has none of its own, too. Needs
-// scene.glsl and refine.glsl; whoever includes this has `Patch patch_at(uint)`.
+// The point of a face's exact surface under a pixel, with a normal even at degenerate points. Needs scene.glsl,
+// refine.glsl and `Patch patch_at(uint)`.
 #ifndef PATCH_NORMAL_GLSL
 #define PATCH_NORMAL_GLSL
 
 #include "patch_place.glsl"
 
-// Some surface is made of patches that do not go on as those beside them would: of several, and no plane, cylinder, cone,
-// sphere or torus.
+// Some face has several patches and is no plane, cylinder, cone, sphere or torus: its patches do not follow one
+// equation.
 layout(constant_id = 19) const bool SCENE_HAS_PIECES = false;
 
-const float FIRST_INWARDS = 1e-3; // of the way to the patch's middle
+const float FIRST_INWARDS = 1e-3; // share of the way to the patch's middle
 const float MOST_INWARDS = 0.3;
 
-// Column and row of the patch of a face on which (u, v) of that at `place` lies: that itself, or the one beside it.
+// Column and row of the face's patch that contains (u, v) of the patch at `place`: that patch, or the one beside it.
 ivec2 place_beside(Face face, ivec2 place, vec2 uv) {
     ivec2 last = ivec2(face.count_u, face.count_v) - 1;
     place += way_beyond(uv, 0.0);
@@ -22,32 +22,33 @@ ivec2 place_beside(Face face, ivec2 place, vec2 uv) {
     return mix(within, around, closed);
 }
 
-// What `refine` finds from (u, v) of patch `n` of the face, on whichever patch that is, `patch_`, and S_u x S_v there, or
-// where it vanishes (pole, collapsed side) its limit from the patch's inside. A drawn patch may cover a pixel whose centre
-// sees the one beside it, which need not go on as the drawn one would; between knots that are nearly one lie others, far
-// narrower, and are passed over.
+// The result of `refine` from (u, v) of patch `n` of the face, on the patch `patch_` where it ends. Also S_u x S_v
+// there, or its limit from inside the patch where it vanishes (pole, collapsed side). A drawn patch may cover a pixel
+// whose centre shows the next patch, which need not continue it; between nearly equal knots lie far narrower patches,
+// which are skipped.
 //
-// One evaluation, in one loop: a rasterizer in software runs what no pixel asks for once, too. For fragments: their groups
-// are the same in every frame, where those of compute shaders may not be (refine.glsl says what that does).
+// One evaluation, in one loop: a software rasteriser runs every evaluation once, even if no pixel needs it. For
+// fragment shaders: their groups are the same in every frame, unlike those of compute shaders (refine.glsl says why
+// that matters).
 Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patch patch_, out vec3 normal) {
-    // divided once: a division of integers costs a rasterizer in software as much as what is looked up
+    // divided once: on a software rasteriser an integer division costs as much as a look-up
     ivec2 place = SCENE_HAS_PIECES ? place_of(face, int(n)) : ivec2(0);
     vec2 closed = vec2((face.flags & FACE_CLOSED_U) != 0u, (face.flags & FACE_CLOSED_V) != 0u);
     Patch own = patch_at(face.first_patch + n);
     Net net = net_of(own);
     Sample best;
-    ivec2 drawn = place; // the best one's patch
+    ivec2 drawn = place; // the patch of the best one
     vec2 next = uv;
-    vec2 at;        // the same of the whole face, where another patch is looked at
+    vec2 at;        // the parameters in the whole face, for other patches
     bool hops = false;
     uint steps = 0u;
-    float inwards = 0.0; // found: the normal is looked for
+    float inwards = 0.0; // the point is found: the normal is searched
     bool found = false;
     while (!found) {
         bool nowhere = false;
         if (SCENE_HAS_PIECES) {
             own = patch_at(patch_in(face, place));
-            nowhere = hops && side_of(own.shape) == SIDE_OUTSIDE; // all of it is trimmed away: it has no control points
+            nowhere = hops && side_of(own.shape) == SIDE_OUTSIDE; // trimmed away as a whole: it has no control points
             if (nowhere) own = patch_;
             net = net_of(own);
             if (hops) next = (at - own.domain.xy) / own.domain.zw;
@@ -65,7 +66,7 @@ Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patc
             }
             vec2 step_;
             bool farther = step_from(patch_, best, view, CLOSE_ENOUGH, step_);
-            // on a plane no other evaluation is needed, unless the step leads out of it or falls short
+            // on a plane no second evaluation is needed, unless the step leaves it or falls short
             Sample there = along_plane(best, view, step_, pixel);
             bool arrives = clamp(there.uv, 0.0, 1.0) == there.uv && !misses(there, CLOSE_ENOUGH);
             if (farther && patch_.bend == vec3(0.0) && arrives) {
@@ -73,7 +74,7 @@ Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patc
                 step_ = vec2(0.0);
                 farther = false;
             }
-            // the rest of the way may lead across a side
+            // the rest of the way may cross a side
             if (SCENE_HAS_PIECES && nearer) farther = farther || place_beside(face, place, best.uv - step_) != place;
             goes_on = (farther && nearer || passes) && steps < NEWTON_STEPS;
             ++steps;

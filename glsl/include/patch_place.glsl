@@ -1,4 +1,4 @@
-// Where a patch is among those of its face. Needs scene.glsl.
+// The place of a patch in its face. Needs scene.glsl.
 #ifndef PATCH_PLACE_GLSL
 #define PATCH_PLACE_GLSL
 
@@ -11,7 +11,7 @@ ivec2 place_of(Face face, int n) {
 // The patch there.
 uint patch_in(Face face, ivec2 place) { return face.first_patch + uint(place.y) * face.count_u + uint(place.x); }
 
-// Which way a point of a patch lies beyond it, by more than `slack`.
+// The direction in which a point lies beyond its patch, by more than `slack`.
 ivec2 way_beyond(vec2 uv, float slack) {
     return ivec2(greaterThan(uv, vec2(1.0 + slack))) - ivec2(lessThan(uv, vec2(-slack)));
 }

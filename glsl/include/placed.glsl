@@ -1,6 +1,6 @@
-// Patches as they are placed, for the passes that ask for one in every pixel: the buffers of scene.glsl as texels, which
-// a driver fetches at once where it gathers words of storage buffers one by one. Structs are put together from those
-// members that are asked for. Needs scene.glsl and view.glsl; whoever needs `instance_at` defines INSTANCES_BINDING.
+// Placed patches, for passes that read one in every pixel: the buffers of scene.glsl as texels, which a driver fetches
+// at once, where it gathers words of storage buffers one by one. Structs are composed of the members in use. Needs
+// scene.glsl and view.glsl; for `instance_at` the includer defines INSTANCES_BINDING.
 #ifndef PLACED_GLSL
 #define PLACED_GLSL
 

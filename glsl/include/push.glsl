@@ -1,8 +1,8 @@
-// How far the borders of trimmed faces are pushed outwards.
+// The distance by which the borders of trimmed faces are pushed outwards.
 #ifndef PUSH_GLSL
 #define PUSH_GLSL
 
-// Most of a patch's width.
+// Most of it, as a share of the patch's width.
 const float MAX_PUSH = 0.5;
 
 // Pixels per unit u and v at a homogeneous pixel with these derivatives.

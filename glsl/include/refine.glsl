@@ -1,16 +1,16 @@
 // The point of the exact surface under a pixel. Needs patch.glsl and view.glsl.
 //
-// Newton's method on F(u, v) = projection(S(u, v)) - pixel:  step = -J^-1 F, kept only while the
-// distance to the pixel shrinks (at a silhouette there may be no such point).
+// Newton's method on F(u, v) = projection(S(u, v)) - pixel:  step = -J^-1 F, continued only while the distance to the
+// pixel shrinks (at a silhouette there may be no such point).
 //
-// The better point is taken before the loop is left, not after. Written the other way round (`if (!nearer) break;
-// best = next;`) Mesa 22.3's llvmpipe now and then gave a lane that had left the loop the step it had refused, where
-// other lanes of its group went on: which, the order of the threads decided.
+// The better point is stored before the loop is left. If it is stored afterwards (`if (!nearer) break; best = next;`),
+// Mesa 22.3's llvmpipe sometimes gives a lane that has left the loop the step that it rejected, while other lanes of
+// its group continue. The result then depends on the order of threads.
 #ifndef REFINE_GLSL
 #define REFINE_GLSL
 
 const uint NEWTON_STEPS = 4u;
-const float MAX_STEP = 0.25;      // of the patch, or of the one that it was cut from
+const float MAX_STEP = 0.25;      // of the patch, or of the patch before the split
 const float CLOSE_ENOUGH = 5e-4;  // pixels
 
 struct Sample {
@@ -23,15 +23,15 @@ struct Sample {
 // Some patch has a fine net (src/scene/fine.rs).
 layout(constant_id = 20) const bool SCENE_HAS_FINE = false;
 
-// Control points, from `first` on, and where they are seen from: a point near the patch, since what is near that is known
-// best from there. `less`: what they are still to be reduced by.
+// Control points, from `first` on, and their base, a point near the patch, relative to which they are most precise.
+// `less`: the offset still to be subtracted.
 struct Net {
     uint first;
     vec3 less;
     vec3 base;
 };
 
-// The fine net, or the control points themselves as they are seen from a corner.
+// The fine net, or the control points relative to a corner.
 Net net_of(Patch patch_) {
     uint count = (degree_u(patch_.shape) + 1u) * (degree_v(patch_.shape) + 1u);
     bool fine = SCENE_HAS_FINE && has_fine_net(patch_.shape);
@@ -49,7 +49,7 @@ Sample sample_at(Patch patch_, Net net, View view, vec2 uv, vec2 pixel) {
     return s;
 }
 
-// How far the pixel moves with u, and with v: the columns of J.
+// Change of the pixel with u, and with v: the columns of J.
 mat2 pixels_along(Sample s, View view) {
     vec4 qu = to_pixel(view, vec4(s.jet.du, 0.0));
     vec4 qv = to_pixel(view, vec4(s.jet.dv, 0.0));
@@ -59,7 +59,7 @@ mat2 pixels_along(Sample s, View view) {
 
 bool misses(Sample s, float close) { return dot(s.miss, s.miss) >= close * close; }
 
-// Where Newton's method goes from there on the patch, if anywhere.
+// The next step of Newton's method on the patch, if there is one.
 bool step_from(Patch patch_, Sample s, View view, float close, out vec2 step_) {
     mat2 along = pixels_along(s, view);
     vec2 pu = along[0];
@@ -71,7 +71,7 @@ bool step_from(Patch patch_, Sample s, View view, float close, out vec2 step_) {
     return misses(s, close) && abs(det) >= 1e-12;
 }
 
-// The sample a step back on a plane, where the derivatives are the same everywhere.
+// The sample after a step on a plane, whose derivatives are constant.
 Sample along_plane(Sample s, View view, vec2 step_, vec2 pixel) {
     s.uv -= step_;
     s.jet.point -= step_.x * s.jet.du + step_.y * s.jet.dv;
@@ -80,7 +80,7 @@ Sample along_plane(Sample s, View view, vec2 step_, vec2 pixel) {
     return s;
 }
 
-// Until the point is as close as `close`, pixels. One call of `sample_at`, which drivers copy to where it is called.
+// Iterates until the point is within `close` pixels. One call of `sample_at`, which drivers inline.
 Sample refine_to(Patch patch_, View view, vec2 uv, vec2 pixel, float close) {
     Net net = net_of(patch_);
     Sample best;

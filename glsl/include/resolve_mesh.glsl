@@ -15,7 +15,7 @@ layout(scalar, binding = 5) readonly buffer Triangles { uint triangles[]; };
 layout(scalar, binding = 6) readonly buffer Positions { vec3 positions[]; };
 layout(scalar, binding = 7) readonly buffer Normals { uint normals[]; };
 layout(binding = 8, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 9, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(binding = 9, rg32ui) readonly uniform uimage2D others; // without trims, the same image
 
 #include "facet.glsl"
 #include "octahedral.glsl"
@@ -44,7 +44,8 @@ void main() {
     float size = length(n);
     n = size > 0.0 ? n / size : -frame.forward;
     if (instance.mirrored != 0u) n = -n;
-    write_surface(mesh.colour, instance, n, (mesh.flags & MESH_SOLID) != 0u, f.depth, mesh.id, f.st, NO_SURFACE);
+    bool solid = (mesh.flags & MESH_SOLID) != 0u;
+    write_surface(mesh.colour, instance, n, solid, f.depth, mesh.id, f.st, NO_SURFACE, NO_CURVATURE);
 }
 
 #endif

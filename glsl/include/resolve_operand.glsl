@@ -1,4 +1,4 @@
-// Pass `resolve`, spline faces of operands of Boolean solids: as resolve.frag, where pass `solid_events`
+// Pass `resolve`, spline faces of operands of Boolean solids: like resolve.frag, in pixels where pass `solid_events`
 // found one.
 #ifndef RESOLVE_OPERAND_GLSL
 #define RESOLVE_OPERAND_GLSL
@@ -8,7 +8,7 @@
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 8, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 9, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(binding = 9, rg32ui) readonly uniform uimage2D others; // without trims, the same image
 layout(binding = 10, r32ui) readonly uniform uimage2D operand_uv;
 
 #include "eye_ray.glsl"

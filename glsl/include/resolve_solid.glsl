@@ -1,5 +1,5 @@
-// Pass `resolve`, Boolean solids: normal and light of the side that pass `solid_events` found. The depth
-// there is exact already.
+// Pass `resolve`, Boolean solids: normal and light of the side that pass `solid_events` found. Its depth is already
+// exact.
 #ifndef RESOLVE_SOLID_GLSL
 #define RESOLVE_SOLID_GLSL
 
@@ -15,7 +15,7 @@ layout(binding = 2) uniform usamplerBuffer leaf_surfaces;
 layout(binding = 3) uniform samplerBuffer surfaces;
 layout(binding = 4) uniform samplerBuffer surface_places;
 layout(binding = 5, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 6, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(binding = 6, rg32ui) readonly uniform uimage2D others; // without trims, the same image
 layout(scalar, binding = 8) readonly buffer Instances { Instance instances[]; };
 layout(scalar, binding = 9) readonly buffer OperandMeshes { OperandMesh operand_meshes[]; };
 layout(scalar, binding = 10) readonly buffer Triangles { uint triangles[]; };
@@ -26,6 +26,7 @@ layout(scalar, binding = 13) readonly buffer Views { View views[]; };
 #include "resolved.glsl"
 #include "sides.glsl"
 #include "visible.glsl"
+#include "side_curvature.glsl"
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -37,10 +38,13 @@ void main() {
     Side side = side_at(seen_side(seen.x), t, ray);
     Leaf leaf = leaves[side.leaf];
     vec3 n = normalize(side.n);
-    // the solid begins here: its outside is before
+    // the solid begins here, so its outside is before it
     if (dot(n, ray.d) > 0.0) n = -n;
-    Instance nowhere = Instance(mat3(1.0), 1.0, 0u, 0u, 0u, uvec3(0u)); // leaves are where they are
-    write_surface(leaf.colour, nowhere, n, true, t, leaf.id, vec2(uintBitsToFloat(0x7fc00000u)), side.surface);
+    Instance nowhere = Instance(mat3(1.0), 1.0, 0u, 0u, 0u, uvec3(0u)); // leaves are not placed
+    Curvature curvature = NO_CURVATURE;
+    if (shows_curvature()) curvature = side_curvature(seen_side(seen.x), t, ray);
+    vec2 no_uv = vec2(uintBitsToFloat(0x7fc00000u));
+    write_surface(leaf.colour, nowhere, n, true, t, leaf.id, no_uv, side.surface, curvature);
 }
 
 #endif

@@ -1,14 +1,14 @@
-// The exact surface under a pixel that sees a patch, then light. Needs placed.glsl, patch.glsl,
-// view.glsl and resolved.glsl.
+// The exact surface under a pixel that shows a patch, then light. Needs placed.glsl, patch.glsl, view.glsl and
+// resolved.glsl.
 #ifndef RESOLVED_PATCH_GLSL
 #define RESOLVED_PATCH_GLSL
 
 #include "refine.glsl"
 #include "patch_normal.glsl"
+#include "bend.glsl"
 #include "visible.glsl"
 
-// `seen` are item + 1 and packed (u, v). The other side of an operand's face may be seen, and is a front
-// of the solid.
+// `seen` is item + 1 and packed (u, v). An operand's face may show its back, which is then a front of the solid.
 void write_patch(uvec2 seen, bool operand) {
     uint item = seen_item(seen.x);
     FaceInstance fi = face_instance_at(face_instance_of(item));
@@ -25,7 +25,12 @@ void write_patch(uvec2 seen, bool operand) {
     vec2 at = patch_.domain.xy + s.uv * patch_.domain.zw;
     bool solid = (face.flags & FACE_SOLID) != 0u;
     vec2 own = face.domain.xy + at * face.domain.zw;
-    write_surface(face.colour, instance, n, solid, s.q.z, face.id, own, NO_SURFACE);
+    Curvature curvature = NO_CURVATURE;
+    if (shows_curvature()) {
+        curvature = patch_curvature(patch_, view, s);
+        if (flip) curvature.mean = -curvature.mean;
+    }
+    write_surface(face.colour, instance, n, solid, s.q.z, face.id, own, NO_SURFACE, curvature);
 }
 
 #endif

@@ -1,4 +1,4 @@
-// Exclusive prefix sums: what the three steps share. Figure and contract: src/frame/common/scan.rs.
+// Exclusive prefix sums: shared by the three steps. Figure and contract: src/frame/common/scan.rs.
 
 #include "abi/scan.glsl"
 
@@ -14,7 +14,7 @@ layout(scalar, binding = 4) readonly buffer Counts { uint counts[]; };
 layout(scalar, push_constant) uniform Push { ScanParams params; };
 
 const uint LANES = 64;           // invocations of a workgroup
-const uint PER_LANE = 16;        // elements that each takes
+const uint PER_LANE = 16;        // elements of each
 const uint BLOCK = LANES * PER_LANE;
 
 uint element_count() {
@@ -28,8 +28,8 @@ uint block_count() {
 
 shared uint lane_sums[LANES];
 
-// Sum of `sum` over the lanes before this one; `block_sum` over all (Hillis and Steele: each step
-// adds what lies twice as far back). Every lane of the workgroup calls it.
+// Sum of `sum` over the lanes before this one; `block_sum` over all (Hillis and Steele: each step adds the value twice
+// as far back). Every lane of the workgroup must call it.
 uint scan_lanes(uint sum, out uint block_sum) {
     uint lane = gl_LocalInvocationIndex;
     lane_sums[lane] = sum;

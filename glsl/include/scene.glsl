@@ -1,14 +1,14 @@
 // The scene in GPU memory. Twin of src/abi/scene.rs; the build checks every offset.
 //
 //   Instance ◀── FaceInstance ──▶ Face ──▶ Patch[count_u * count_v] ──▶ points
-//                    │              ├────▶ Cell   (a patch within one v-strip: where it is, how fast)
+//                    │              ├────▶ Cell   (a patch within one v-strip: its box and speed)
 //                    │              └────▶ Curve  (rational Bézier in (u, v)) ──▶ curve_points
 //                    ├── first_item   + local patch  = item     (one patch of one placed face)
 //                    ├── first_cell   + local cell   = cell item
 //                    ├── first_curve  + local curve  = curve item
 //                    └── first_bin    + strip * bins + bin = bin item (a strip's is that of its first bin)
 //
-//   Patch, side ──▶ Link ──▶ the next side that lies on the same curve: patches of one part, whose items are as far apart
+//   Patch, side ──▶ Link ──▶ the next side on the same curve: patches of one part, whose items have the same distance
 //
 //   Instance ◀── MeshInstance ──▶ Mesh ──▶ triangles (three indices each) ──▶ positions
 //                                   └────▶ normals, one a corner of its triangles, or none
@@ -17,8 +17,8 @@
 #ifndef SCENE_GLSL
 #define SCENE_GLSL
 
-// Patch.shape: degree_u | degree_v << 4 | rational << 8 | side << 9 | borders << 11 | fine net << 15 | pieces of its size in the
-// patch that it was cut from, along u << 16, along v << 22
+// Patch.shape: degree_u | degree_v << 4 | rational << 8 | side << 9 | borders << 11 | fine net << 15 | pieces of its
+// size in the patch before the split, along u << 16, along v << 22
 const uint SIDE_OUTSIDE = 0u;  // wholly trimmed away: never drawn
 const uint SIDE_INSIDE = 1u;   // no trim curve meets it: drawn without a test
 const uint SIDE_BOUNDARY = 2u; // the trim test decides per pixel
@@ -37,10 +37,10 @@ struct Patch {
     uint face;
 };
 
-// A side of a patch that is shared with other faces': one of a ring. `place` is 0 where a side is not.
-// place: start | halvings << 13 | reversed << 17 | owner << 18 | shared << 19
-// The ring's sides lie on one curve, this one from start / 2^halvings, 1 / 2^halvings long; each piece of the
-// curve is that of its owner's control points.
+// A side of a patch that other faces share: one of a ring of sides. `place` is 0 if the side is not shared. place:
+// start | halvings << 13 | reversed << 17 | owner << 18 | shared << 19 The ring's sides lie on one curve; this one
+// begins at start / 2^halvings and is 1 / 2^halvings long. The control points of each piece of the curve are those of
+// its owner.
 struct Link {
     uint next; // 4 * patch + side, of u = 0, v = 0, u = 1, v = 1
     uint place;
@@ -59,15 +59,15 @@ const uint FACE_CLOSED_V = 2u;
 const uint FACE_SAME_SENSE = 4u; // outward normal is S_u x S_v
 const uint FACE_SOLID = 8u;      // the part is closed: back faces are never seen
 const uint FACE_TRIMMED = 16u;   // some patch meets a trim curve
-const uint FACE_OPERAND = 32u;   // of a Boolean solid: drawn as its fragments only
+const uint FACE_OPERAND = 32u;   // belongs to a Boolean solid: drawn only as its fragments
 
-// Those that every pixel asks for are whole texels, and what is asked for together is in one.
+// Members that every pixel reads are whole texels; members read together are in one.
 struct Face {
     vec4 domain;        // u0, v0, u1 - u0, v1 - v0 of the source's own parameters
 
     uint first_patch;
     uint flags;
-    uint strips;        // of the trim table: uniform v-strips, bins of each << 16; 0 where there is none (bins.glsl)
+    uint strips;        // of the trim table: uniform v-strips, bins of each << 16; 0 without a table (u_bins.glsl)
     uint first_curve;
 
     uint id;
@@ -93,10 +93,10 @@ struct FaceInstance {
 struct Instance {
     mat3 normal;   // part to model, for normals (columns)
     float scale;   // largest stretch of the transform
-    uint colour;   // over those of its faces, as much as its opacity
-    uint mirrored; // 1 when the transform turns the space inside out
+    uint colour;   // over its faces' colours, by its opacity
+    uint mirrored; // 1 if the transform mirrors
 
-    uint shell;    // of its FACE_OPERAND faces: which operand of the Boolean solids they bound
+    uint shell;    // of its FACE_OPERAND faces: the operand that they bound
     uvec3 unused;
 };
 
@@ -121,25 +121,25 @@ struct Cell {
     vec3 box_min;
     float speed_u; // largest |S_u|, |S_v| there, part units per unit of normalised u, v
     vec3 box_max;
-    float speed_v; // negative where no loop meets the patch, in scenes whose loops may be edited
+    float speed_v; // negative if no loop meets the patch, in editable scenes
     uint bin;       // strip * bins + bin
-    uint normal;    // octahedral: the surface lies where low <= normal . p <= high
+    uint normal;    // octahedral: the surface lies within low <= normal . p <= high
     float low;
     float high;
 };
 
 struct Curve {
-    vec2 start;     // end points as every neighbour sees them, bit for bit
+    vec2 start;     // end points, shared with the neighbours bit for bit
     vec2 end;
     uint first;     // index of the first float in curve_points, three a control point
     uint degree;
     vec2 bend;      // deviation from n equal chords is at most bend / n^2, in u and in v
     vec2 range_v;   // lowest and highest v of the control polygon
-    vec2 range_u;   // its lowest u, and the highest of its loop
+    vec2 range_u;   // lowest u of the curve, and highest of its loop
 };
 
-// What a patch asks for: tau_u | TAU_HIDDEN | tau_v << 16, or 0 where it is not seen.
-const uint TAU_HIDDEN = 0x8000u; // it is not drawn now: it lies behind others, or is drawn already
+// A patch's segments: tau_u | TAU_HIDDEN | tau_v << 16, or 0 if it is not visible.
+const uint TAU_HIDDEN = 0x8000u; // not drawn now: it is hidden, or drawn already
 
 uint tau_along(uint tau, uint axis) { return axis == 0u ? tau & 0x7fffu : tau >> 16; }
 bool is_drawn(uint tau) { return tau != 0u && (tau & TAU_HIDDEN) == 0u; }
@@ -153,18 +153,18 @@ struct Frame {
     float far;
     uint perspective;
     float deviation_px; // budget of the tessellation
-    float gap_radius_px;      // how far a trimmed face reaches over its border to close cracks
+    float gap_radius_px;      // distance by which a trimmed face extends beyond its border to close cracks
     float row_px;       // spacing of the trim table's scan lines
     float chord_px;     // budget of a trim curve's linear segments
-    float table_density; // pixels a model unit that the trim table is for, whatever the view; 0: of what this one shows
-    uint fixed_factor;  // of every patch; 0: what the bound asks for
+    float table_density; // pixels a model unit of the trim table, for every view; 0: those of this view
+    uint fixed_factor;  // of every patch; 0: the factor of pass `bound`
     uint items_in_sight; // placed patches of placed parts that are in sight
     uint run_count;     // runs of consecutive items in sight (in_sight.glsl)
     uint cell_count;
     uint bin_count;     // of all strips of all placed faces
     uint curve_count;
     uint draw_vertices; // most tessellated vertices in one draw
-    uint encode_srgb;   // 1: the colour target does not encode by itself; ENCODE_SUMMED
+    uint encode_srgb;   // 1: the shader encodes sRGB for the colour target; ENCODE_SUMMED
     uint sub_patch_capacity;
     uint draw_capacity;
     uint row_capacity;
@@ -174,22 +174,23 @@ struct Frame {
     uint block_leaf_capacity;
     uint tile_leaf_capacity;
     uint fragment_capacity;
-    uint followed_leaf; // from it on lists of items that rays are followed through; before it the union that is seen
+    uint followed_leaf; // from this leaf on, lists of items that rays are followed through; before it, the opaque union
     uint layer_capacity; // of way `blister`
-    uint side_count;    // sides of leaves with equations; what is numbered from it on are triangles of operands
-    uint band_top;      // the rows of pixels whose lists are made, of way `events`: the first, a multiple of TILE,
-    uint band_height;   // and how many, of which the picture may end before the last
+    uint side_count;    // sides of leaves with equations; larger numbers are triangles of operands
+    uint band_top;      // rows of pixels of a band of way `events`: the first, a multiple of TILE,
+    uint band_height;   // and their number; the picture may end earlier
     vec3 right;         // camera axes in model space
     vec3 up;
     vec3 forward;
     vec4 background;
     vec2 offset;        // of the sample from the pixel's centre, pixels
-    float spread_px;    // how far from the centre samples lie, along each axis
+    float spread_px;    // distance of samples from the centre, along each axis
     uint samples;       // of each pixel's colour
     uint style;         // STYLE_*
+    float curvature;    // styles of curvature: one over the largest on the scale, model units
     uint most_groups;   // workgroups in one row of a dispatch
     vec2 focal_px;      // across and down: pixels per unit slope; parallel view: pixels per model unit
-    vec2 principal_px;  // where the view axis is seen
+    vec2 principal_px;  // pixel of the view axis
 };
 
 // Frame.style.
@@ -197,8 +198,12 @@ const uint STYLE_SHADED = 0u;
 const uint STYLE_CLAY = 1u;
 const uint STYLE_NORMALS = 2u;
 const uint STYLE_ZEBRA = 3u;
+const uint STYLE_ISOPHOTES = 4u;
+const uint STYLE_TECHNICAL = 5u;
+const uint STYLE_MEAN_CURVATURE = 6u;
+const uint STYLE_GAUSSIAN_CURVATURE = 7u;
 
-// Frame.encode_srgb, beside 0 and 1: linear, but within what colour targets hold.
+// A third value of Frame.encode_srgb: linear, clamped to the range of colour targets.
 const uint ENCODE_SUMMED = 2u;
 
 // Written by the passes, read back by the host.
@@ -219,16 +224,16 @@ struct Counters {
     uint fragments;    // of operands of Boolean solids; the same of them
     uint band_fragments;
     uint row_fragments;
-    uint mended;       // rays through an operand that wanted a fragment from beside a gap
-    uint unpaired;     // rays that enter an operand and never leave it, or the reverse
-    uint contacts;     // pixels whose rays meet coincident faces of two items, and that are within two at once
+    uint mended;       // rays through an operand that used a fragment from beside a gap
+    uint unpaired;     // rays that enter an operand and never leave it, or leave without entering
+    uint contacts;     // pixels whose rays meet coincident faces of two items, and pixels within two items at once
     uint overlaps;
     uint layers;       // peeled by way `blister`
-    uint ray_segments;         // of rays through Boolean solids that did not come to their ends
-    uint hidden;       // patches left out because they lie behind others
+    uint ray_segments;         // of rays through Boolean solids that did not reach their ends
+    uint hidden;       // patches that are not drawn because they are hidden
     uint edge_chords;  // of lines along edges
     uint clamps;       // factors or densities above their hard limits, loops that a driver ended
-    uint failed;       // one bit a buffer that was too small, or a pass that was drawn too seldom
+    uint failed;       // one bit for each buffer that was too small, and for passes drawn too seldom
 };
 
 const uint FAILED_SUB_PATCHES = 1u;
@@ -254,7 +259,7 @@ struct Factors {
 // A run of consecutive items in sight (in_sight.glsl).
 struct ItemRun {
     uint place; // of its first item, among all items in sight
-    uint item;  // the first
+    uint item;  // its first item
 };
 
 struct SubPatch {
@@ -265,14 +270,14 @@ struct SubPatch {
 // A pixel for pass `gap_fill`.
 struct GapCandidate {
     uint pixel;    // column | row << 16 | BORDER_BEFORE | ISOLATED (visible.glsl)
-    uvec2 word;  // what is seen there
+    uvec2 word;  // the visible surface
 };
 
 const uint MAX_FACTOR = 64u;   // the hardware's tessellation factor
 const uint MAX_SPLIT = 64u;    // sub-patches along one side
 const uint MAX_ROWS = 65536u;  // scan lines of one strip
 
-// A ray's way through an operand is told by all of its faces: they do not end at the far plane.
+// All faces of an operand determine a ray's way through it, so they do not end at the far plane.
 float far_of(Face face, Frame frame) { return (face.flags & FACE_OPERAND) != 0u ? 3.0e38 : frame.far; }
 
 uint degree_u(uint shape) { return shape & 15u; }
@@ -281,7 +286,7 @@ bool is_rational(uint shape) { return ((shape >> 8) & 1u) != 0u; }
 uint side_of(uint shape) { return (shape >> 9) & 3u; }
 uint borders_of(uint shape) { return (shape >> 11) & 15u; }
 bool has_fine_net(uint shape) { return ((shape >> 15) & 1u) != 0u; }
-// How many of it would be as large as the patch that it was cut from (src/scene/sub_patches.rs), along u and v.
+// Number of pieces of this size in the patch before the split (src/scene/sub_patches.rs), along u and v.
 vec2 pieces_of(uint shape) { return vec2(((uvec2(shape) >> uvec2(16u, 22u)) & 63u) + 1u); }
 
 #endif

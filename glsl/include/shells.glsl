@@ -1,15 +1,15 @@
-// Operands of Boolean solids without equations, *shells*: where the pixel's ray crosses their surfaces.
-// Twin of src/abi/solids.rs.
+// Operands of Boolean solids without equations, *shells*: crossings of the pixel's ray with their surfaces. Twin of
+// src/abi/solids.rs.
 //
 //   pixel ──fragment_starts──▶ Fragment[fragment_counts]   by shell, then by depth
 //
-//   before pass `operand_sort`: as rastered      behind it: entering and leaving in turn, of each shell
+//   before pass `operand_sort`: as rasterised    after it: entries and exits of each shell alternate
 #ifndef SHELLS_GLSL
 #define SHELLS_GLSL
 
 // Fragment.shell: the shell's number and four bits.
 const uint FRAGMENT_LEAVES = 0x80000000u; // the ray leaves the shell here
-const uint FRAGMENT_SKIRT = 0x40000000u;   // of the skirt around a trimmed face: counts in a gap only
+const uint FRAGMENT_SKIRT = 0x40000000u;   // of the skirt around a trimmed face: used only in a gap
 const uint FRAGMENT_PATCH = 0x20000000u;  // of a spline face, else of a triangle
 const uint FRAGMENT_WITHIN = 0x10000000u; // sorted: the near plane is within the shell
 const uint FRAGMENT_SHELL = 0x0fffffffu;
@@ -17,11 +17,11 @@ const uint FRAGMENT_SHELL = 0x0fffffffu;
 struct Fragment {
     uint shell;
     float depth;
-    uint what;   // triangle, from Frame.side_count on; of a spline face item + 1
+    uint what;   // triangle, from Frame.side_count on; for a spline face item + 1
     uint uv;     // of the patch
 };
 
-// Sorted, as texels: a driver fetches one at once, but may load a struct word by word.
+// The sorted fragments as texels: a driver fetches a texel at once, but may load a struct word by word.
 Fragment fragment_at(usamplerBuffer fragments, uint i) {
     uvec4 texel = texelFetch(fragments, int(i));
     return Fragment(texel.x, uintBitsToFloat(texel.y), texel.z, texel.w);
@@ -32,12 +32,12 @@ struct OperandMesh {
     uint shell;
     uint instance;
     uint first_triangle;
-    uint first_plane; // in the list of shared planes, one for each triangle; NO_PLANE where no triangle has one
+    uint first_plane; // in the list of shared planes, one for each triangle; NO_PLANE if no triangle has one
     uint mirrored;
-    uint leaf;        // one that shows it
+    uint leaf;        // a leaf that shows it
 };
 
-// The triangle's plane is nobody else's: its corners tell it.
+// No other face shares the triangle's plane, which its corners give.
 const uint NO_PLANE = 0xffffffffu;
 
 #endif

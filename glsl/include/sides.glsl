@@ -1,18 +1,19 @@
-// Whose a side of a Boolean solid is, and which way it faces: of a leaf with equations, or a triangle of an operand.
-// Needs scene.glsl, solids.glsl, shells.glsl, view.glsl, eye_ray.glsl, `frame`, `usamplerBuffer
-// leaf_surfaces`, and buffers `Instance instances[]`, `OperandMesh operand_meshes[]`, and those of triangle_depth.glsl.
+// The owner and the orientation of a Boolean solid's side: a side of a leaf with equations, or a triangle of an
+// operand. Needs scene.glsl, solids.glsl, shells.glsl, view.glsl, eye_ray.glsl, `frame`,
+// `usamplerBuffer leaf_surfaces`, and buffers `Instance instances[]`, `OperandMesh operand_meshes[]`, and those of
+// triangle_depth.glsl.
 #ifndef SIDES_GLSL
 #define SIDES_GLSL
 
 #include "triangle_depth.glsl"
 
-// Whether some leaf is a shell: compiled in only then.
+// Whether some leaf is a shell; the code for shells is compiled in only then.
 layout(constant_id = 13) const bool SOLIDS_HAVE_SHELLS = true;
 
 struct Side {
     uint leaf;
-    vec3 n; // across the side, model directions, not of unit length
-    uint surface; // that it lies in: its number, or OWN_PLANE and the triangle's
+    vec3 n; // normal of the side, model directions, not of unit length
+    uint surface; // number of its surface, or OWN_PLANE and the triangle's number
 };
 
 OperandMesh mesh_of(uint triangle) {
@@ -33,7 +34,7 @@ vec3 across_side(uint side, float t, Ray ray) {
     return surface_gradient(surface_at(surfaces, i), ray.o + t * ray.d - place.xyz);
 }
 
-// A side that is met at depth t.
+// The side that the ray meets at depth t.
 Side side_at(uint side, float t, Ray ray) {
     if (!SOLIDS_HAVE_SHELLS || side < frame.side_count) {
         LeafSurface s = leaf_surface_at(leaf_surfaces, side);

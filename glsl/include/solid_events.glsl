@@ -1,25 +1,25 @@
-// Passes `solid_events` and, with FACE_IS_FOUND, `blister`: the first depth at which the pixel's ray enters the Boolean
-// solid.
+// Passes `solid_events` and, with FACE_IS_FOUND, `blister`: find the first depth at which the pixel's ray enters the
+// Boolean solid.
 //
 //      ray ──┬──────────┬────┬─────────┬──▶     events: where the ray crosses a side of some leaf
 //   A     ───┤██████████│████├─────────┼──
-//   B     ───┼──────────┤████│█████████├──      sides that coincide share their surface, so their
+//   B     ───┼──────────┤████│█████████├──      coinciding sides share their surface, so their
 //            ▲          ▲    ▲         ▲        depths are equal to the bit and make one event
 //         in A?    the Blist is walked once behind each event
 //
-// The ray is followed from the near plane until outside becomes inside: a near plane within the solid cuts
-// it open, and the first side entered from there is seen. Nothing is stored but the spans of the tile's
-// first leaves: exits of a Blist lead forward, so one scan over the leaves answers both whether the
-// solid is behind depth t and where the next event is that matters. The surfaces' equations stand once, in a loop of their own,
-// which passes over spans that are kept: a driver that runs both sides of every branch has no need to solve them again.
-// Where the depth of the face is found already, the walk begins there and tells whose it is.
+// The ray is followed from the near plane until outside becomes inside. A near plane within the solid cuts it open;
+// then the first side entered from there is visible. Only the spans of the tile's first leaves are stored. Exits of a
+// Blist lead forward, so one scan over the leaves decides both whether the solid is behind depth t and where the next
+// relevant event is. The surfaces' equations are in one loop of their own, which skips stored spans: a driver that runs
+// both sides of every branch does not solve them again. If the depth of the face is already known, the walk begins
+// there and finds its owner.
 //
-// A driver may end a long loop before its end. Such a ray goes on from the last event that it came to, by the same
-// pass drawn again: in segments, of which there are several only once a frame has told that they are needed.
+// A driver may end a long loop early. Such a ray resumes from its last event when the same pass is drawn again: in
+// segments. There are several segments only after a frame has reported that it needs them.
 //
-// An event that matters is one of a leaf that the walk asks: the others are not looked at whatever they are, so until
-// then the walk ends as it does. In A - (B + C + ...) nothing is asked before A begins. And while a gate of the tile's list
-// is shut, nothing else matters: in (A + B + ...) - C the next event within C is its end.
+// An event is relevant only if it belongs to a leaf that the walk tests: until then the walk ends at the same leaf,
+// whatever the other leaves are. In A - (B + C + ...) no other leaf is tested before A begins. While a gate of the
+// tile's list is shut, only the gate is relevant: in (A + B + ...) - C the next event within C is its end.
 #ifndef SOLID_EVENTS_GLSL
 #define SOLID_EVENTS_GLSL
 
@@ -52,41 +52,41 @@ layout(binding = 12, rg32ui) readonly uniform uimage2D found;
 #endif
 
 #ifndef FACE_IS_FOUND
-layout(scalar, binding = 13) buffer ResumePoints { uint resume_points[]; }; // of each pixel: bound where there are several ray segments
+layout(scalar, binding = 13) buffer ResumePoints { uint resume_points[]; }; // of each pixel; bound if there are several ray segments
 layout(scalar, push_constant) uniform Legs {
     uint nth;     // this segment, from 0
     uint ray_segments;    // of this drawing
-    uint is_most; // a frame may not ask for more
+    uint is_most; // a frame may not request more
 };
 
-// A resume point: the depth of the event from which the next segment goes on, its sign bit set where the solid is in front of it; 0
-// where the ray came to its end.
+// A resume point: the depth of the event from which the next segment continues, with the sign bit set if the solid is
+// in front of it; 0 if the ray is finished.
 const uint RESUME_BEFORE = 0x80000000u;
 #endif
 
-// Whether some leaf is a shell: compiled in only then.
+// Whether some leaf is a shell; the code for shells is compiled in only then.
 layout(constant_id = 13) const bool SOLIDS_HAVE_SHELLS = true;
 
-// Whether lists of items that rays are followed through come after those of the union.
+// Whether lists of items that rays are followed through come after the union's.
 layout(constant_id = 14) const bool SOLIDS_ARE_FOLLOWED = false;
 
 #include "crossing.glsl"
 #include "leaf_span.glsl"
 
 layout(location = 0) out uvec2 visible;
-layout(location = 1) out uint operand_uv; // of a spline face: in scenes that have some
+layout(location = 1) out uint operand_uv; // of a spline face, in scenes with spline operands
 
 const uint NOBODY = 0xffffffffu;
 
-// Spans kept; those of further leaves are computed in every scan.
+// Number of stored spans; those of further leaves are computed in every scan.
 const uint KEPT = 12u;
 
-// What a scan is for.
+// The purpose of a scan.
 const uint SEARCH = 0u; // the next event
-const uint OWNER = 1u;  // does leaf `asked`, taken for what it is not, change the solid before or behind t?
-const uint SIDE = 2u;   // which side of leaf `asked` ends at t?
+const uint OWNER = 1u;  // whether flipping leaf `asked` changes the solid before or behind t
+const uint SIDE = 2u;   // the side of leaf `asked` that ends at t
 
-// The leaves whose spans begin or end at depth t: the first positive one, the first subtracted one.
+// The first positive leaf, and the first subtracted leaf, whose spans begin or end at depth t.
 struct Candidates {
     uint positive;
     uint negative;
@@ -96,12 +96,12 @@ struct Candidates {
 struct Walk {
     uint at;        // behind depth t
     uint at_before; // in front of it
-    float next;     // the next depth at which a leaf that the walk behind t asks begins or ends
+    float next;     // the next depth at which a leaf that the walk behind t tests begins or ends
     Candidates found;
     uint candidates;
 };
 
-// Leaf i of the tile, met at t; `other` is taken for what it is not, candidates count from `after` on.
+// Adds leaf i of the tile at depth t; leaf `other` is flipped, and candidates start after `after`.
 void meet(inout Walk walk, uint i, TileLeaf here, Crossing c, uint other, uint after) {
     if (i == walk.at) {
         walk.at = c.inside != (i == other) ? here.in_exit : here.out_exit;
@@ -140,12 +140,12 @@ void main() {
     uint asked = NOBODY;
     uint after = 0u;        // candidates from here on
     uint fallback = NOBODY;
-    bool negatives = false; // the candidates asked are the subtracted ones
+    bool negatives = false; // the candidates are the subtracted leaves
     uint side = 0u;
     uint word = SEEN_SOLID;
     operand_uv = 0u;
     float t = frame.near;
-    bool before = true; // the near plane cuts: what is inside there is not entered
+    bool before = true; // the near plane cuts the solid: what is inside there is not entered
 #ifdef FACE_IS_FOUND
     uvec2 face = imageLoad(found, ivec2(gl_FragCoord.xy)).xy;
     if (face.x == 0u) discard;
@@ -159,14 +159,14 @@ void main() {
     float begun = t;
     bool begun_before = before;
 #endif
-    // four events a leaf, at most as many questions about owners, and one about the side
+    // four events a leaf, at most as many tests of owners, and one for the side
     uint most = 8u * (end - first) + 2u * fragment_count + 4u;
     bool done = false;
     bool passed = false; // the far plane
     uint two = min(end - first, 1u) + 1u;
     for (uint scan = 0u; scan < most && !done; ++scan) {
-        // the spans of [first, known) are kept, those of [from, to) computed: all at first, then what is not kept, and
-        // the asked leaf's again to tell its side
+        // the spans of [first, known) are stored, those of [from, to) computed: all at first, later those that are not
+        // stored, and that of leaf `asked`, to find its side
         bool tells = purpose == SIDE;
         uint from = tells ? asked : scan == 0u ? first : min(first + KEPT, end);
         uint to = !tells ? end : asked == NOBODY ? from : asked + 1u;
@@ -202,8 +202,8 @@ void main() {
             }
             meet(walk, i, here, c, purpose == OWNER ? asked : NOBODY, after);
         }
-        // a driver that has ended a loop ends all of them from then on, this one of two steps, too: then the scan is not
-        // to be trusted
+        // a driver that has ended a loop ends all later loops, too, including this one of two steps; the scan is then
+        // invalid
         uint steps = 0u;
         for (uint i = 0u; i < two; ++i) ++steps;
         if (steps != two) break;
@@ -211,7 +211,7 @@ void main() {
         if (purpose == SIDE) {
             done = true;
         } else if (purpose == OWNER) {
-            // the owner is the first leaf that alone changes the solid, in front of the event or behind it
+            // the owner is the first leaf that by itself changes the solid, in front of the event or behind it
             uint other = negatives ? walk.found.negative : walk.found.positive;
             if (!inside || walk.at_before == EXIT_TRUE) {
                 purpose = SIDE;
@@ -220,7 +220,7 @@ void main() {
                 after = other + 1u;
             } else if (!negatives) {
                 negatives = true;
-                asked = NOBODY; // from the beginning, for subtracted leaves
+                asked = NOBODY; // again from the first leaf, for subtracted leaves
                 after = first;
             } else {
                 asked = fallback;
@@ -246,7 +246,7 @@ void main() {
 #ifdef FACE_IS_FOUND
     if (!ended) atomicAdd(counters.clamps, 1u);
 #else
-    // from the event whose scan was the last to be trusted, if that is farther on
+    // resume from the event of the last valid scan, if it is farther on
     bool goes_on = !ended && (t > begun || t == begun && before != begun_before);
     if (goes_on) atomicMax(counters.ray_segments, nth + 1u);
     if (ray_segments > 1u) resume_points[pixel] = goes_on ? floatBitsToUint(t) | (before ? RESUME_BEFORE : 0u) : 0u;

@@ -1,13 +1,13 @@
-// Pass `solid_layers`: the pixel's ray, followed from face to face through solids that are told apart.
+// Pass `solid_layers`: follows the pixel's ray from face to face through distinct solids.
 //
-//      ray ──┬────────┬─────┬──────┬───┬───▶    opaque: what pass `resolve` left at the pixel ends the way
+//      ray ──┬────────┬─────┬──────┬───┬───▶    opaque: the surface of pass `resolve` ends the ray
 //   glass   ─┤░░░░░░░░░░░░░░░░░░░░░│   │
 //   within  ─┼────────┤▓▓▓▓▓│──────┼───┤▓▓      each face is a layer: colour += (1 - opacity so far) * its own
 //
-// Every item has a list of switches of its own; one scan over the tile's leaves walks all of them, in front of
-// depth t and behind it. Items that change there are shaded one after another: those that are left before those
-// that are entered, then in their order. An opaque face at the same depth comes between the two. Everything is one
-// loop, so that the surfaces' equations are compiled once.
+// Every item has its own list of switches. One scan over the tile's leaves walks all of them, in front of depth t and
+// behind it. Items that change there are shaded one after another: first those that the ray leaves, then those that it
+// enters, both in their order. An opaque face at the same depth comes between the two. Everything is one loop, so that
+// the surfaces' equations are compiled once.
 #ifndef SOLID_LAYERS_GLSL
 #define SOLID_LAYERS_GLSL
 
@@ -29,8 +29,8 @@ layout(scalar, binding = 8) readonly buffer FragmentStarts { uint fragment_start
 layout(scalar, binding = 9) readonly buffer FragmentCounts { uint fragment_counts[]; };
 layout(binding = 10) uniform usamplerBuffer fragments;
 layout(scalar, binding = 11) buffer CountersBuffer { Counters counters; };
-layout(binding = 12, rgba32f) readonly uniform image2D behind; // linear colour, depth; UNSEEN where nothing is
-// of operands that are spline parts
+layout(binding = 12, rgba32f) readonly uniform image2D behind; // linear colour, depth; UNSEEN for background
+// of spline operands
 layout(scalar, binding = 13) readonly buffer Views { View views[]; };
 layout(scalar, binding = 14) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 15) readonly buffer Faces { Face faces[]; };
@@ -38,23 +38,23 @@ layout(scalar, binding = 16) readonly buffer Patches { Patch patches[]; };
 layout(scalar, binding = 17) readonly buffer Items { uint item_face_instance[]; };
 layout(binding = 18) uniform samplerBuffer points;
 layout(scalar, binding = 19) readonly buffer Instances { Instance instances[]; };
-// of those that are meshes
+// of mesh operands
 layout(scalar, binding = 20) readonly buffer OperandMeshes { OperandMesh operand_meshes[]; };
 layout(scalar, binding = 21) readonly buffer Triangles { uint triangles[]; };
 layout(scalar, binding = 22) readonly buffer Positions { vec3 positions[]; };
 layout(scalar, binding = 23) readonly buffer Planes { uint planes[]; };
 
 layout(scalar, push_constant) uniform Marks {
-    vec4 contact;  // linear colour and opacity of pixels that meet coincident faces of two items
-    vec4 overlap;  // of those within two items at once
+    vec4 contact;  // linear colour and opacity of pixels whose rays meet coincident faces of two items
+    vec4 overlap;  // of pixels whose rays are within two items at once
 };
 
-// What the way is followed for.
+// The output for which the ray is followed.
 const uint FOR_COLOUR = 0u;    // the pixel's colour
-const uint FOR_FIRST = 1u;     // the images of the first face that is not wholly clear
+const uint FOR_FIRST = 1u;     // the images of the first face that is not fully transparent
 const uint FOR_THICKNESS = 2u; // its length within solids
 layout(constant_id = 15) const uint FOLLOWED_FOR = FOR_COLOUR;
-// Whether contacts and overlaps are looked for: only for colour.
+// Whether contacts and overlaps are marked; only for colour.
 layout(constant_id = 16) const bool MARKS = false;
 layout(constant_id = 17) const bool SOLIDS_HAVE_PATCHES = false;
 
@@ -73,23 +73,23 @@ Patch patch_at(uint i) { return patches[i]; }
 
 const uint NOBODY = 0xffffffffu;
 
-// Spans kept; those of further leaves are computed in every scan that comes near their boxes.
+// Number of stored spans; those of further leaves are computed in every scan that comes near their boxes.
 const uint KEPT = 12u;
 
-// Less than this of what lies behind changes no colour of eight bits: sRGB's slope of 12.92 at black, times 255.
+// A smaller share of the colours behind changes no colour of eight bits: sRGB's slope of 12.92 at black, times 255.
 const float OPAQUE = 1.0 / 8192.0;
 
-// Faces of operands without equations that are nearer to an opaque face than this, relative to their depth, touch it:
-// some ten times what Newton's method leaves of a spline's depth.
+// Relative depth within which a face of an operand without equations touches an opaque face: some ten times the error
+// of a spline's depth after Newton's method.
 const float TOUCHES = 1.0 / 65536.0;
 
-// A box seen from the eye is rounded by less than this, relative to its depth.
+// Rounding of a box relative to the eye, as a share of its depth.
 const float BOX = 1e-6;
 
-// What a scan is for.
-const uint SEARCH = 0u; // who changes at t, and the next event
-const uint OWNER = 1u;  // does leaf `asked`, taken for what it is not, change its item before or behind t?
-const uint SIDE = 2u;   // which side of leaf `asked` ends at t?
+// The purpose of a scan.
+const uint SEARCH = 0u; // the items that change at t, and the next event
+const uint OWNER = 1u;  // whether flipping leaf `asked` changes its item before or behind t
+const uint SIDE = 2u;   // the side of leaf `asked` that ends at t
 
 // An item during a scan.
 struct Walk {
@@ -97,10 +97,10 @@ struct Walk {
     uint from;      // in the tile
     uint at;        // behind t
     uint at_before; // in front of it
-    uint positive;  // the first leaves that begin or end there: those that add, those that are taken away
+    uint positive;  // the first leaves that begin or end there: one that adds, one that subtracts
     uint negative;
     uint candidates;
-    bool lives;     // something of it is still to come
+    bool lives;     // some of it is still ahead
 };
 
 // A face of an item.
@@ -119,7 +119,7 @@ Change best;   // the first change after `done_key`
 uint changes; // items that change at t
 uint left;    // those of them after `done_key`
 uint within;  // items behind t
-uint live_from; // what is left of the tile's leaves: items that are behind the ray change nothing any more
+uint live_from; // start of the remaining leaves: items that the ray has passed no longer change anything
 uint live_end;
 
 void close_item(Walk w, uint end, uint first, uint done_key, bool asks) {
@@ -145,7 +145,7 @@ struct Layer {
     vec3 n;    // unit, towards the eye
     uint id;
     vec2 uv;
-    uint surface; // that it lies on, or NO_SURFACE
+    uint surface; // that contains it, or NO_SURFACE
 };
 
 Layer layer_of(uint side, float t, Ray ray) {
@@ -186,7 +186,7 @@ void main() {
     float stop = under.a;
 
     vec3 sum = vec3(0.0); // of layers
-    float rest = 1.0;     // what they let through
+    float rest = 1.0;     // transparency of all layers so far
     float first_seen = stop;
     float thickness = 0.0;
     bool touches = false;
@@ -206,11 +206,11 @@ void main() {
     uint done_key = 0u;
     uint left_then = 0u; // of the last search
     Change layer = Change(0u, 0u, 0u, NOBODY, NOBODY, 0u);
-    uint all_from = first; // of every item that lives
+    uint all_from = first; // start of all items that are still ahead
     uint all_end = end;
     uint scan_from = first;
     uint scan_end = end;
-    bool begins = true; // at the near plane nothing is entered
+    bool begins = true; // at the near plane no item is entered
     bool done = first >= end;
     uint most = 24u * (end - first) + 8u * fragment_count + 8u;
     uint wanted = 0u;
@@ -261,7 +261,7 @@ void main() {
                     hi = middle + reach + rounding;
                 }
                 if (t < lo || t > hi) {
-                    // not yet, or no more: as if it began with its box
+                    // the ray is not near the box, or has passed it: as if the leaf began with its box
                     c = Crossing(false, false, false, t < lo ? lo : NEVER);
                 } else {
                     if (is_kept && scan > 0u && purpose != SIDE) {
@@ -306,7 +306,7 @@ void main() {
             left_then = left;
             bool wants = shows && layer.key != 0u && FOLLOWED_FOR != FOR_THICKNESS;
             if (wants) {
-                // an opaque face hides what is entered where it is, and all behind it
+                // an opaque face hides items entered at its depth, and everything behind it
                 bool entered = (layer.key & ENTERED) != 0u;
                 uint number = leaf_number(tile_leaf_at(tile_leaves, layer.from));
                 float slack = (leaves[number].flags & LEAF_SHELL) != 0u ? TOUCHES * abs(t) : 0.0;
@@ -335,7 +335,7 @@ void main() {
                 continue;
             }
         } else if (purpose == OWNER) {
-            // the owner is the first leaf that alone changes the item, in front of the event or behind it
+            // the owner is the first leaf that by itself changes the item, in front of the event or behind it
             bool entered = (layer.key & ENTERED) != 0u;
             uint other = negatives ? w.negative : w.positive;
             if ((w.at == EXIT_TRUE) != entered || (w.at_before == EXIT_TRUE) == entered) {
@@ -345,7 +345,7 @@ void main() {
                 after = other + 1u;
             } else if (!negatives) {
                 negatives = true;
-                asked = NOBODY; // from the beginning, for subtracted leaves
+                asked = NOBODY; // again from the first leaf, for subtracted leaves
                 after = layer.from;
             } else {
                 asked = fallback;
@@ -384,7 +384,7 @@ void main() {
             after = 0u;
             scan_from = all_from;
             scan_end = all_end;
-            // others at the same place
+            // further items at the same depth
             if (shows && left_then > 1u) continue;
         }
         purpose = SEARCH;
@@ -397,7 +397,7 @@ void main() {
         if (next >= frame.far || all_from >= all_end || !goes_on || ends && next > stop * (1.0 + TOUCHES)) done = true;
         t = next;
     }
-    // a driver that ends long loops is told of
+    // count rays whose loops a driver ended
     if (steps != wanted || !done) atomicAdd(counters.clamps, 1u);
     if (FOLLOWED_FOR == FOR_FIRST) discard;
     if (FOLLOWED_FOR == FOR_THICKNESS) {
@@ -405,7 +405,7 @@ void main() {
         return;
     }
     if (MARKS) {
-        // marks lie before everything
+        // marks lie in front of everything
         if (touches) atomicAdd(counters.contacts, 1u);
         if (overlaps) atomicAdd(counters.overlaps, 1u);
         vec4 on_top[2] = vec4[](overlap, contact);
@@ -416,7 +416,7 @@ void main() {
             rest *= 1.0 - on_top[k].a;
         }
     }
-    float alpha = 1.0; // of what is behind
+    float alpha = 1.0; // of the colours behind
     bool nothing = stop >= UNSEEN;
     if (nothing) under.rgb = frame.background.rgb;
     if (nothing) alpha = max(frame.background.a, 0.0);
@@ -424,7 +424,7 @@ void main() {
     if (opacity == 0.0 && frame.background.a < 0.0) discard;
     vec3 colour = opacity > 0.0 ? (sum + rest * alpha * under.rgb) / opacity : under.rgb;
     out_colour = encode(vec4(colour, opacity), frame.encode_srgb);
-    // what the host keeps is laid under; samples are added up
+    // the host's picture shows through; samples are added up
     if (frame.background.a < 0.0 || frame.encode_srgb == ENCODE_SUMMED) out_colour.rgb *= opacity;
     gl_FragDepth = first_seen >= UNSEEN ? 0.0 : depth_written(first_seen);
 }

@@ -1,31 +1,31 @@
-// Boolean solids: leaves, their surfaces, and the part of a pixel's ray that is inside a leaf.
-// Twin of src/abi/solids.rs, filled by src/scene/solids; what is drawn with it is judged by src/reference.
+// Boolean solids: leaves, their surfaces, and the part of a pixel's ray that is inside a leaf. Twin of
+// src/abi/solids.rs, filled by src/scene/solids; crates/check/src/solids judges the pictures.
 //
-//   leaf ──▶ LeafSurface[count] ──▶ a surface's place, and its shape if it is no plane: a leaf is the intersection of
-//                                  its surfaces' insides; leaves whose faces coincide share the surface, so they get
-//                                  the same depth, bit for bit
+//   leaf ──▶ LeafSurface[count] ──▶ a surface's place, and its shape unless it is a plane: a leaf is the intersection
+//                                  of its surfaces' insides; leaves with coinciding faces share the surface, so they
+//                                  get the same depth, bit for bit
 //
 //     plane     n . p - w < 0                                                       inside; place (n, w)
 //   and in a surface's own coordinates, p = to_local (x - centre), about the size of 1; place (centre, 0)
 //     quadric   s.x p.x^2 + s.y p.y^2 + s.z p.z^2 + 2 linear p.z + constant < 0     inside
 //     torus     |p|^2 + 1 - r^2 - 2 sqrt(p.x^2 + p.y^2) < 0                         inside, r = constant
 //
-//   Surfaces are texels: a driver fetches one at once, but may load a struct word by word. Those with a shape come
-//   first, four texels each; a place is one, and changes with the eye:
+//   Surfaces are texels: a driver fetches a texel at once, but may load a struct word by word. Surfaces with a shape
+//   come first, four texels each; a place is one texel, and changes with the eye:
 //     x of to_local, kind │ y of to_local, linear │ z of to_local, constant │ squares, 0
 //
-//        ───▶ ray     ├────────┤gap├───────┤      Span: inside from lo to hi but for the gap; the gap
-//                     lo      g0   g1     hi      is empty when g0 >= g1
+//        ───▶ ray     ├────────┤gap├───────┤      Span: inside from lo to hi, except in the gap;
+//                     lo      g0   g1     hi      the gap is empty if g0 >= g1
 #ifndef SOLIDS_GLSL
 #define SOLIDS_GLSL
 
-// The most general kind of surface that the scene has: what is beyond is not compiled in.
+// The most general kind of surface in the scene; more general code is not compiled in.
 const uint SURFACE_PLANE = 0u;
 const uint SURFACE_QUADRIC = 1u;
 const uint SURFACE_TORUS = 2u;
 layout(constant_id = 5) const uint SOLIDS_HAVE = SURFACE_TORUS;
 
-// The shape of a surface that is no plane.
+// The shape of a surface that is not a plane.
 struct Surface {
     mat3 to_local;   // model directions to the surface's own coordinates (columns)
     bool is_torus;
@@ -42,7 +42,7 @@ Surface surface_at(samplerBuffer surfaces, uint i) {
     return Surface(mat3(x.xyz, y.xyz, z.xyz), x.w == float(SURFACE_TORUS), texelFetch(surfaces, first + 3).xyz, y.w, z.w);
 }
 
-// Where a surface is, seen from the eye.
+// The place of a surface relative to the eye.
 vec4 place_at(samplerBuffer places, uint i) { return texelFetch(places, int(i)); }
 
 // A side of a leaf.
@@ -58,38 +58,38 @@ LeafSurface leaf_surface_at(usamplerBuffer sides, uint k) {
 uint side_word(usamplerBuffer sides, uint k) { return texelFetch(sides, int(k)).x; }
 
 const uint SIDE_SHIFT = 3u;
-const uint SIDE_NEGATIVE = 1u; // the leaf is where the surface's function is positive
+const uint SIDE_NEGATIVE = 1u; // the leaf is on the positive side of the surface's function
 const uint SIDE_PLANE = 2u;    // the last sides of a leaf
-const uint SIDE_MORE = 4u;     // the leaf's next side is a plane, too, or none, too
+const uint SIDE_MORE = 4u;     // the leaf's next side is of the same kind, plane or not
 
 // One switch of the Blist: a primitive, placed.
 struct Leaf {
-    vec3 half_size;  // of the box around it, model axes; the centre moves with the eye
+    vec3 half_size;  // of its box, model axes; the centre moves with the eye
     uint first;      // of its LeafSurfaces
     uint count;
     uint colour;     // as Face.colour
     uint id;
-    uint in_exit;    // where to go when the point is in: a leaf, or EXIT_*
+    uint in_exit;    // the next leaf for a point inside, or EXIT_*
     uint out_exit;
     uint pre;        // the tree whose parent is the out-exit, in preorder: a leaf's descendants are
     uint end;        // [pre, end)
     uint flags;
-    uint item;       // the first leaf of its list: of the union, or of an item that rays are followed through
+    uint item;       // first leaf of its list: the union's, or a followed item's
 };
 
-const uint EXIT_FALSE = 0xfffffffeu; // outside of the solid
+const uint EXIT_FALSE = 0xfffffffeu; // outside the solid
 const uint EXIT_TRUE = 0xffffffffu;
 const uint LEAF_UNBOUNDED = 1u;      // no box: in every tile
-const uint LEAF_NEGATIVE = 2u;       // under an odd number of complements: its outside counts
+const uint LEAF_NEGATIVE = 2u;       // under an odd number of complements: the solid is outside it
 const uint LEAF_FALLS = 4u;          // its chain of out-exits ends at EXIT_FALSE, else at EXIT_TRUE
 const uint LEAF_SHELL = 8u;          // an operand without equations, number `first`: see shells.glsl
 
-const uint LEAF_ELSEWHERE = 16u;     // of an item that rays are followed through, drawn by another pass
-const uint LEAF_PLANES = 32u;        // of its sides the last are planes
-const uint LEAF_ROUNDS = 64u;        // the first are none
+const uint LEAF_ELSEWHERE = 16u;     // belongs to an item that rays are followed through; drawn by another pass
+const uint LEAF_PLANES = 32u;        // its last sides are planes
+const uint LEAF_ROUNDS = 64u;        // its first sides are not planes
 const uint LEAF_FLAG_BITS = 7u;
 
-// In place of a surface's number: the plane of one triangle alone, and which.
+// In place of a surface's number: the plane of one triangle alone, with the triangle's number.
 const uint OWN_PLANE = 0x80000000u;
 
 const float NEVER = 3.0e38;
@@ -104,17 +104,17 @@ struct Span {
 const Span NOTHING = Span(NEVER, -NEVER, NEVER, NEVER);
 const Span EVERYTHING = Span(-NEVER, NEVER, NEVER, NEVER);
 
-// Inside just behind depth t.
+// Whether the ray is inside just behind depth t.
 bool inside_span(Span s, float t) {
     return s.lo <= t && t < s.hi && !(s.g0 <= t && t < s.g1);
 }
 
-// Inside just in front of depth t.
+// Whether the ray is inside just in front of depth t.
 bool inside_before(Span s, float t) {
     return s.lo < t && t <= s.hi && !(s.g0 < t && t <= s.g1);
 }
 
-// Of an empty span nothing ends.
+// Whether the span begins or ends at t; an empty span does not.
 bool ends_at(Span s, float t) { return s.lo < s.hi && (s.lo == t || s.hi == t || s.g0 == t || s.g1 == t); }
 
 // The first depth behind t where the span begins or ends.
@@ -130,7 +130,7 @@ float next_of_span(Span s, float t) {
     return next;
 }
 
-// What both hold. Of the two gaps at most one lies between the ends: leaves are made so.
+// The intersection of both. At most one of the two gaps lies between the ends: leaves are built that way.
 Span both(Span a, Span b) {
     Span s = Span(max(a.lo, b.lo), min(a.hi, b.hi), a.g0, a.g1);
     if (b.g0 < b.g1) {
@@ -152,7 +152,7 @@ Span both(Span a, Span b) {
 }
 
 Span complement(Span s) {
-    // only for spans with one open side, or for those that become a gap
+    // only for spans with one open side, and for spans that become a gap
     if (!(s.lo < s.hi)) return EVERYTHING;
     if (s.lo <= -NEVER && s.hi >= NEVER) return s.g0 < s.g1 ? Span(s.g0, s.g1, NEVER, NEVER) : NOTHING;
     if (s.lo <= -NEVER) return Span(s.hi, NEVER, NEVER, NEVER);
@@ -160,7 +160,7 @@ Span complement(Span s) {
     return Span(-NEVER, NEVER, s.lo, s.hi);
 }
 
-// a t^2 + 2 b t + c < 0; t counts from `shift`.
+// The solution of a t^2 + 2 b t + c < 0; t counts from `shift`.
 Span below_zero(float a, float b, float c, float shift) {
     if (a == 0.0) {
         if (b == 0.0) return c < 0.0 ? EVERYTHING : NOTHING;
@@ -195,12 +195,12 @@ float torus_value(Torus f, float t) {
 
 float torus_slope(Torus f, float t) { return (4.0 * t * t + 2.0 * f.p) * t + f.q; }
 
-// Newton's method doubles the digits; where two roots nearly meet it gains one bit a step, as halving does.
+// Newton's method doubles the correct digits. Near a double root it gains one bit a step, like bisection.
 const uint MOST_STEPS = 30u;
-// A step this small, relative to the torus, is rounding.
+// A smaller step, relative to the torus, is rounding.
 const float SETTLED = 6e-8;
 
-// A root of the slope, from a point on the side on which the slope bends away from 0: no step oversteps it.
+// A root of the slope, starting on the side on which the slope bends away from 0, so that no step overshoots.
 float torus_turn(Torus f, float t) {
     for (uint i = 0u; i < MOST_STEPS; ++i) {
         float bend = 12.0 * t * t + 2.0 * f.p;
@@ -211,8 +211,8 @@ float torus_turn(Torus f, float t) {
     return t;
 }
 
-// The root of the value between lo and hi, where it is monotone and changes its sign: Newton's method, but
-// halving where that leaves the interval.
+// The root of the value between lo and hi, where it is monotone and changes its sign: Newton's method, with bisection
+// if a step leaves the interval.
 float torus_root(Torus f, float lo, float hi) {
     bool rising = torus_value(f, lo) < 0.0;
     float t = 0.5 * (lo + hi);
@@ -229,7 +229,7 @@ float torus_root(Torus f, float lo, float hi) {
     return t;
 }
 
-// o and d in the torus's own coordinates.
+// `o` and `d` are in the torus's own coordinates.
 Span torus_span(vec3 o, vec3 d, float r) {
     float speed = length(d);
     Torus f;
@@ -243,7 +243,7 @@ Span torus_span(vec3 o, vec3 d, float r) {
     f.e = k + (1.0 - r) * (1.0 + r);
     f.p = 2.0 * f.e - 4.0 * dot(f.d.xy, f.d.xy);
     f.q = -8.0 * dot(f.o.xy, f.d.xy);
-    // the value is monotone between the roots of its slope, the slope between those of its own
+    // the value is monotone between the roots of its slope, and the slope between the roots of its own slope
     float w = f.p < 0.0 ? min(sqrt(f.p / -6.0), reach) : 0.0;
     float stops[6];
     stops[0] = -reach;
@@ -264,7 +264,7 @@ Span torus_span(vec3 o, vec3 d, float r) {
         if (i >= stop_count) break;
         if ((torus_value(f, stops[i]) < 0.0) == (torus_value(f, stops[i + 1u]) < 0.0)) continue;
         float t = torus_root(f, stops[i], stops[i + 1u]);
-        // a spindle torus: the value is positive again within the lemon, where the solid is not hollow
+        // a spindle torus: the value is positive in the lemon, too, where the solid is not hollow
         if (t * t + f.e < 0.0) continue;
         precise float root = (t + shift) / speed;
         roots[count] = root;
@@ -275,12 +275,12 @@ Span torus_span(vec3 o, vec3 d, float r) {
     return NOTHING;
 }
 
-// The part of the ray o + t d inside of the surface; o is the ray's origin seen from the surface's centre.
+// The part of the ray o + t d inside the surface; o is the ray's origin relative to the surface's centre.
 Span surface_span(Surface s, vec3 o, vec3 d) {
     precise vec3 ol = s.to_local * o;
     precise vec3 dl = s.to_local * d;
     if (SOLIDS_HAVE == SURFACE_TORUS && s.is_torus) return torus_span(ol, dl, s.constant);
-    // begin where the ray is nearest to the middle: nothing cancels
+    // start at the point nearest to the middle, to avoid cancellation
     vec3 size = abs(s.squares);
     float dd = dot(size * dl, dl);
     precise float shift = dd > 0.0 ? -dot(size * dl, ol) / dd : 0.0;
@@ -291,22 +291,22 @@ Span surface_span(Surface s, vec3 o, vec3 d) {
     return below_zero(a, b, c, shift);
 }
 
-// How far along the plane's normal the ray begins, from the plane, and how fast it goes.
+// The ray's distance from the plane at its origin, along the normal, and its speed along the normal.
 vec2 over_plane(vec4 plane, vec3 o, vec3 d) {
     precise float height = dot(plane.xyz, o) - plane.w;
     precise float speed = dot(plane.xyz, d);
     return vec2(height, speed);
 }
 
-// Where the ray meets the plane.
+// The depth at which the ray meets the plane.
 float plane_depth(vec4 plane, vec3 o, vec3 d) {
     vec2 ray = over_plane(plane, o, d);
     precise float t = -ray.x / ray.y;
     return t;
 }
 
-// The part of the ray o + t d, seen from the eye, on the leaf's side of a plane. Rays within the plane are outside of
-// what is below it.
+// The part of the ray o + t d, relative to the eye, on the leaf's side of a plane. A ray within the plane is outside
+// the half-space below it.
 Span plane_span(vec4 plane, bool negative, vec3 o, vec3 d) {
     vec2 ray = over_plane(plane, o, d);
     if (ray.y == 0.0) return (ray.x < 0.0) != negative ? EVERYTHING : NOTHING;
@@ -314,7 +314,7 @@ Span plane_span(vec4 plane, bool negative, vec3 o, vec3 d) {
     return (ray.y > 0.0) != negative ? Span(-NEVER, t, NEVER, NEVER) : Span(t, NEVER, NEVER, NEVER);
 }
 
-// The part of the ray inside of a leaf's side.
+// The part of the ray inside a leaf's side.
 Span side_span(samplerBuffer surfaces, samplerBuffer places, uint side, vec3 o, vec3 d) {
     uint i = side >> SIDE_SHIFT;
     bool negative = (side & SIDE_NEGATIVE) != 0u;
@@ -324,7 +324,7 @@ Span side_span(samplerBuffer surfaces, samplerBuffer places, uint side, vec3 o, 
     return negative ? complement(s) : s;
 }
 
-// The surface's function at p, which is seen from its centre.
+// The surface's function at p, given relative to its centre.
 float surface_value(Surface s, vec3 p) {
     vec3 q = s.to_local * p;
     if (SOLIDS_HAVE == SURFACE_TORUS && s.is_torus) {
@@ -333,7 +333,7 @@ float surface_value(Surface s, vec3 p) {
     return dot(s.squares * q, q) + 2.0 * s.linear * q.z + s.constant;
 }
 
-// Outward where the surface's function grows; model directions, not of unit length.
+// The gradient of the surface's function; model directions, not of unit length.
 vec3 surface_gradient(Surface s, vec3 p) {
     vec3 q = s.to_local * p;
     vec3 g;
@@ -343,7 +343,7 @@ vec3 surface_gradient(Surface s, vec3 p) {
     } else {
         g = s.squares * q + vec3(0.0, 0.0, s.linear);
     }
-    return g * s.to_local; // the transposed map takes gradients back
+    return g * s.to_local; // the transposed map takes gradients to model directions
 }
 
 #endif

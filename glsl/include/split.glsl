@@ -1,8 +1,8 @@
-// Pass `split`: what it reads and writes, and the segments along one axis of a patch. The entry point finds out
-// what those ask for that share its sides.
+// Pass `split`: its buffers, and the segments along one axis of a patch. The entry point finds the needs of the patches
+// that share its sides.
 //
-// Where a drawn neighbour may ask for another number, all numbers are powers of two: the tessellator
-// joins a side to the interior within one cell's width then, else across several cells.
+// If a drawn neighbour may have another number of segments, all numbers are powers of two: then the tessellator joins a
+// side to the interior within one cell's width, otherwise across several cells.
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
@@ -14,7 +14,8 @@ layout(scalar, binding = 3) readonly buffer Patches { Patch patches[]; };
 layout(scalar, binding = 4) readonly buffer Items { uint item_face_instance[]; };
 layout(scalar, binding = 5) readonly buffer Taus { uint taus[]; };
 layout(scalar, binding = 6) writeonly buffer FactorsBuffer { Factors factors[]; };
-// sub-patches and tessellated vertices of each item in sight: first all of them as plain, then all as trimmed
+// numbers of sub-patches and of tessellated vertices of each item in sight: first of all plain items, then of all
+// trimmed ones
 layout(scalar, binding = 7) writeonly buffer SubPatchCounts { uint sub_patch_counts[]; };
 layout(scalar, binding = 8) writeonly buffer VertexCounts { uint vertex_counts[]; };
 #define IN_SIGHT_BINDING 9
@@ -22,8 +23,8 @@ layout(scalar, binding = 8) writeonly buffer VertexCounts { uint vertex_counts[]
 
 uint power_of_two(uint x) { return x <= 1u ? 1u : 1u << (findMSB(x - 1u) + 1); }
 
-// Sub-patches along the axis for a patch with these neighbours: enough that no shared side needs
-// more than MAX_FACTOR segments in one sub-patch.
+// Sub-patches along the axis, for a patch with these neighbours: no shared side then needs more than MAX_FACTOR
+// segments in one sub-patch.
 uint splits_for(uint before, uint own, uint after) {
     uint most = max(own, max(before, after));
     return min(power_of_two((most + MAX_FACTOR - 1u) / MAX_FACTOR), MAX_SPLIT);
@@ -33,14 +34,15 @@ uint round_up(uint x, uint step) { return (x + step - 1u) / step * step; }
 
 uvec2 splits, inner, low, high;
 
-// Of a side at which others ask for so many segments and have so many sub-patches; 0: nobody does.
+// Segments of a side, whose other patches need `others` segments and have `others_splits` sub-patches; 0: there are
+// none.
 uint side_segments(uint own, uint others, uint others_splits, uint axis) {
     if (others == 0u) return inner[axis];
     uint n = max(power_of_two(max(others, own)), max(others_splits, splits[axis]));
     return min(n, MAX_FACTOR * splits[axis]);
 }
 
-// Of a patch along one axis, from what it asks for and what others do at its low and high side.
+// Segments of a patch along one axis, from its own needs and those of the other patches at its low and high side.
 void decide(uint axis, uint own, uvec2 others, uvec2 others_splits) {
     splits[axis] = splits_for(others.x, own, others.y);
     own = max(own, 1u);
@@ -54,7 +56,7 @@ void write(uint place, uint item, uint patch_) {
     factors[item] = Factors(inner.x | inner.y << 16, low.x | high.x << 16, low.y | high.y << 16,
                             splits.x | splits.y << 16);
     uvec2 most = max(inner, max(low, high)) / splits;
-    // the tessellator makes two of one along an axis, unless it is one everywhere
+    // the tessellator makes two segments of one along an axis, unless all numbers are one
     if (most != uvec2(1u)) most = max(most, 2u);
     uint sub_patches = drawn ? splits.x * splits.y : 0u;
     uint vertices = sub_patches * (most.x + 1u) * (most.y + 1u);

@@ -1,23 +1,23 @@
-// Whether the sun reaches a point, past the opaque Boolean solids and past placed parts. Twin of src/abi/sun.rs; whoever
-// includes this defines SUN_BINDING, where SUN_BINDINGS of src/bindings.rs begin.
+// Whether the sun's light reaches a point, past the opaque Boolean solids and past placed parts. Twin of
+// src/abi/sun.rs; the includer defines SUN_BINDING, the first of SUN_BINDINGS of src/bindings.rs.
 //
-//        sun ◀──┤████├────┤██├───── p        the ray to the sun, from event to event as pass `solid_events` has it: in
-//               │    │    │  │              shade where it is within the solid anywhere before p
-//        ───────┴────┴────┴──┴─▶ tiles      seen from the sun, each with the leaves that it sees and their Blist
+//        sun ◀──┤████├────┤██├───── p        the ray to the sun, from event to event as in pass `solid_events`: p is in
+//               │    │    │  │              shade if the ray is within the solid anywhere
+//        ───────┴────┴────┴──┴─▶ tiles      of the sun's picture, each with its leaves and their Blist
 //
-// The tiles depend on scene and sun only, and are made with the scene (src/scene/sun.rs). Points beside them are those
-// of the nearest tile: what is missing in its list does not reach beyond it.
+// The tiles depend on scene and sun only, and are made with the scene (src/scene/sun.rs). Points beside them belong to
+// the nearest tile: leaves that are missing in its list do not reach beyond it.
 //
-// A point of a solid lies on a surface that is known, so the ray's first crossing of it is at 0 by rule, whatever the
-// rounding of the point. Of other surfaces the point is known within its rounding only: material between it and a
-// height above its face that is less casts no shadow on it.
+// A point of a solid lies on a known surface, so the ray's first crossing of that surface is at 0 by rule, whatever the
+// point's rounding. Relative to other surfaces the point is known only up to its rounding: material between the point
+// and a smaller height above its face casts no shadow on it.
 //
-// Triangles of spline faces are near to the faces, which they are told with: a face's point may lie on either side of its
-// own triangle. So a triangle is not there for a point whose distance from its plane is within its `slack`, twice what the
-// face may be off it. Of an operand it is there, too, where the ray meets it twice as high above the point as the cell that
-// it is of is high, which the cell's own points are not below it: one that the sun sees nearly edge-on is there for points
-// far below. A ray that leaves the face passes above all of the corners that lie on the way, hence above the other
-// triangles.
+// Triangles of spline faces deviate from the faces that they represent: a face's point may lie on either side of its
+// own triangle. So a triangle is ignored for a point within its `slack` of the triangle's plane; the slack is twice the
+// face's deviation. An operand's triangle counts even then if the ray meets it far enough above the point: at twice the
+// height of the triangle's cell, since the cell's own points are not so far below. So a triangle nearly parallel to the
+// rays counts for points far below. A ray that leaves the face passes above all corners on the way, hence above the
+// other triangles.
 #ifndef SUN_GLSL
 #define SUN_GLSL
 
@@ -28,15 +28,15 @@
 
 struct Sun {
     vec3 towards;  // unit, model axes
-    uint across;   // tiles; 0: nothing casts shadows
+    uint across;   // tiles; 0: no shadows
     vec3 right;    // model units to tiles
     uint down;
     vec3 up;
-    vec2 eye;      // where the eye is among the tiles
-    float crack;   // between faces that meet, at most: tiles
+    vec2 eye;      // the eye's place among the tiles
+    float crack;   // most width between faces that meet: tiles
 };
 
-// A tile's leaves, and where their walk begins.
+// A tile's leaves, and the first leaf of their walk.
 struct SunTile {
     uint first;
     uint end;
@@ -47,21 +47,21 @@ struct SunTile {
     uint end_facet;
 };
 
-// A triangle of an operand without equations, across the rays: in tiles, from the operand's middle.
+// A triangle of an operand without equations, across the rays: in tiles, relative to the operand's middle.
 struct SunTriangle {
     vec2 corners[3];
-    vec3 heights; // of the corners towards the sun, model units, from there
+    vec3 heights; // of the corners towards the sun, model units, relative to the middle
     uint shell;
     uint surface; // its plane, or OWN_PLANE and its number
-    float slack;  // along the ray: it does not meet points that are nearer
+    float slack;  // along the ray: nearer points are not met
 };
 
-// A triangle of a placed part, likewise, counter-clockwise as the sun sees it. Whatever the part is like, what meets one
-// of them is in shade.
+// A triangle of a placed part, likewise, counter-clockwise in the sun's picture. Any point whose ray meets a facet is
+// in shade, whether or not the part is closed.
 struct SunFacet {
-    vec2 corners[3]; // from the part's middle
-    vec3 plane;      // its height over the first corner, and the slopes to a tile
-    float steep;     // length along the ray to a length across the plane
+    vec2 corners[3]; // relative to the part's middle
+    vec3 plane;      // its height over the first corner, and its slopes, per tile
+    float steep;     // ratio of a length along the ray to a length across the plane
     float slack;     // across the plane, model units
     uint part;
 };
@@ -72,8 +72,9 @@ layout(scalar, binding = SUN_BINDING + 2) readonly buffer SunLeaves { TileLeaf s
 layout(binding = SUN_BINDING + 3) uniform usamplerBuffer sun_triangles; // three a triangle
 layout(binding = SUN_BINDING + 4) uniform usamplerBuffer sun_lists;     // triangles of each tile, and facets
 layout(binding = SUN_BINDING + 5) uniform usamplerBuffer sun_facets;    // three a facet
-layout(binding = SUN_BINDING + 6) uniform samplerBuffer sun_parts;      // middles, seen from the eye
-// the scene's; a pass that has them for itself defines SUN_SEES_LEAVES: a pass has 32 bindings at most
+layout(binding = SUN_BINDING + 6) uniform samplerBuffer sun_parts;      // middles, relative to the eye
+// the scene's leaves; a pass that has its own bindings of them defines SUN_SEES_LEAVES, since a pass has at most 32
+// bindings
 #ifdef SUN_SEES_LEAVES
 #define casters leaves
 #define caster_sides leaf_surfaces
@@ -110,22 +111,22 @@ SunFacet sun_facet_at(uint i) {
     return SunFacet(vec2[3](ab.xy, ab.zw, cp.xy), vec3(cp.zw, others.x), others.y, others.z, last.w);
 }
 
-// Spans kept; those of further leaves are computed in every scan.
+// Number of stored spans; those of further leaves are computed in every scan.
 const uint SUN_KEPT = 12u;
 
-// Rounding of a point, relative to its depth: of a solid's side, eight ulp; of a spline face or a triangle some ten
-// times what Newton's method leaves of its depth, a sixtieth of a pixel in a picture a thousand pixels high.
+// Rounding of a point, relative to its depth: for a solid's side, eight ulp; for a spline face or a triangle some ten
+// times the error after Newton's method, a sixtieth of a pixel in a picture a thousand pixels high.
 const float ROUNDED_SIDE = 1.0 / 1048576.0;
 const float ROUNDED_FACE = 1.0 / 65536.0;
 
-// The part of a ray inside of a surface that is no plane, from which it sets out: one end is 0, to the bit. o is the
-// ray's origin seen from the surface's centre.
+// The part of a ray inside a surface other than a plane, for a ray that starts on the surface: one end is exactly 0. o
+// is the ray's origin relative to the surface's centre.
 Span round_from(Surface s, vec3 o, vec3 d) {
     vec3 ol = s.to_local * o;
     vec3 dl = s.to_local * d;
     if (SOLIDS_HAVE == SURFACE_TORUS && s.is_torus) {
         Span t = torus_span(ol, dl, s.constant);
-        // the nearest end of its kind is the origin
+        // the nearest end of this kind is the origin
         if (dot(surface_gradient(s, o), d) > 0.0) {
             if (abs(t.hi) < abs(t.g0)) t.hi = 0.0;
             else t.g0 = 0.0;
@@ -145,7 +146,7 @@ Span round_from(Surface s, vec3 o, vec3 d) {
     return a > 0.0 ? Span(lo, hi, NEVER, NEVER) : Span(-NEVER, NEVER, lo, hi);
 }
 
-// The same of a leaf's side; p is seen from the eye.
+// The same for a leaf's side; p is relative to the eye.
 Span span_from(uint side, vec3 p, vec3 d) {
     vec4 place = place_at(caster_places, side >> SIDE_SHIFT);
     bool negative = (side & SIDE_NEGATIVE) != 0u;
@@ -156,7 +157,7 @@ Span span_from(uint side, vec3 p, vec3 d) {
     return negative ? complement(s) : s;
 }
 
-// The part of the ray from p, seen from the eye, towards the sun that is inside of a leaf; p lies on `surface`.
+// The part of the ray from p, relative to the eye, towards the sun that is inside a leaf; p lies on `surface`.
 Span caster_span(uint own, vec3 p, uint surface) {
     Span s = EVERYTHING;
     bool more = true;
@@ -170,8 +171,8 @@ Span caster_span(uint own, vec3 p, uint surface) {
     return s;
 }
 
-// How often the triangle goes around q, which has the corners' coordinates: 1 where the ray through q leaves by it, -1
-// where it enters. An edge counts when it passes q's height, bottom included and top excluded, on the right.
+// The winding of the triangle around q, which is in the corners' coordinates: 1 if the ray through q leaves by the
+// triangle, -1 if it enters. An edge counts if it passes q's height, bottom included and top excluded, on the right.
 int turns(SunTriangle triangle, vec2 q) {
     int sum = 0;
     for (uint k = 0u; k < 3u; ++k) {
@@ -181,14 +182,14 @@ int turns(SunTriangle triangle, vec2 q) {
         vec2 low = up ? from : to;
         vec2 high = up ? to : from;
         if (!(low.y <= q.y && high.y > q.y)) continue;
-        // always the same way round, so both neighbours of an edge get the same sign
+        // always from low to high, so both neighbours of an edge get the same sign
         precise float side = (high.x - low.x) * (q.y - low.y) - (high.y - low.y) * (q.x - low.x);
         if (side > 0.0) sum += up ? 1 : -1;
     }
     return sum;
 }
 
-// How high a triangle is over q, or over what is nearly its nearest point to q.
+// Height of a triangle over q, or over a point near its nearest point to q.
 float height_over(vec2 corners[3], vec3 heights, vec2 q) {
     vec2 b = corners[1] - corners[0];
     vec2 c = corners[2] - corners[0];
@@ -196,33 +197,33 @@ float height_over(vec2 corners[3], vec3 heights, vec2 q) {
     float area = b.x * c.y - b.y * c.x;
     vec2 st = area == 0.0 ? vec2(0.0) : vec2(p.x * c.y - p.y * c.x, b.x * p.y - b.y * p.x) / area;
     st = max(st, 0.0);
-    st /= max(st.x + st.y, 1.0); // rounded, q may be beside it
+    st /= max(st.x + st.y, 1.0); // rounded, q may lie beside it
     return heights.x + st.x * (heights.y - heights.x) + st.y * (heights.z - heights.x);
 }
 
-// A caster at a place of the ray.
+// The state of a caster at a place of the ray.
 struct Met {
-    bool inside; // just behind it
+    bool inside; // just behind the place
     float next;  // where it begins or ends next
 };
 
-// Tries to send a ray past cracks.
+// Most attempts to send a ray past cracks.
 const uint CRACK_TRIES = 7u;
 
-// Of an operand without equations, at t of the ray from p, which lies on `surface`, towards the sun.
+// For an operand without equations, at t of the ray from p, which lies on `surface`, towards the sun.
 //
-// A line leaves what is closed as often as it enters it. Where it does not, it slips through a crack between the triangles
-// of two spline faces that meet, and another is taken that is beside it by no more than such cracks are wide.
+// A line leaves a closed surface as often as it enters it. If it does not, it passes through a crack between the
+// triangles of two spline faces that meet; then a line beside it is taken, at most as far away as such cracks are wide.
 Met meet_mesh(uint shell, vec3 middle, SunTile tile, vec3 p, uint surface, float t, inout uint steps, inout uint wanted) {
     Met met = Met(false, NEVER);
     vec2 q = vec2(dot(sun.right, p - middle), dot(sun.up, p - middle));
     float height = dot(sun.towards, p - middle);
     int whole = 1;
     for (uint k = 0u; k < CRACK_TRIES && whole != 0; ++k) {
-        // thrice to three sides, and farther away
+        // three times to each of three directions, and farther away
         vec2 way = k % 3u == 0u ? vec2(1.0, 0.25) : k % 3u == 1u ? vec2(-0.75, 0.75) : vec2(-0.25, -1.0);
         vec2 at_q = q + way * (sun.crack * float((k + 2u) / 3u) * (1.0 / 3.0));
-        // on its own face, a point's ray that is moved by 3 deviations comes by 4 of them nearer than the triangle
+        // moved by 3 deviations, a point's ray comes 4 deviations nearer to its own face than the triangle
         float slack = k == 0u ? 1.0 : 2.0;
         met = Met(false, NEVER);
         whole = 0;
@@ -251,12 +252,12 @@ Met meet_mesh(uint shell, vec3 middle, SunTile tile, vec3 p, uint surface, float
     return met;
 }
 
-// Of a facet's corner, relative to its place, and as much again: what is left between two facets that meet.
+// Rounding of a facet's corner, relative to its place, times two: the width of a gap between two facets that meet.
 const float ROUNDED_CORNER = 1.0 / 8388608.0;
 
-// Whether a placed part lies between p, which is known within `rounding`, and the sun. Facets are larger than they are by
-// half of their slack, so that there is nothing between two faces that meet within it: larger in their own planes, since
-// across the rays as much would be far off where the sun sees them nearly edge-on, high above the face that they are of.
+// Whether a placed part lies between p, which is known within `rounding`, and the sun. Facets are enlarged by half of
+// their slack, so that two faces that meet within it leave no gap. They are enlarged in their own planes: the same
+// width across the rays would reach high above the face where the sun's rays are nearly parallel to it.
 bool behind_part(SunTile tile, vec3 p, float rounding) {
     float to_tiles = length(sun.right);
     uint part = 0xffffffffu;
@@ -282,7 +283,7 @@ bool behind_part(SunTile tile, vec3 p, float rounding) {
         for (uint k = 0u; k < 3u; ++k) {
             vec2 side = facet.corners[(k + 1u) % 3u] - facet.corners[k];
             vec2 from = q - facet.corners[k];
-            // twice an area, which is `steep` times as much in the plane
+            // twice an area, which is `steep` times larger in the plane
             float long_side = length(vec3(side, dot(facet.plane.yz, side) * to_tiles));
             float least = margin * long_side / facet.steep + rounded * length(side);
             within = within && side.x * from.y - side.y * from.x >= -least;
@@ -290,17 +291,17 @@ bool behind_part(SunTile tile, vec3 p, float rounding) {
         float at = facet.plane.x + dot(facet.plane.yz, q - facet.corners[0]) - height;
         behind = within && at > facet.steep * (facet.slack + rounding);
     }
-    // a driver that ends long loops is found by what is missing
+    // if a driver ends the loop early, entries are missing
     if (!behind && steps != tile.end_facet - tile.first_facet) atomicAdd(sun_counters.clamps, 1u);
     return behind;
 }
 
-// Whether the sun lights the point at this depth of the pixel's ray; `n` is the face's unit normal on the side that is
-// lit, `surface` the number of the Boolean solids' surface that it lies on, or OWN_PLANE and its triangle's, or
+// Whether the sun lights the point at this depth of the pixel's ray. `n` is the face's unit normal on the lit side.
+// `surface` is the number of the Boolean solids' surface that contains the point, or OWN_PLANE and its triangle's, or
 // NO_SURFACE.
 bool in_sun(Ray ray, float depth, vec3 n, uint surface) {
     float rise = dot(n, sun.towards);
-    if (!(rise > 0.0)) return false; // in its own shade
+    if (!(rise > 0.0)) return false; // turned away from the sun
     if (sun.across == 0u) return true;
     vec3 p = ray.o + depth * ray.d;
     vec2 last = vec2(sun.across, sun.down) - 1.0;
@@ -313,7 +314,7 @@ bool in_sun(Ray ray, float depth, vec3 n, uint surface) {
     float t = 0.0;
     bool lit = true;
     bool done = false;
-    // a driver that ends long loops is found by what is missing
+    // if a driver ends the loop early, entries are missing
     uint wanted = 0u;
     uint steps = 0u;
     // four events a leaf, one a triangle

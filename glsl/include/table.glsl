@@ -1,5 +1,5 @@
-// Look-up in the u-intercept table: nearest scan line, then a binary search.
-// Needs `frame`; whoever includes this defines TABLE_BINDING, where its four buffers begin.
+// Look-up in the u-intercept table: nearest scan line, then a binary search. Needs `frame`; the includer defines
+// TABLE_BINDING, the first of its four buffers.
 #ifndef TABLE_GLSL
 #define TABLE_GLSL
 
@@ -7,7 +7,7 @@
 #include "u_bins.glsl"
 #include "border_cells.glsl"
 
-// as texels, which a driver fetches at once where it gathers words of storage buffers one by one
+// as texels: a driver fetches them at once, but gathers words of storage buffers one by one
 layout(binding = TABLE_BINDING + 0) uniform usamplerBuffer table_strips; // StripRows, at each strip's first bin
 layout(binding = TABLE_BINDING + 1) uniform usamplerBuffer table_rows;   // first flip; flips << 1 | inside before it
 layout(binding = TABLE_BINDING + 2) uniform usamplerBuffer flips;        // u, in order in each row, two a texel
@@ -24,25 +24,25 @@ bool table_covers(uint first, uint strips, vec2 uv) {
 
 const float NO_FLIP = 3.0e38;
 
-// A point's place among the flips of its row; one at its u is before it. A binary search among texels of two.
+// A point's place among the flips of its row; a flip at its u is before it. A binary search among texels of two flips.
 //
 //     texel     mid - 1  │   mid   │ mid + 1
 //     flips      ·  f0   │  f1 f2  │ f3  ·         both passed: behind it; none: before it; else found
 //
-// Of two texels that u is between, both have been fetched.
+// Of the two texels around u, both have been fetched.
 struct Search {
     float u;
     uint first; // of the row's flips
     uint end;
-    uint inside; // before the first
-    uint lo; // texels that it may be in
+    uint inside; // before the first flip
+    uint lo; // range of texels that may contain it
     uint hi;
-    uint passed; // flips before it, and those of rows before
-    float before; // the last of the row's; far away without one
-    float behind; // the next one
+    uint passed; // flips before it, including those of earlier rows
+    float before; // the last flip of the row; far away without one
+    float behind; // the next flip
 };
 
-// Where the search of (u, v) begins. Without flips to look at it ends there, too.
+// The start of the search for (u, v). In a row without flips it is also the end.
 Search search_at(uint first, uint strips, vec2 uv) {
     float n = float(strip_count(strips));
     uint bins = bin_count(strips);
@@ -55,7 +55,7 @@ Search search_at(uint first, uint strips, vec2 uv) {
     row = has_row && has_room ? row : 0u;
     uvec2 told = texelFetch(table_rows, int(row)).xy;
     if (!has_row) told.y = 0u;
-    else if (!has_room) told.y = 1u; // the host grows the table and records again
+    else if (!has_room) told.y = 1u; // the host enlarges the table and records again
     uint end = told.x + (told.y >> 1);
     uint lo = told.x / 2u;
     uint hi = end > told.x ? (end + 1u) / 2u : lo;
@@ -64,12 +64,12 @@ Search search_at(uint first, uint strips, vec2 uv) {
 
 bool is_open(Search s) { return s.lo < s.hi; }
 
-// One step; none where it has ended.
+// One step; none after the end.
 void halve(inout Search s) {
     uint mid = (s.lo + s.hi) / 2u;
     uvec2 at = 2u * mid + uvec2(0u, 1u);
     vec2 flip = uintBitsToFloat(texelFetch(flips, int(mid)).xy);
-    // what lies before the row counts as passed, what lies behind it does not
+    // flips of earlier rows count as passed, those of later rows do not
     flip = mix(mix(flip, vec2(-NO_FLIP), lessThan(at, uvec2(s.first))), vec2(NO_FLIP), greaterThanEqual(at, uvec2(s.end)));
     bvec2 is_passed = lessThanEqual(flip, vec2(s.u));
     uint count = uint(is_passed.x) + uint(is_passed.y);
@@ -85,7 +85,7 @@ void halve(inout Search s) {
     }
 }
 
-// Whether its point is inside, and whether flips of its scan line are within `reach` of u, in its bin: along.glsl.
+// Whether the point is inside, and whether flips of its scan line are within `reach` of u, in its bin: along.glsl.
 uint told_by(Search s, float reach) {
     uint along = (max(s.passed, s.first) - s.first ^ s.inside) & 1u;
     if (s.before > s.u - reach) along |= ALONG_BEFORE;
@@ -103,13 +103,13 @@ bool table_inside(uint first, uint strips, vec2 uv) {
     return (table_along(first, strips, uv, 0.0) & ALONG_INSIDE) != 0u;
 }
 
-// Whether all of a scan line from one u to another is in one bin.
+// Whether the scan line from `lo` to `hi` in u lies in one bin.
 bool table_one_bin(uint strips, float lo, float hi) {
     uint bins = bin_count(strips);
     return bin_of(lo, bins) == bin_of(hi, bins);
 }
 
-// Whether all of a box is inside or none of it: within a bin, what is looked up changes at trim curves alone.
+// Whether a box is inside or outside as a whole: within a bin, the look-up changes only at trim curves.
 bool table_same(uint first, uint strips, vec2 lo, vec2 hi) {
     float n = float(strip_count(strips));
     uint bins = bin_count(strips);

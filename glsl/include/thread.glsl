@@ -1,4 +1,4 @@
-// Numbers workgroups and threads across the rows of a dispatch. A dispatch of more workgroups than one row takes has
+// Numbers workgroups and threads across the rows of a dispatch. A dispatch of more workgroups than fit in one row has
 // several equal rows (Commands::dispatch, grid.glsl), so the last row may have workgroups without work. Workgroups have
 // one dimension; their size is declared before this file is included.
 #ifndef THREAD_GLSL

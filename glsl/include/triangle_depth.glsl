@@ -1,14 +1,15 @@
-// Where a ray meets the plane of an operand's triangle. A plane that others lie in, too, is met by the formula of the
-// other solids' sides: faces that coincide are met at the same depth, bit for bit. Else the corners tell it: as of
-// other meshes, within the triangle. Needs scene.glsl, solids.glsl, shells.glsl, eye_ray.glsl, `frame`, and the buffers
-// of facet.glsl, `View views[]`, `uint planes[]`, `samplerBuffer surfaces`, `samplerBuffer surface_places`.
+// The intersection of a ray with the plane of an operand's triangle. A plane shared with other faces is intersected by
+// the formula for the solids' other sides, so that coinciding faces have the same depth, bit for bit. Otherwise the
+// corners give the plane, and the depth is kept within the triangle, as for other meshes. Needs scene.glsl,
+// solids.glsl, shells.glsl, eye_ray.glsl, `frame`, and the buffers of facet.glsl, `View views[]`, `uint planes[]`,
+// `samplerBuffer surfaces`, `samplerBuffer surface_places`.
 #ifndef TRIANGLE_DEPTH_GLSL
 #define TRIANGLE_DEPTH_GLSL
 
 #include "facet.glsl"
 
-// A plane seen edge-on is met anywhere: not farther from the corners than they are from each other, and
-// some roundings of a depth.
+// A plane nearly parallel to the ray is met at an arbitrary depth, which is clamped to the corners' depths, enlarged by
+// their range and some roundings of a depth.
 const float ROUNDING = 4e-6;
 
 uint plane_of(OperandMesh mesh, uint triangle) {
@@ -26,7 +27,7 @@ float triangle_depth(OperandMesh mesh, uint triangle, vec2 pixel) {
     Ray ray = eye_ray(frame, pixel);
     float t = plane_depth(place_at(surface_places, plane), ray.o, ray.d);
     float reach = farthest - nearest + ROUNDING * farthest;
-    // a ray within the plane meets it nowhere
+    // a ray within the plane does not meet it
     return isnan(t) ? farthest + reach : clamp(t, nearest - reach, farthest + reach);
 }
 

@@ -1,13 +1,13 @@
-// Whether a point of a face survives its trims: the seam between the passes that ask and the ways to
-// answer. The entry point defines TRIM_BY_<WAY>; whoever includes this declares `frame` and defines
-// TRIM_BINDING, where the way's own buffers begin. Each way answers
+// Whether a point of a face is inside its trims: the interface between passes and the ways to trim. The entry point
+// defines TRIM_BY_<WAY>; the includer declares `frame` and defines TRIM_BINDING, the first of the way's own buffers.
+// Each way defines
 //
 //   bool trim_inside(FaceInstance fi, Face face, vec2 uv)     (u, v) normalised to the face's surface;
 //                                                             face has FACE_TRIMMED
 //   uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi)
 //                                                             of a box in (u, v): all of it inside, all of it
-//                                                             outside, all of it like any point of it, or none of
-//                                                             that is easily told
+//                                                             outside, all of it like any point of it, or
+//                                                             undecided
 #ifndef TRIM_GLSL
 #define TRIM_GLSL
 
@@ -47,7 +47,7 @@ uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
 }
 #endif
 
-// No face of the scene has trims; or, to compare with, none of them is asked for.
+// No face of the scene has trims; or a baseline that tests none of them.
 #ifdef TRIM_BY_UNTRIMMED
 #define TRIM_BUFFERS 0
 bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
@@ -55,7 +55,7 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
 }
 #endif
 
-// Ways to compare with: src/baselines.
+// Baselines: src/baselines.
 #ifdef TRIM_BY_BISECT
 #include "baselines/bisect.glsl"
 #endif

@@ -1,4 +1,5 @@
-// What pass `resolve` left of a pixel, for those that mix it with its neighbours. Needs `frame`, `resolved` and shade.glsl.
+// The result of pass `resolve` in a pixel, for passes that mix it with its neighbours. Needs `frame`, `resolved` and
+// shade.glsl.
 #ifndef UNMIXED_GLSL
 #define UNMIXED_GLSL
 

@@ -11,8 +11,8 @@ struct View {
     vec4 w;
 };
 
-// A dot product whose rounding is fixed: every pipeline that draws a shared vertex gets the same
-// bits, and so does the twin.
+// A dot product with fixed rounding: every pipeline that draws a shared vertex gets the same bits, and so does the
+// twin.
 float row_times(vec4 row, vec4 p) {
     precise float sum = row.x * p.x + row.y * p.y + row.z * p.z + row.w * p.w;
     return sum;
@@ -22,36 +22,36 @@ vec4 to_pixel(View view, vec4 p) {
     return vec4(row_times(view.x, p), row_times(view.y, p), row_times(view.depth, p), row_times(view.w, p));
 }
 
-// Reversed depth in a perspective view times `w`, in a parallel one as it is: 1 at the near plane, 0 at
-// the far one. Floats are densest near 0, where perspective needs them.
+// Reversed depth, times `w` in a perspective view: 1 at the near plane, 0 at the far one. Floats are densest near 0,
+// where perspective needs them.
 float reversed_depth(Frame frame, float depth) {
     float range = 1.0 / (frame.far - frame.near);
     return (frame.far - depth) * range * (frame.perspective != 0u ? frame.near : 1.0);
 }
 
-// What the rasteriser wants of a homogeneous pixel.
+// Clip coordinates of a homogeneous pixel.
 vec4 to_clip(Frame frame, vec4 q) {
     return vec4(q.xy * 2.0 / frame.size - q.w, reversed_depth(frame, q.z), q.w);
 }
 
-// In a parallel view depth runs on beyond the far plane, to this many times its distance from the near one.
+// In a parallel view depth continues beyond the far plane, to this many times its distance from the near one.
 const float RUN = 16.0;
 
-// The same where nothing is cut off at the far plane.
+// The same without the far plane.
 vec4 to_clip_unending(Frame frame, vec4 q) {
     float z = frame.perspective != 0u ? frame.near : 1.0 - (q.z - frame.near) / (RUN * (frame.far - frame.near));
     return vec4(q.xy * 2.0 / frame.size - q.w, z, q.w);
 }
 
-// A box as the picture sees it.
+// A box in the picture.
 struct Seen {
-    float w;     // smallest in front of the near plane, 1 in a parallel view; negative when no part is seen
+    float w;     // smallest in front of the near plane, 1 in a parallel view; negative if no part is visible
     float slant; // largest stretch of a pixel towards its corners, at most the picture's
     vec2 low;    // its pixels
     vec2 high;
 };
 
-// The box `lo` to `hi`; `margin` widens the picture, in pixels; `far` is the far plane's depth.
+// Projects the box `lo` to `hi`; `margin` widens the picture, in pixels; `far` is the far plane's depth.
 Seen see(View view, Frame frame, vec3 lo, vec3 hi, float margin, float far) {
     Seen seen = Seen(3.0e38, 0.0, vec2(3.0e38), vec2(-3.0e38));
     float steepest = 0.0; // squared slope
@@ -85,18 +85,18 @@ Seen see(View view, Frame frame, vec3 lo, vec3 hi, float margin, float far) {
     return seen;
 }
 
-// Of every rounding below, relative to what is added up.
+// Rounding of the sums below, relative to the magnitudes of their terms.
 const float SLAB_ROUNDING = 1e-5;
 
-// A bound of W from below, for what a perspective picture `margin` pixels wider shows of a slab of points:
+// A lower bound of W for the part of a slab of points that a perspective picture, `margin` pixels wider, shows:
 //
 //            ╱      ╱              low <= n . p <= high,   n = a x + b y + c w  in rows of the view (their xyz)
 //     eye   ╱ slab ╱
 //      •───╱─▶    ╱       =>       n . p - n . eye = W (a X/W + b Y/W + c),  largest in a corner of the picture
 //         ╱      ╱
 //
-// 0 where the eye is in the slab. A box that the eye is in tells nothing; the slab around a bent piece of surface is as
-// thin as that is flat.
+// 0 if the eye is in the slab. A box around the eye gives no bound, but the slab around a curved piece of surface is as
+// thin as the piece is flat.
 float nearest_in_slab(View view, Frame frame, vec3 n, float low, float high, float margin) {
     vec3 x = view.x.xyz;
     vec3 y = view.y.xyz;
@@ -136,7 +136,7 @@ bool covers_a_centre(Seen seen, float margin) {
     return first.x <= last.x && first.y <= last.y;
 }
 
-// Pixels that one part unit of what is seen can cover.
+// Most pixels that one part unit of a visible surface covers.
 float pixels_per_unit(Frame frame, Instance instance, Seen seen) {
     return frame.focal * seen.slant * instance.scale / seen.w;
 }

@@ -1,6 +1,6 @@
-// Pass `visibility`, patches without a trim test: who is seen, and where on its patch. A face of a
-// solid that is seen from behind is a gap candidate, as in visibility_trimmed.glsl. Where a volume
-// trims the scene (WITHIN_VOLUME), the exact point at (u, v) must be within it.
+// Pass `visibility`, patches without a trim test: writes the patch instance and (u, v). A solid's face that shows its
+// back is a gap candidate, as in visibility_trimmed.glsl. If a volume trims the scene (WITHIN_VOLUME), the exact point
+// at (u, v) must be within it.
 #include "scene.glsl"
 #include "view.glsl"
 #define INSTANCES_BINDING 9

@@ -1,10 +1,9 @@
-// Pass `visibility`: the exact surface at the vertices of one sub-patch. Where faces share sides, the entry point
-// defines LINK_BINDING: the plain patches' vertices there are those of the curve that all of them share.
+// Pass `visibility`: the exact surface at the vertices of one sub-patch. If faces share sides, the entry point defines
+// LINK_BINDING: vertices of plain patches on shared sides lie on the common curve.
 //
-// Two sub-patches that share a side compute its vertices from the same integers (segment k of n),
-// so they agree bit for bit. On the border of a trimmed face the outermost vertices are pushed
-// gap_radius_px beyond it: the surface continues, and the trim test finds material on both sides of an
-// edge even where rounding or chords leave a gap.
+// Two sub-patches with a common side compute its vertices from the same integers (segment k of n), so they agree bit
+// for bit. On the border of a trimmed face the outermost vertices are pushed gap_radius_px beyond it: the surface
+// continues, and the trim test finds material on both sides of an edge even if rounding or chords leave a gap.
 #include "scene.glsl"
 #include "view.glsl"
 
@@ -30,10 +29,10 @@ layout(location = 5) patch in uvec4 in_edges;
 layout(location = 0) out vec2 out_uv; // of the patch
 layout(location = 1) flat out uint out_item;
 
-// Borders are pushed outwards no farther than MAX_PUSH of a patch's width, than a segment, nor so far that the
-// surface leaves its tangent by more than this share of deviation_px: beside a silhouette even a step of many pixels
-// does not take the border across itself, and triangles as long as it would be off by pixels. So those at the border
-// are off by (1 + sqrt(MAX_BEND) / 2)^2 deviation_px at most along the step.
+// Borders are pushed outwards by at most MAX_PUSH of a patch's width, by at most a segment, and only as far as the
+// surface stays within this share of deviation_px of its tangent. Beside a silhouette, even a step of many pixels does
+// not move the border across itself, and triangles of that length would be off by pixels. Triangles at the border then
+// deviate by at most (1 + sqrt(MAX_BEND) / 2)^2 deviation_px along the step.
 const float MAX_BEND = 0.25;
 
 float along_side(float x, uint place, uint splits, uint edge) {
@@ -41,8 +40,8 @@ float along_side(float x, uint place, uint splits, uint edge) {
     return float(place * n + uint(x * float(n) + 0.5)) / float(edge);
 }
 
-// Segments along u and v where the border's vertex `uv` is: those of a side that ends there, the same for both
-// patches at it.
+// Segments along u and v at the border's vertex `uv`: those of a side that ends there, the same for both patches at
+// that side.
 vec2 segments_across(vec2 uv) {
     uvec2 n = uvec2(gl_TessLevelInner[0], gl_TessLevelInner[1]) * in_splits;
     if (uv.y == 0.0) n.x = in_edges.y;
@@ -72,7 +71,7 @@ void main() {
     View view = view_at(in_instance);
     Jet jet = patch_jet(patch_.first, patch_.shape, uv);
 #ifdef LINK_BINDING
-    // corners are control points, the same for all that meet there
+    // corners are control points, the same for all patches that meet there
     if ((left || right) != (bottom || top)) {
         uint side = left ? 0u : bottom ? 1u : right ? 2u : 3u;
         jet.point = linked_point(in_patch, side, left || right ? uv.y : uv.x, jet.point);
@@ -91,7 +90,7 @@ void main() {
             vec2 pu, pv;
             pixel_speeds(frame, q, qu, qv, pu, pv);
             vec2 push = border_push(frame, pu, pv);
-            // where a shared side meets the border, both its patches must push alike, bit for bit: along it
+            // at the end of a shared side, both of its patches must push by the same bits: along that side
             bool shared_u = (uv.x == 0.0 || uv.x == 1.0) && !(left || right);
             bool shared_v = (uv.y == 0.0 || uv.y == 1.0) && !(bottom || top);
             if (shared_u) push.y = 2.0 * frame.gap_radius_px / max(length(pv), 1e-12);

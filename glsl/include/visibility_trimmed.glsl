@@ -1,24 +1,23 @@
-// Pass `visibility`, trimmed patches: as visibility.frag, after the trim test of one way (trim.glsl).
+// Pass `visibility`, trimmed patches: like visibility.frag, with the trim test of one way (trim.glsl).
 //
-// Two faces that meet along an edge are trimmed apart from each other, each with its own rounding;
-// a pixel in the gap would show what lies behind. Such pixels must be found, then mended by pass
-// `gap_fill`, which looks closer:
+// Two faces that meet along an edge are trimmed separately, each with its own rounding, and a pixel in the gap between
+// them would show a surface behind. Such pixels are marked as gap candidates, and pass `gap_fill` decides them:
 //
-//   * a face of a solid seen from behind, with all of the circle around the pixel's centre, gap_radius_px wide, in it: the gap
-//     looks into the solid. It wins over a face of another solid that touches it.
-//   * the skirt around a face of a solid seen from behind, so that the faces behind leave no gap themselves, and around
-//     each face of an open shell. To either side of the border of the former: a hole's far end, drawn narrower than it
-//     is, must not hide its wall. Within the border of the latter it is drawn, and marked: it may meet the face before it
-//     in a silhouette, which is drawn narrower than it is. Nothing says which side of an open shell is its front.
+// * A solid's face that shows its back, if the whole circle of gap_radius_px around the pixel's centre is inside its
+//   trims: the pixel shows the solid's inside through the gap. The back wins over a touching face of another solid.
+// * The skirt around a solid's face that shows its back, on either side of the border: faces behind then leave no gap
+//   of their own, and the far end of a hole, drawn narrower than it is, does not hide the hole's wall.
+// * The skirt around each face of an open shell. Within the border the face is drawn, and marked: the face before it
+//   may end in a silhouette, which is drawn narrower than it is. An open shell has no known front.
 //
-// Skirts are not drawn: what they are before may be right, and narrower than they are. Only how near
-// the nearest of them comes is kept for each pixel.
+// Skirts are not drawn, because a surface behind them may be correct. Each pixel stores only the nearest depth of its
+// skirts.
 //
-// Where a volume trims the scene (WITHIN_VOLUME), the exact point at (u, v) must be within it, of skirts too.
+// If a volume trims the scene (WITHIN_VOLUME), the exact point at (u, v) must be within it, also for skirts.
 //
-// The skirt of an open shell is as near to the viewer as the border that it continues: not as the surface goes on, since
-// a floor seen from a low angle must not flow over what stands before its edge, nor be lost behind another face that ends
-// there and goes on before it.
+// The skirt of an open shell has the depth of the border that it continues, not that of the continued surface: a floor
+// seen from a low angle must neither cover an object in front of its edge, nor be lost behind another face that ends
+// there and continues before it.
 #include "scene.glsl"
 #include "view.glsl"
 #define INSTANCES_BINDING 9
@@ -48,19 +47,19 @@ layout(location = 1) flat in uint item;
 layout(location = 0) out uvec2 visible;
 layout(depth_less) out float gl_FragDepth;
 
-// The faces of a solid that look at the viewer grow by this share of the gap radius: most gaps close at once. They grow
-// only where their surface follows the triangle as far: one that is seen edge-on goes on where the surface does not.
+// A solid's faces that face the viewer grow by this share of the gap radius, which closes most gaps at once. They grow
+// only as far as their surface follows the triangle: a surface nearly parallel to the rays does not.
 const float GROWTH = 0.25;
-// Where two solids touch, the back of one must win over the front of the other. Each is drawn up to
-// deviation_px off, so the front stands back by twice that in space, and at least by the rounding of
-// interpolated depth. A wall seen nearly edge-on would then stand behind what it hides: where it goes on towards the
-// viewer beyond what its border may be off by, and bends less, it stands back by no more than that and by the grid of
-// SNAP_PX that devices put vertices on. Where the face has grown it is no nearer than its border.
+// Where two solids touch, the back of one must win over the front of the other. Each is drawn up to deviation_px off,
+// so the front is moved back by twice that in space, and at least by the rounding of interpolated depth. A wall nearly
+// parallel to the rays would then lie behind the surface that it hides. If such a wall continues towards the viewer by
+// more than its border's deviation, and bends less than that, it is moved back only by that deviation and by the grid
+// of SNAP_PX on which devices place vertices. A face that has grown is not nearer than its border.
 const float STAND_BACK = 2e-6;
 const float SNAP_PX = 1.0 / 256.0;
 const float STEEP = 4.0; // pixels of depth a pixel
 
-// How far the surface may leave its tangent plane within such a step in (u, v) of the patch, in the model's units.
+// Distance between the surface and its tangent plane within such a step in (u, v) of the patch, in model units.
 float bend_within(Patch patch_, vec2 far) {
     return 0.5 * dot(patch_.bend, vec3(far.x * far.x, 2.0 * far.x * far.y, far.y * far.y));
 }
@@ -77,9 +76,9 @@ void main() {
     bool solid = (face.flags & FACE_SOLID) != 0u;
     bool candidate = solid && away;
     float reach = solid && !away ? GROWTH * frame.gap_radius_px : frame.gap_radius_px;
-    vec2 around = reach * (abs(dx) + abs(dy)); // of the point: its circle is in that box
+    vec2 around = reach * (abs(dx) + abs(dy)); // the point's circle is in this box
 #ifdef TRIM_BY_TABLE
-    uint area = TRIM_MIXED; // three scan lines are asked for whatever the area is: that costs less than to know it
+    uint area = TRIM_MIXED; // three scan lines are always looked up, which costs less than classifying the area
 #else
     uint area = trim_area(fi, face, at - around, at + around);
 #endif
@@ -92,7 +91,7 @@ void main() {
     float off = 2.0 * frame.deviation_px;
     bool steep = false;
     if (solid && !away) {
-        vec2 far = around / patch_.domain.zw; // (u, v) of the patch that the circle spans
+        vec2 far = around / patch_.domain.zw; // the circle's extent in (u, v) of the patch
         grows = grows && bend_within(patch_, far) * px <= (GAP_SLACK - 1.0) * reach + 2.0 * frame.deviation_px;
         steep = length(slope) > STEEP * unit / frame.focal;
     }
@@ -101,7 +100,7 @@ void main() {
     bool inside = area == TRIM_IN || border.inside;
     bool whole = solid && !away || border.whole;
     bool goes_on = border.goes_on;
-    // of the circle's points inside the face, the nearest to the viewer
+    // the nearest of the circle's points inside the face
     float border_depth = border.rise == NO_BORDER ? -1.0 : max(gl_FragCoord.z + border.rise, 0.0);
     if (!inside && border_depth < 0.0) discard;
     bool skirt = !inside && (candidate || !solid) || candidate && !whole;

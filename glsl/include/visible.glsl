@@ -1,37 +1,37 @@
-// What is seen at a pixel.
+// The word for the visible surface of a pixel.
 //
 //   first word    31  30-29   28 - 0             second word
 //   nothing        0      0   0                  0
 //   a patch        d      0   item + 1           (u, v) of the patch, two 16-bit numbers
 //   a mesh         0      1   mesh instance      triangle of the scene
 //   a solid        0      2   side, triangle     depth along the view axis, a float
-//   an operand     0      3   item + 1           the same; of a spline face that bounds a solid's operand. Its (u, v)
-//                                                are in an image of their own, `operand_uv`
+//   an operand     0      3   item + 1           the same; for a spline face of a solid's operand. Its (u, v) are in
+//                                                an image of their own, `operand_uv`
 //
-// d: a gap candidate, for pass `gap_fill`. In scenes with trims, what is no
-// patch is in an image of its own, `others`, and seen where `visibility` has nothing.
+// d: a gap candidate, for pass `gap_fill`. In scenes with trims, meshes and solids are in an image of their own,
+// `others`, and are visible where `visibility` is empty.
 #ifndef VISIBLE_GLSL
 #define VISIBLE_GLSL
 
 const uint GAP_CANDIDATE = 0x80000000u;
-// In the list of gap candidates, whose columns and rows have 15 bits: what is seen there is no candidate itself.
+// In the list of gap candidates, whose columns and rows have 15 bits: the visible surface is not itself a candidate.
 const uint BORDER_BEFORE = 0x80000000u;
-// Beside BORDER_BEFORE: no skirt, but nothing is seen there, and patches are on both sides.
+// In addition to BORDER_BEFORE: there is no skirt, and the pixel is empty, between patches on both sides.
 const uint ISOLATED = 0x8000u;
-// Without BORDER_BEFORE: what is seen is a candidate, and a skirt lies before it.
+// Without BORDER_BEFORE: the visible surface is a candidate, and a skirt lies before it.
 const uint BACK_BEHIND_BORDER = 0x8000u;
-// How far from a face from behind `gap_fill` looks for a front that it lies on.
+// Distance from a back face to which `gap_fill` searches for a front that it lies on.
 const uint WIDE_BAND_PX = 16u;
 const uint SEEN_KIND = 0x60000000u;
 const uint SEEN_MESH = 0x20000000u;
 const uint SEEN_SOLID = 0x40000000u; // Boolean
 const uint SEEN_OPERAND = 0x60000000u;
 
-// The scene has things that are no patches.
+// The scene has meshes or solids.
 layout(constant_id = 4) const bool SCENE_HAS_MESHES_OR_SOLIDS = false;
 
 bool sees_nothing(uint word) { return (word & ~GAP_CANDIDATE) == 0u; }
-bool sees_other(uint word) { return SCENE_HAS_MESHES_OR_SOLIDS && (word & SEEN_KIND) != 0u; } // than a patch
+bool sees_other(uint word) { return SCENE_HAS_MESHES_OR_SOLIDS && (word & SEEN_KIND) != 0u; } // a mesh or solid
 bool sees_mesh(uint word) { return (word & SEEN_KIND) == SEEN_MESH; }
 bool sees_solid(uint word) { return (word & SEEN_KIND) == SEEN_SOLID; }
 bool sees_operand(uint word) { return (word & SEEN_KIND) == SEEN_OPERAND; }

@@ -1,10 +1,10 @@
-// Whether a point is within the volume that trims the scene's faces and meshes (Model::trim_by). Whoever includes
-// this declares `frame` and defines VOLUME_BINDING, where four buffers begin.
+// Whether a point is within the volume that trims the scene's faces and meshes (Model::trim_by). The includer declares
+// `frame` and defines VOLUME_BINDING, the first of four buffers.
 //
-//   point ──▶ leaf: behind all its sides? ──in or out exit──▶ leaf … ──▶ EXIT_TRUE: kept
+//   point ──▶ leaf: behind all its sides? ──in or out exit──▶ leaf … ──▶ EXIT_TRUE: visible
 //
-// Exits lead forward, so the walk ends. A point on the volume's boundary is kept: leaves that add are larger by
-// what a point may be off, those that are taken away smaller.
+// Exits lead forward, so the walk ends. Points on the volume's boundary count as within it: leaves that add are
+// enlarged by a point's possible error, and leaves that subtract are reduced by it.
 #ifndef VOLUME_GLSL
 #define VOLUME_GLSL
 
@@ -16,19 +16,19 @@ layout(binding = VOLUME_BINDING + 1) uniform usamplerBuffer volume_sides;
 layout(binding = VOLUME_BINDING + 2) uniform samplerBuffer volume_surfaces;
 layout(binding = VOLUME_BINDING + 3) uniform samplerBuffer volume_places;
 
-// What counts as on the boundary: pixels, far below any tolerance, and a share of the depth, above the rounding
-// of a point seen from the eye.
+// A point this near to the boundary counts as on it: in pixels, far below any tolerance, and as a share of the depth,
+// above the rounding of a point relative to the eye.
 const float ON_PX = 0.01;
 const float ON_DEPTH = 2e-6;
 
-// Behind all sides of the leaf, or at most `slack` before them; p is seen from the eye.
+// Whether p is behind all sides of the leaf, or at most `slack` before them; p is relative to the eye.
 bool in_leaf(Leaf leaf, vec3 p, float slack) {
     bool inside = true;
     for (uint k = leaf.first; k < leaf.first + leaf.count && inside; ++k) {
         uint word = side_word(volume_sides, k);
         vec4 place = place_at(volume_places, word >> SIDE_SHIFT);
         float value = dot(place.xyz, p) - place.w;
-        float slope = 1.0; // how much it grows a unit of length
+        float slope = 1.0; // growth of the function per unit of length
         if ((word & SIDE_PLANE) == 0u && SOLIDS_HAVE != SURFACE_PLANE) {
             Surface s = surface_at(volume_surfaces, word >> SIDE_SHIFT);
             value = surface_value(s, p - place.xyz);
@@ -39,7 +39,8 @@ bool in_leaf(Leaf leaf, vec3 p, float slack) {
     return inside;
 }
 
-// Within the volume or at most `margin_px` from it; `q` is the point as a homogeneous pixel, its depth third.
+// Whether the point is within the volume, or at most `margin_px` from it; `q` is a homogeneous pixel with the depth
+// third.
 bool in_volume(vec4 q, float margin_px) {
     Ray ray = eye_ray(frame, q.xy / q.w);
     vec3 p = ray.o + q.z * ray.d;
@@ -50,7 +51,7 @@ bool in_volume(vec4 q, float margin_px) {
         Leaf leaf = volume_leaves[at];
         bool inside = in_leaf(leaf, p, (leaf.flags & LEAF_NEGATIVE) != 0u ? -on : on);
         uint next = inside ? leaf.in_exit : leaf.out_exit;
-        // lanes that only keep others company read zeros
+        // inactive lanes read zeros
         if (next <= at || next >= EXIT_FALSE) return next == EXIT_TRUE;
         at = next;
     }

@@ -1,5 +1,5 @@
-// Lists of words, fetched four at a time: `Texel::Words` and `Texel::Numbers`. A fetch of one word is gathered lane by lane
-// where a rasterizer runs in software, and costs it three times as much as one of four.
+// Lists of words, fetched four at a time: `Texel::Words` and `Texel::Numbers`. A software rasteriser gathers a fetch of
+// one word lane by lane, which is slower than one fetch of four.
 #ifndef WORDS_GLSL
 #define WORDS_GLSL
 
@@ -7,10 +7,10 @@ uint word_at(usamplerBuffer list, uint i) { return texelFetch(list, int(i >> 2u)
 
 float number_at(samplerBuffer list, uint i) { return texelFetch(list, int(i >> 2u))[i & 3u]; }
 
-// Three in a row, from `i` on.
+// Three numbers, from `i` on.
 vec3 numbers_at(samplerBuffer list, uint i) {
     vec4 low = texelFetch(list, int(i >> 2u));
-    vec4 high = texelFetch(list, int((i + 2u) >> 2u)); // of the third
+    vec4 high = texelFetch(list, int((i + 2u) >> 2u)); // contains the third
     uint k = i & 3u;
     return k < 2u ? (k == 0u ? low.xyz : low.yzw) : (k == 2u ? vec3(low.zw, high.x) : vec3(low.w, high.xy));
 }

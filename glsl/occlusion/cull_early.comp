@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `cull_early`: patches that lay behind others in the frame before are not drawn, unless pass `cull_late` finds that
-// they may be seen. One thread an item in sight. Twin: src/twin/occlusion.rs.
+// Pass `cull_early`: patches that were hidden in the previous frame are not drawn, unless pass `cull_late` finds that
+// they may be visible. One thread for each item in sight. Twin: src/twin/occlusion.rs.
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;

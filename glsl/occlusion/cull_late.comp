@@ -1,9 +1,9 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `cull_late`: which patches lie behind what has been drawn, wherever they could be seen. Those that do not, and
-// were left out by pass `cull_early`, are drawn now; those that do are left out of the next frame's first drawing. One
-// thread an item in sight. Twin: src/twin/occlusion.rs.
+// Pass `cull_late`: finds the patches that are hidden behind the surfaces drawn so far. Other patches that pass
+// `cull_early` removed are drawn now; hidden patches are not drawn first in the next frame. One thread for each item in
+// sight. Twin: src/twin/occlusion.rs.
 #include "scene.glsl"
 #include "view.glsl"
 #include "tiles.glsl"
@@ -21,7 +21,7 @@ layout(scalar, binding = 7) readonly buffer Items { uint item_face_instance[]; }
 layout(scalar, binding = 8) readonly buffer Farthest { float farthest[]; };
 layout(scalar, binding = 9) buffer Taus { uint taus[]; };
 layout(scalar, binding = 10) writeonly buffer Hidden { uint hidden[]; };
-layout(scalar, binding = 11) readonly buffer Outside { uvec2 outside[]; }; // of each patch, behind.glsl
+layout(scalar, binding = 11) readonly buffer Outside { uvec2 outside[]; }; // for each patch: behind.glsl
 layout(scalar, binding = 12) buffer CountersBuffer { Counters counters; };
 #define IN_SIGHT_BINDING 13
 #include "in_sight.glsl"

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `depth_pyramid`: the farthest depth that is seen in each square of 4 x 4 pixels, in each tile, and in each block of
+// Pass `depth_pyramid`: the farthest visible depth in each square of 4 x 4 pixels, in each tile, and in each block of
 // tiles. One workgroup a block, one thread a tile. Twin: src/twin/occlusion.rs.
 #include "scene.glsl"
 #include "tiles.glsl"

@@ -6,7 +6,7 @@
 // Accurate Indirect Occlusion (SIGGRAPH course 2016): the integral over a slice has a closed form.
 //
 //        h0 ╲     ^ v     ╱ h1        a slice through the ray: surfaces within the radius hide the sky below
-//            ╲    │    ╱              h0 and h1. Of the open sky, |n'| (cos γ + γ sin γ), there is left
+//            ╲    │    ╱              h0 and h1. Of the open sky, |n'| (cos γ + γ sin γ), the rest is
 //      ▟▙     ╲   │ ╱   ▟▙               |n'| (a(h0) + a(h1)),  a(h) = (cos γ + 2 h sin γ - cos(2 h - γ)) / 4
 //    ▟█▀▀▀▀▀▀▀▀▀▀▀●▀▀▀▀▀▀▀█▙          n' is n projected into the slice, γ the angle from v to n'
 //
@@ -21,7 +21,7 @@ layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1, rgba32f) readonly uniform image2D resolved;  // linear colour, depth; UNSEEN at the background
 layout(binding = 2, rg32f) writeonly uniform image2D ambient;    // hidden share of the sky, depth
 
-layout(scalar, push_constant) uniform Push { float radius; } push; // in units of the model
+layout(scalar, push_constant) uniform Push { float radius; } push; // in model units
 
 float depth_at(ivec2 at) { return imageLoad(resolved, at).a; }
 
@@ -39,8 +39,8 @@ const float FADES = 0.75;
 float sky_below(float h, float g) { return 0.25 * (cos(g) + 2.0 * h * sin(g) - cos(2.0 * h - g)); }
 
 // Sine of the largest elevation over the tangent plane, of the points along one direction of the picture. The centres
-// of pixels lie up to half a pixel beside the slice. That changes their angles with the ray, but it leaves the points
-// of a plane on the plane.
+// of pixels lie up to half a pixel beside the slice. That changes their angles with the ray, but points of a plane stay
+// on the plane.
 float elevation(ivec2 at, vec3 p, vec3 n, vec2 step_px, float first) {
     float highest = 0.0;
     for (int i = 0; i < HORIZON_STEPS; ++i) {
@@ -73,7 +73,7 @@ float hidden_at(ivec2 at, vec3 p, vec3 n, vec3 v, float reach_px) {
         // a direction of the slice at an angle a from n' has the sine |n'| cos a of its elevation
         float before = acos(min(elevation(at, p, n, -reach_px * direction, first) / size, 1.0));
         float after = acos(min(elevation(at, p, n, reach_px * direction, first) / size, 1.0));
-        // the open sky minus the sky that is left: exactly 0 on a plane, where the sky of two slices alone is not 1
+        // the open sky minus the rest: exactly 0 on a plane, where the sky of two slices alone is not 1
         sum += size * (cos(g) + g * sin(g) - sky_below(g - before, g) - sky_below(g + after, g));
     }
     return clamp(sum / float(SLICES), 0.0, 1.0);

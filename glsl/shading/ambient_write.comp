@@ -24,7 +24,7 @@ const float STRENGTH = 0.75;
 // Pixels farther off the plane than this share of the radius have no weight.
 const float OFF = 0.1;
 
-// How much the depth changes from one pixel to the next along an axis; 0 if both neighbours see nothing.
+// Change of the depth from one pixel to the next along an axis; 0 if both neighbours are background.
 float slope(ivec2 at, ivec2 axis, float depth) {
     int way = like_beside(at, axis, depth);
     return way == 0 ? 0.0 : float(way) * (depth_at(at + way * axis) - depth);

@@ -1,17 +1,17 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `numbers`: which part and instance each pixel sees, from 1 on.
+// Pass `numbers`: writes the part and the instance visible in each pixel, from 1 on.
 #include "scene.glsl"
 #include "visible.glsl"
 #include "words.glsl"
 
-layout(binding = 0) uniform usamplerBuffer sources; // of an instance of the scene: part and instance, from 1 on
+layout(binding = 0) uniform usamplerBuffer sources; // for an instance of the scene: part and instance, from 1 on
 layout(binding = 1) uniform usamplerBuffer face_instances;
 layout(binding = 2) uniform usamplerBuffer items;
 layout(binding = 3, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 4, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
-layout(scalar, binding = 5) readonly buffer MeshInstances { MeshInstance mesh_instances[]; }; // where there are meshes
+layout(binding = 4, rg32ui) readonly uniform uimage2D others; // without trims, the same image
+layout(scalar, binding = 5) readonly buffer MeshInstances { MeshInstance mesh_instances[]; }; // only with meshes
 
 layout(location = 0) out uint out_edge; // of lines, which are drawn later
 layout(location = 1) out uint out_part;

@@ -1,14 +1,14 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `resolve`, the background of a pixel's samples, where one sees nothing, unless the host keeps its picture. They
-// are added up, so it may not lie below what is seen.
+// Pass `resolve`, the background of samples without a surface, unless the host's picture stays. Samples are added up,
+// so the background must not be in the sum for other samples.
 #include "scene.glsl"
 #include "view.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 2, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(binding = 2, rg32ui) readonly uniform uimage2D others; // without trims, the same image
 
 #include "shade.glsl"
 #include "visible.glsl"

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `seen_squares`: the squares of tiles in which a patch or a mesh is seen, so that pass `resolve` looks for no
-// surface where there is none. One workgroup a block of tiles, one thread a tile. Twin: src/twin/squares.rs.
+// Pass `seen_squares`: the squares of tiles that show a patch or a mesh, so that pass `resolve` draws only these. One
+// workgroup for each block of tiles, one thread a tile. Twin: src/twin/squares.rs.
 #include "scene.glsl"
 #include "tiles.glsl"
 #include "visible.glsl"
@@ -10,7 +10,7 @@
 layout(local_size_x = 64) in; // BLOCK x BLOCK
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 2, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(binding = 2, rg32ui) readonly uniform uimage2D others; // without trims, the same image
 layout(scalar, binding = 3) writeonly buffer SeenSquares { uint seen_squares[]; };
 
 shared bool seen[BLOCK * BLOCK];
@@ -21,7 +21,7 @@ bool is_drawn(uvec2 tile) {
 
 #include "largest_square.glsl"
 
-// Something at the pixel is neither a Boolean solid nor the background.
+// Whether the pixel shows a patch or a mesh.
 bool sees_surface(ivec2 pixel) {
     uint word = imageLoad(visibility, pixel).x;
     if (sees_nothing(word)) word = imageLoad(others, pixel).x;

@@ -1,6 +1,6 @@
 #version 460
-// Pass `blister`: the layer's face bounds the solid where the walk ended inside. The stencil test lets those pixels
-// through, and locks them.
+// Pass `blister`: where the walk ended inside, the layer's face bounds the solid. The stencil test passes these pixels
+// and locks them.
 layout(binding = 0, rg32ui) readonly uniform uimage2D layer;
 layout(location = 0) out uvec2 found;
 

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `blister`: whose the locked faces are, by the walk of pass `solid_events`.
+// Pass `blister`: finds the owners of the locked faces, by the walk of pass `solid_events`.
 #define FACE_IS_FOUND
 #include "solid_events.glsl"

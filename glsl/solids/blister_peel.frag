@@ -1,11 +1,11 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `blister`: the nearest face of a leaf behind the layer before. The depth test keeps the nearest of all leaves.
+// Pass `blister`: the nearest face of a leaf behind the previous layer. The depth test finds the nearest of all leaves.
 //
 //      ray ──┼────────┬────────┬─────▶
-//   leaf     │    ├───┤████████├───      a leaf that adds shows where the ray enters it, one that is taken away
-//            │        ▲                  where the ray leaves it: nowhere else does a solid begin
+//   leaf     │    ├───┤████████├───      a leaf that adds shows where the ray enters it, a leaf that subtracts
+//            │        ▲                  where the ray leaves it: a solid begins only there
 //      layer before
 #include "scene.glsl"
 #include "solids.glsl"
@@ -36,7 +36,7 @@ void main() {
     Span s = EVERYTHING;
     float t = NEVER;
     uint side = 0u;
-    // the surfaces twice: what is inside of all of them, then which of them ends there
+    // the surfaces twice: first the part inside all of them, then the surface that ends there
     for (uint i = 0u; i < 2u * leaf.count; ++i) {
         if (i == leaf.count) {
             float first = entries ? s.lo : s.g0;

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `blister`: a triangle of an operand behind the layer before, as blister_peel.frag. The host says which way it
-// has to face.
+// Pass `blister`: a triangle of an operand behind the previous layer, like blister_peel.frag. The host sets which
+// orientation it must have.
 #include "scene.glsl"
 #include "view.glsl"
 #include "solids.glsl"

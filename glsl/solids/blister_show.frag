@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `blister`: the locked faces among everything else that is seen.
+// Pass `blister`: draws the locked faces among all other surfaces.
 #include "scene.glsl"
 #include "view.glsl"
 

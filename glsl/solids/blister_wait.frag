@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `blister`: pixels that are not locked are about to ask the Blist again. Says how many layers that makes, and
-// whether they were enough.
+// Pass `blister`: resets the pixels that are not locked, for the next walk of the Blist. Counts the layers, and reports
+// whether there were enough.
 #include "scene.glsl"
 #include "blister.glsl"
 
@@ -12,7 +12,7 @@ layout(binding = 2, rg32ui) readonly uniform uimage2D layer;
 
 void main() {
     if (imageLoad(layer, ivec2(gl_FragCoord.xy)).x == 0u) return;
-    // most pixels find it said already
+    // mostly another pixel has written it already
     if (counters.layers < asked) atomicMax(counters.layers, asked);
     if (asked > frame.layer_capacity) atomicOr(counters.failed, FAILED_LAYERS);
 }

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `blister`: whether the point behind the layer's face is within a leaf. What is not is discarded; the stencil
+// Pass `blister`: whether the point behind the layer's face is within a leaf. Other pixels are discarded; the stencil
 // test marks the rest.
 #include "scene.glsl"
 #include "solids.glsl"

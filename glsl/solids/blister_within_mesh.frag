@@ -1,8 +1,9 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `blister`: a triangle of an operand behind the layer's face. The stencil test turns a bit over: an odd number
-// of triangles behind a point says that it is within. Those in front of it may lie before the near plane.
+// Pass `blister`: a triangle of an operand behind the layer's face. The stencil test inverts a bit: a point with an odd
+// number of triangles behind it is inside. Triangles in front of it are not counted, since some may lie before the near
+// plane.
 #include "scene.glsl"
 #include "view.glsl"
 #include "solids.glsl"

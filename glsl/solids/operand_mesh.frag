@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `operand_mesh`: a ray crosses a triangle of an operand. The depth is that of the triangle's plane.
+// Pass `operand_mesh`: the crossing of a ray with a triangle of an operand. The depth is that of the triangle's plane.
 #include "scene.glsl"
 #include "view.glsl"
 #include "solids.glsl"

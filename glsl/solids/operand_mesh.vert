@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `operand_mesh`: three vertices a triangle, as in mesh.vert. Nothing is cut off at the far plane: who
-// is within a mesh at the near plane is told by all that lies behind.
+// Pass `operand_mesh`: three vertices a triangle, as in mesh.vert. Nothing is clipped at the far plane: all crossings
+// behind the near plane determine whether the near plane is within a mesh.
 #include "scene.glsl"
 #include "view.glsl"
 #include "shells.glsl"

@@ -1,22 +1,22 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `operand_sort`: the fragments of each pixel of the band by shell and depth, entering and leaving in turn.
-// One thread a pixel of a part of the band; the others have none.
-// Twin: src/twin/operand_sort.rs.
+// Pass `operand_sort`: sorts the fragments of each pixel of the band by shell and depth, so that entries and exits
+// alternate. One thread for each pixel of a part of the band; other pixels have no fragments. Twin:
+// src/twin/operand_sort.rs.
 //
-//   mesh    E  E     L  L       how often the ray is within counts up and down; it is within where that is
-//           E  ·     ·  L       not 0. A near plane in its box: begin so that the end is 0
+//   mesh    E  E     L  L       a counter rises at entries and falls at exits; the ray is within where it is not 0.
+//           E  ·     ·  L       If the near plane is in its box, the start value is such that the end is 0
 //
-//   faces   E  ·  L  L          the second L wants an entry: a skirt's fragment E between the two, where the
-//                 E? L          ray slips through a gap (`mended`), else it is left out
-//           E  E  L             the second E, the reverse; at the end, too
+//   faces   E  ·  L  L          the second L lacks an entry: a skirt's fragment E between the two supplies it, if the
+//                 E? L          ray passes through a gap (`mended`); otherwise the L is removed
+//           E  E  L             the second E, likewise; at the end, too
 //
-//           L  E  E  L          no skirt helps, but it is left as often as entered: as for a mesh. Near a
-//                               silhouette two fragments may have changed places
+//           L  E  E  L          no skirt fits, but there are as many exits as entries: as for a mesh. Near a
+//                               silhouette two fragments may be interchanged
 //
-//   Entries without an exit stay, exits without an entry go: both are `unpaired`, unless the camera's depth
-//   range cuts the shell.
+//   An entry without an exit stays, an exit without an entry is removed: both are `unpaired`, unless the camera's
+//   depth range cuts the shell.
 #include "scene.glsl"
 #include "solids.glsl"
 #include "shells.glsl"
@@ -33,7 +33,7 @@ layout(scalar, binding = 6) buffer Fragments { Fragment fragments[]; };
 layout(scalar, binding = 7) buffer CountersBuffer { Counters counters; };
 layout(scalar, push_constant) uniform Part { uvec2 part_first; }; // column, and row of the band: a tile's first
 
-// A total order: two that are equal are the same.
+// A total order: fragments that compare equal are equal.
 bool before(Fragment a, Fragment b) {
     uint x = a.shell & FRAGMENT_SHELL;
     uint y = b.shell & FRAGMENT_SHELL;
@@ -49,7 +49,7 @@ bool before(Fragment a, Fragment b) {
 const uint GAPS[11] = uint[](9881u, 4391u, 1750u, 701u, 301u, 132u, 57u, 23u, 10u, 4u, 1u);
 
 void sort(uint first, uint count) {
-    uint g = 0u; // the first step that has something to do
+    uint g = 0u; // the first step smaller than the list
     while (g < 10u && GAPS[g] >= count) ++g;
     for (; g < 11u; ++g) {
         uint gap = GAPS[g];
@@ -65,7 +65,7 @@ void sort(uint first, uint count) {
     }
 }
 
-// The near plane in the box around a shell (1), the far plane (2).
+// Whether the box around a shell crosses the near plane (1), the far plane (2).
 uint cuts(uint shell) {
     Leaf leaf = leaves[shell_leaves[shell]];
     float middle = dot(frame.forward, leaf_centres[shell_leaves[shell]]);
@@ -73,7 +73,7 @@ uint cuts(uint shell) {
     return (middle - reach < frame.near ? 1u : 0u) | (middle + reach > frame.far ? 2u : 0u);
 }
 
-// What is kept of the shell at hand, from place `kept` on.
+// End of the fragments that stay of the current shell.
 uint kept;
 
 void keep(Fragment f, uint bits) {
@@ -82,10 +82,10 @@ void keep(Fragment f, uint bits) {
     ++kept;
 }
 
-// By how often the ray is within, from `number` on; returns whether that ends with 0.
+// Counts entries and exits, from `number` on; returns whether the count ends with 0.
 bool by_winding(uint from, uint end, int number, uint start) {
     bool within = number != 0; // before the fragments of one depth
-    Fragment owner;            // the last of them that turned the right way
+    Fragment owner;            // the last of them with the right direction
     bool any = false;
     float depth = 0.0;
     for (uint i = from; i <= end; ++i) {
@@ -107,10 +107,10 @@ bool by_winding(uint from, uint end, int number, uint start) {
     return number == 0;
 }
 
-// Entering and leaving in turn, mended by skirts; returns whether they do: an entry without an exit is all right where it is
-// kept, and not where they are told to be as many. Keeps nothing unless it `writes`.
+// Makes entries and exits alternate, with skirts' fragments where one is missing; returns whether they do. An entry
+// without an exit is accepted if it stays, and not if the numbers must be equal. Writes the result only if `writes`.
 bool in_turn(uint from, uint end, bool within, uint start, bool writes) {
-    Fragment skirt[2]; // the first of a skirt since the last that was kept: entering, leaving
+    Fragment skirt[2]; // the first skirt fragments since the last fragment that stays: entry, exit
     bool has_skirt[2] = bool[](false, false);
     bool lost = false;
     for (uint i = from; i < end; ++i) {
@@ -122,7 +122,7 @@ bool in_turn(uint from, uint end, bool within, uint start, bool writes) {
             continue;
         }
         if ((kind == 1u) != within) {
-            // one is missing between: of the other kind
+            // a fragment of the other kind is missing between
             if (!has_skirt[1u - kind]) {
                 lost = lost || kind == 1u || !writes;
                 continue;
@@ -164,7 +164,7 @@ void main() {
         atomicMax(counters.row_fragments, fragment_starts[next_row] - fragment_starts[size.x * at.y]);
     }
     if (end < first) {
-        // more than 32 bits count
+        // the count exceeds 32 bits
         atomicMax(counters.band_fragments, 0xffffffffu);
         atomicOr(counters.failed, FAILED_FRAGMENTS);
     }
@@ -176,7 +176,7 @@ void main() {
     while (from < end) {
         uint shell = fragments[from].shell & FRAGMENT_SHELL;
         bool patches = (fragments[from].shell & FRAGMENT_PATCH) != 0u;
-        int sum = 0; // how much oftener it is left than entered
+        int sum = 0; // exits less entries
         bool leaves_first = false;
         bool any = false;
         uint stop = from;
@@ -202,7 +202,7 @@ void main() {
         if (!closed && (cut & 2u) == 0u) atomicAdd(counters.unpaired, 1u);
         from = stop;
     }
-    // a driver that ends long loops is told of
+    // count pixels whose loops a driver ended
     if (from != end) atomicAdd(counters.clamps, 1u);
     fragment_counts[pixel] = kept - first;
 }

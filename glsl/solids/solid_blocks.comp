@@ -1,9 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `solid_blocks`: which leaves each block of tiles may see, in Blist order: counted first, then
-// listed where the prefix sum says. One thread a run of leaves of a block.
-// Twin: src/twin/solid_blocks.rs.
+// Pass `solid_blocks`: the leaves that each block of tiles may show, in Blist order: counted first, then listed from
+// the prefix sum on. One thread for each run of leaves of a block. Twin: src/twin/solid_blocks.rs.
 #include "scene.glsl"
 #include "tiles.glsl"
 

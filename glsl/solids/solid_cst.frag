@@ -9,10 +9,10 @@
 //            │     outside in front, inside behind: a face of the solid is here
 //      the tile's Blist, walked in front of the end and behind it
 //
-// The walk visits only the leaves that it is led to, and nothing is kept. The depth test finds the
-// nearest face. A leaf is the owner of a face when it alone changes the solid there, in front or behind:
-// with the leaf flipped, the walk ends elsewhere (the Boolean derivative, whose inside is the leaf's
-// active zone). Everything is one loop, so that the surfaces' equations are compiled once.
+// The walk visits only the leaves that its exits lead to, and stores nothing. The depth test finds the nearest face. A
+// leaf owns a face if by itself it changes the solid there, in front or behind: with the leaf flipped, the walk ends
+// differently (the Boolean derivative, whose inside is the leaf's active zone). Everything is one loop, so that the
+// surfaces' equations are compiled once.
 #include "scene.glsl"
 #include "solids.glsl"
 #include "tiles.glsl"
@@ -37,12 +37,12 @@ layout(location = 0) flat in uint asked;
 
 layout(location = 0) out uvec2 visible;
 
-// What a step of the loop is for.
+// The purpose of a step of the loop.
 const uint OWN = 0u;  // the leaf's own span
-const uint WALK = 1u; // the next leaf of the Blist at an end of it
-const uint SIDE = 2u; // which side ends there?
+const uint WALK = 1u; // the next leaf of the Blist, at an end of the span
+const uint SIDE = 2u; // the side that ends there
 
-// Where the walks are: in front of the end and behind it, then the same with the leaf flipped.
+// The places of the walks: in front of the end and behind it, then the same with the leaf flipped.
 struct Walks {
     uint before;
     uint behind;
@@ -67,9 +67,9 @@ void main() {
     Walks at = Walks(EXIT_FALSE, EXIT_FALSE, EXIT_FALSE, EXIT_FALSE);
     uint side = 0u;
     bool found = false;
-    bool none = false; // no end is left
+    bool none = false; // all ends are tried
     TileLeaf itself = TileLeaf(own, EXIT_FALSE, EXIT_FALSE, leaves[own].first << LEAF_FLAG_BITS | leaves[own].flags);
-    // each end walks through every leaf at most
+    // for each end, the walks pass each leaf at most once
     uint most = 4u * (end - first) + 8u;
     for (uint step_ = 0u; step_ < most && !found; ++step_) {
         uint next = min(min(at.before, at.behind), min(at.before_flipped, at.behind_flipped));
@@ -114,7 +114,7 @@ void main() {
             if (at.behind_flipped == next) at.behind_flipped = behind != is_own ? here.in_exit : here.out_exit;
         }
     }
-    // a driver that ends long loops is told of
+    // count leaves whose loops a driver ended
     if (!(found || none)) atomicAdd(counters.clamps, 1u);
     if (!found) discard;
     visible = uvec2(SEEN_SOLID | side, floatBitsToUint(t));

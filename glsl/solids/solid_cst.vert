@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `solid_cst`: two triangles over the tiles that may see a leaf. One instance a leaf, in the order
-// that tells who owns a face that several share.
+// Pass `solid_cst`: two triangles over the tiles that may show a leaf. One instance a leaf, in an order that gives each
+// shared face its owner.
 #include "scene.glsl"
 #include "solids.glsl"
 #include "tiles.glsl"

@@ -1,18 +1,17 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `solid_fold`: the Blist of each tile: a leaf that the tile does not see is one whose outside
-// the point is in, so its out-exit is taken at once. One thread a tile.
-// Twin: src/twin/solid_fold.rs.
+// Pass `solid_fold`: the Blist of each tile. The tile's points are outside the leaves that it does not show, so their
+// out-exits are taken at once. One thread a tile. Twin: src/twin/solid_fold.rs.
 //
 //   Out-exits lead forward only, so they make a tree with EXIT_TRUE and EXIT_FALSE at its roots:
 //
-//     exit e ──▶ [absent] ──out──▶ [absent] ──out──▶ [present]     the first ancestor of e, or e itself,
-//                                                                  that the tile sees
+//     exit e ──▶ [absent] ──out──▶ [absent] ──out──▶ [present]     the first of e and its ancestors that is in the
+//                                                                  tile's list
 //
-//   A leaf over which no exit leads but to EXIT_FALSE is a gate: without it the point is outside.
+//   A leaf is a gate if no exit but EXIT_FALSE leads past it: a point that is not in it is outside.
 //
-//   Ancestors follow in Blist order, and p is one of e when e lies in p's range of preorder numbers.
+//   Ancestors follow in Blist order; p is an ancestor of e if e lies in p's range of preorder numbers.
 #include "scene.glsl"
 #include "solids.glsl"
 #include "tiles.glsl"
@@ -26,11 +25,11 @@ layout(scalar, binding = 3) buffer TileLeaves { TileLeaf tile_leaves[]; };
 layout(scalar, binding = 4) writeonly buffer TileEntries { uint tile_entries[]; };
 layout(scalar, binding = 5) buffer CountersBuffer { Counters counters; };
 
-// A driver that ends long loops is found by what is missing.
+// Number of tests: if a driver ends the loop early, some are missing.
 uint asked = 0u;
 uint answered = 0u;
 
-// The first TileLeaf from `from` on that is leaf `to` or a later one.
+// The first TileLeaf from `from` on whose leaf is not before `to`.
 uint first_not_before(uint to, uint from, uint end) {
     while (from < end) {
         uint middle = (from + end) / 2u;
@@ -40,9 +39,9 @@ uint first_not_before(uint to, uint from, uint end) {
     return from;
 }
 
-// Where a walk that goes to leaf or exit `to` of the whole Blist goes in the tile; `from` is the first
-// TileLeaf that it can be. Looked for from both ends at once, since either way may be long: among the leaves that the
-// tile sees behind `to`, and among the ancestors of `to`.
+// The tile's target of a walk to leaf or exit `to` of the whole Blist; `from` is the first possible TileLeaf. The
+// search runs from both ends at once, since either may be long: the tile's leaves behind `to`, and the ancestors of
+// `to`.
 uint fold(uint to, uint from, uint end) {
     if (to >= EXIT_FALSE) return to;
     ++asked;
@@ -71,7 +70,7 @@ uint fold(uint to, uint from, uint end) {
     return found;
 }
 
-// Items that rays are followed through are lists of their own, one after another: where each begins is marked.
+// Items that rays are followed through have lists of their own, one after another; the start of each is marked.
 void main() {
     uint n = thread_number();
     uvec2 tiles = band_tiles(frame);
@@ -94,7 +93,7 @@ void main() {
         tile_leaves[i].out_exit = out_exit;
         tile_leaves[i].of = leaf.first << LEAF_FLAG_BITS | leaf.flags;
         if (at < frame.followed_leaf) {
-            if (reach <= i) tile_leaves[i].leaf = at | TILE_LEAF_GATE; // nobody looks back at it
+            if (reach <= i) tile_leaves[i].leaf = at | TILE_LEAF_GATE; // no exit leads past it
             if (in_exit != EXIT_FALSE) reach = max(reach, in_exit);
             if (out_exit != EXIT_FALSE) reach = max(reach, out_exit);
             continue;

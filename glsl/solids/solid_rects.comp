@@ -16,7 +16,7 @@ layout(scalar, binding = 3) writeonly buffer Rects { Rect rects[]; };
 
 const Rect NOWHERE = Rect(uvec2(1u), uvec2(0u));
 
-// A pixel's place is rounded, and its samples lie up to 7/16 beside it: widen by more than that.
+// Margin for the rounding of a position and for samples up to 7/16 beside the centre.
 const float MARGIN_PX = 0.5;
 
 Rect rect_of(Leaf leaf, vec3 centre) {

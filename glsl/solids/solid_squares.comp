@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `solid_squares`: which squares of the band's tiles are drawn, so that a pixel that may see no solid costs
+// Pass `solid_squares`: the squares of the band's tiles that are drawn, so that pixels that cannot show a solid cost
 // nothing. One thread a tile. Twin: src/twin/squares.rs.
 #include "scene.glsl"
 #include "solids.glsl"

@@ -1,11 +1,11 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `solid_tiles`: which leaves each tile of the band may see, of those of its block: counted first,
-// then listed. One thread a tile.
+// Pass `solid_tiles`: the leaves of its block that each tile of the band may show: counted first, then listed. One
+// thread a tile.
 //
-// Four of the block's leaves are looked at in a step, since drivers may end long loops; then the tile counts as a clamp.
-// Twin: src/twin/solid_tiles.rs.
+// A step tests four of the block's leaves, since drivers may end long loops. If a driver does, the tile counts as a
+// clamp. Twin: src/twin/solid_tiles.rs.
 #include "scene.glsl"
 #include "tiles.glsl"
 
@@ -24,7 +24,7 @@ layout(scalar, binding = 7) buffer CountersBuffer { Counters counters; };
 
 uvec2 tile;
 uint start;
-uint count = 0u; // leaves seen
+uint count = 0u; // leaves in the tile
 
 void look_at(uint leaf) {
     if (!meets(rects[leaf], tile, tile)) return;
@@ -56,7 +56,7 @@ void main() {
     }
     if (LISTS && n % tiles.x == 0u) atomicMax(counters.row_tile_leaves, tile_starts[n + tiles.x] - start);
     if (LISTS && tile_starts[n + 1u] < start) {
-        // more than 32 bits count
+        // the count exceeds 32 bits
         atomicMax(counters.band_tile_leaves, 0xffffffffu);
         atomicOr(counters.failed, FAILED_TILE_LEAVES);
     }

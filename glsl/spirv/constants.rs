@@ -214,8 +214,12 @@ pub mod scene {
     pub const SIDE_INSIDE: u32 = 1;
     pub const SIDE_OUTSIDE: u32 = 0;
     pub const STYLE_CLAY: u32 = 1;
+    pub const STYLE_GAUSSIAN_CURVATURE: u32 = 7;
+    pub const STYLE_ISOPHOTES: u32 = 4;
+    pub const STYLE_MEAN_CURVATURE: u32 = 6;
     pub const STYLE_NORMALS: u32 = 2;
     pub const STYLE_SHADED: u32 = 0;
+    pub const STYLE_TECHNICAL: u32 = 5;
     pub const STYLE_ZEBRA: u32 = 3;
     pub const TAU_HIDDEN: u32 = 0x8000;
 }
@@ -227,7 +231,9 @@ pub mod shade {
     pub const FILL_STRENGTH: f32 = 0.22;
     pub const GLOSS: f32 = 0.10;
     pub const GROUND_STRENGTH: f32 = 0.12;
+    pub const ISOPHOTE_BANDS: f32 = 18.0;
     pub const KEY_STRENGTH: f32 = 0.62;
+    pub const RIM_STRENGTH: f32 = 0.30;
     pub const SHININESS: f32 = 48.0;
     pub const SHOULDER: f32 = 0.76;
     pub const SKY_STRENGTH: f32 = 0.26;

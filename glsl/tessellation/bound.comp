@@ -1,20 +1,20 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `bound`: which patches can be seen, and how finely each must be divided.
-// One thread an item in sight. Twin: src/twin/bound.rs.
+// Pass `bound`: finds the patches that may be visible, and bounds how finely each must be divided. One thread for each
+// item in sight. Twin: src/twin/bound.rs.
 #include "bound.glsl"
 #include "factor.glsl"
 
-// Where a bend towards the eye moves no pixel, points may be off in space by so many times what pixels may.
+// Where a bend towards the eye moves no pixel, points may deviate in space by this factor more than pixels.
 const float DEPTH_SHARE = 1.5;
 
 vec4 control_point(Patch patch_, uvec2 at) {
     return texelFetch(points, int(patch_.first + at.y * (degree_u(patch_.shape) + 1u) + at.x));
 }
 
-// `seen`, of the patch's box, drawn closer: what is drawn is a mean of the control points. False where one of them is
-// before the near plane.
+// Shrinks `seen`, the projection of the patch's box, to the control points, whose hull contains the patch. False if a
+// control point is before the near plane.
 bool draw_closer(Patch patch_, View view, inout Seen seen) {
     uint count = (degree_u(patch_.shape) + 1u) * (degree_v(patch_.shape) + 1u);
     float w = 3.0e38;
@@ -43,17 +43,17 @@ bool draw_closer(Patch patch_, View view, inout Seen seen) {
     return true;
 }
 
-// Pixels that what is off by `d`, part units, is moved by, times W: the most over pixels from `low` to `high`.
+// Pixels by which an offset `d`, part units, moves a point, times W: the largest over pixels from `low` to `high`.
 float moves(View view, vec3 d, vec2 low, vec2 high) {
     vec4 q = to_pixel(view, vec4(d, 0.0));
     precise vec2 at_low = q.xy - low * q.w;
     precise vec2 at_high = q.xy - high * q.w;
-    vec2 most = max(abs(at_low), abs(at_high)); // each is linear, and so is the other's
+    vec2 most = max(abs(at_low), abs(at_high)); // each is linear, and so is the other
     precise float length2 = most.x * most.x + most.y * most.y;
     return sqrt(length2);
 }
 
-// As Patch.bend, of a polynomial patch, of what moves pixels: times W.
+// Like Patch.bend, for the movement of pixels of a polynomial patch, times W.
 vec3 bend_seen(Patch patch_, View view, vec2 low, vec2 high) {
     uint n = degree_u(patch_.shape);
     uint k = degree_v(patch_.shape);

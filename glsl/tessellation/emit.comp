@@ -1,10 +1,10 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `emit`: the list of sub-patches, and the draws that cover it. One thread an item in sight.
+// Pass `emit`: writes the list of sub-patches, and the draws that cover it. One thread for each item in sight.
 //
 //   vertices before an item  0 ..... draw_vertices ..... 2 draw_vertices ....
-//   draw that gets it        |   0   |        1         |        2
+//   draw that covers it      |   0   |        1         |        2
 //
 // A draw starts with the first sub-patch of its interval, so none holds more than draw_vertices and
 // one sub-patch more. Twin: src/twin/emit.rs.

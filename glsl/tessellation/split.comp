@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `split`: one number of segments per shared side, and as many sub-patches as keep every
-// number within the hardware's limit. One thread an item in sight. Twin: src/twin/split.rs.
+// Pass `split`: one number of segments for each shared side, and enough sub-patches that no number exceeds the
+// hardware's limit. One thread for each item in sight. Twin: src/twin/split.rs.
 #include "split.glsl"
 
 uint first_item;
@@ -16,7 +16,7 @@ uint tau_at(ivec2 place, uint axis, int steps) {
     int n = int(count[across]);
     if (at < 0 || at >= n) {
         if (!closed[across]) return 0u;
-        at = (at + 2 * n) % n; // one patch alone has itself two steps away, and % wants no negative
+        at = (at + 2 * n) % n; // a single patch is its own neighbour two steps away; % must not get a negative number
     }
     place[across] = at;
     return tau_along(taus[first_item + uint(place.y) * count.x + uint(place.x)], axis);

@@ -3,15 +3,15 @@
 #extension GL_GOOGLE_include_directive : require
 // Pass `split` in scenes where faces share sides (Link). One thread an item in sight. Twin: src/twin/split.rs.
 //
-// A side's numbers are compared as numbers of the whole curve of its ring: a side that is a quarter of it asks for four
-// times as many, and gets a quarter of what is decided.
+// Numbers of segments are compared as numbers for the whole curve of the ring: a side that is a quarter of it needs
+// four times as many there, and gets a quarter of the result.
 #include "split.glsl"
 
 layout(scalar, binding = 10) readonly buffer Links { Link links[]; };
 
 const uint NO_PATCH = 0xffffffffu;
 
-uint item_of_patch_0; // items of a placed part are numbered as its patches
+uint item_of_patch_0; // items of a placed part have the order of its patches
 
 uint tau_at(uint patch_, uint axis) { return tau_along(taus[item_of_patch_0 + patch_], axis); }
 
@@ -42,7 +42,7 @@ uint patch_beyond(uint patch_, uint side) {
     return face.first_patch + place.y * count.x + place.x;
 }
 
-// The largest tau that others ask for along a side; 0 where nobody else is drawn.
+// The largest tau of other patches along a side; 0 if none of them is drawn.
 uint asked_beyond(uint patch_, uint side) {
     uint beyond = patch_beyond(patch_, side);
     if (beyond != NO_PATCH) return tau_at(beyond, axis_of(side));
@@ -64,7 +64,7 @@ uint splits_of(uint patch_, uint axis) {
     return splits_for(asked_beyond(patch_, sides.x), tau_at(patch_, axis), asked_beyond(patch_, sides.y));
 }
 
-// The most sub-patches along a side of those others that are drawn.
+// The most sub-patches along a side, among the other patches that are drawn.
 uint splits_beyond(uint patch_, uint side) {
     uint beyond = patch_beyond(patch_, side);
     if (beyond != NO_PATCH) return splits_of(beyond, axis_of(side));

@@ -1,12 +1,12 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `carry`: the winding number that each row of a strip with several bins begins with: what crosses its scan line in
-// the bins before. One workgroup a strip, one thread a scan line at a time.
+// Pass `carry`: the winding number at the start of each row of a strip with several bins, from the crossings of its
+// scan line in the bins before. One workgroup a strip, one thread a scan line at a time.
 //
 //   bin               0     1     2     3
 //   crossings add up  +1    0     -1    0      as pass `cross` counted them
-//   begins with        0    1     1     0
+//   at the start      0    1     1     0
 //
 // Twin: src/twin/carry.rs.
 #include "u_bins.glsl"
@@ -29,7 +29,7 @@ void main() {
         int winding = 0;
         for (uint bin = rows.first_bin; bin <= last_bin(rows); ++bin) {
             uint row = row_of(rows, line, bin);
-            if (row >= frame.row_capacity) return; // the host grows the table and records again
+            if (row >= frame.row_capacity) return; // the host enlarges the table and records again
             int crossed = row_windings[row];
             row_windings[row] = winding;
             winding += crossed;

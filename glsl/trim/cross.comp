@@ -1,15 +1,15 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `cross`: every linear segment meets every scan line that it crosses. One thread a segment.
+// Pass `cross`: intersects every linear segment with every scan line that it crosses. One thread a segment.
 //
 //        v ▲   ─────────── scan line        recorded twice: first counted (INSERT false), then, when
-//          │      b ●                       the rows have found their places, written (INSERT true)
+//          │      b ●                       the rows have their places, written (INSERT true)
 //          │   ────╱──────                  bottom-open, top-closed: v_a < v <= v_b, so a line through
 //          │   a ●                          a shared vertex counts one crossing, and a touch 0 or 2
 //
-// A scan line has a row in each bin that is seen (bins.glsl); what crosses it there adds to the row's winding, from which
-// pass `carry` makes the one that the next bin begins with.
+// A scan line has a row in each visible bin (u_bins.glsl). A crossing there adds to the row's winding, from which pass
+// `carry` computes the winding at the start of the next bin's row.
 //
 // An intercept is u as order-preserving bits, its lowest bit the direction: 1 upwards.
 // Twin: src/twin/cross.rs.
@@ -18,13 +18,13 @@
 layout(constant_id = 23) const bool INSERT = false;
 // Strips of some face have several bins.
 layout(constant_id = 1) const bool SCENE_HAS_BINS = false;
-// Somebody asks where trim curves pass: pass `operand_patch`.
+// Pass `operand_patch` reads the cells that trim curves cross.
 layout(constant_id = 26) const bool MARKS_BORDERS = false;
 
 layout(local_size_x = 128) in;
 #include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-// texels, which a driver fetches at once where it gathers words of storage buffers one by one
+// texels: a driver fetches them at once, but gathers words of storage buffers one by one
 layout(binding = 1) uniform usamplerBuffer face_instances;
 layout(binding = 2) uniform usamplerBuffer faces;
 layout(binding = 3) uniform usamplerBuffer curves;
@@ -35,8 +35,8 @@ layout(binding = 7) uniform usamplerBuffer segment_starts;
 layout(binding = 8) uniform usamplerBuffer row_starts;
 layout(scalar, binding = 9) buffer RowCounts { uint row_counts[]; };
 layout(scalar, binding = 10) writeonly buffer Intercepts { uint intercepts[]; };
-layout(scalar, binding = 11) buffer BorderCells { uint border_cells[]; }; // four words a band, where MARKS_BORDERS
-layout(scalar, binding = 12) buffer RowWindings { int row_windings[]; }; // where SCENE_HAS_BINS
+layout(scalar, binding = 11) buffer BorderCells { uint border_cells[]; }; // four words a band, with MARKS_BORDERS
+layout(scalar, binding = 12) buffer RowWindings { int row_windings[]; }; // with SCENE_HAS_BINS
 
 #include "u_bins.glsl"
 #include "border_cells.glsl"
@@ -48,7 +48,7 @@ layout(scalar, binding = 12) buffer RowWindings { int row_windings[]; }; // wher
 
 uint first_segment(uint item) { return word_at(segment_starts, item); }
 
-// The curve item whose segments hold `segment`.
+// The curve item that contains segment `segment`.
 uint curve_of(uint segment) {
     uint lo = 0u;
     uint hi = frame.curve_count;
@@ -60,7 +60,7 @@ uint curve_of(uint segment) {
     return lo;
 }
 
-// Marks the bands of a bin from `lo` to `hi` of its strip, 0 to 1, as far as it has them.
+// Marks the bands of a bin from `lo` to `hi` of its strip, 0 to 1, clamped to the strip.
 void mark(uint bin_item, float lo, float hi, uvec4 columns) {
     float last_band = float(BORDER_BANDS - 1u);
     uint first = uint(clamp(floor(lo * float(BORDER_BANDS)), 0.0, last_band));
@@ -102,7 +102,7 @@ void main() {
         uint item = fi.first_bin + k * bins;
         StripRows rows = strip_rows(strips, item);
         if (rows.lines == 0u) continue;
-        // right of all that is seen, or of a loop that is left of it all
+        // right of all visible bins, or part of a loop that is left of all of them
         if (SCENE_HAS_BINS && (bin_of(left, bins) > last_bin(rows) || bin_of(curve.range_u.y, bins) < rows.first_bin)) continue;
         float mu = float(rows.lines);
         precise float low = a.y * strip_n - float(k);

@@ -1,13 +1,13 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `density`: pixels that each v-strip of a trimmed face can cover. One thread a cell.
+// Pass `density`: the pixels that each v-strip of a trimmed face can cover. One thread a cell.
 //
 //   |S_v| <= speed_v  and  W >= w over the cell   =>   strip height in pixels <= speed_v pixels / strips
 //
-// The largest over the strip's visible cells stands for the paper's sup rho; strips that nobody
-// sees get no scan line, and bins beyond those that are seen no row. A table for all views from about as far
-// (src/scene/whole_view.rs) takes the same density everywhere, seen or not. Twin: src/twin/density.rs.
+// The largest value of the strip's visible cells replaces the paper's sup rho. Strips without a visible cell get no
+// scan line, and bins beyond the visible ones no row. A table for all views from about the same distance
+// (src/scene/whole_view.rs) uses the same density everywhere, for hidden cells, too. Twin: src/twin/density.rs.
 #include "u_bins.glsl"
 #include "octahedral.glsl"
 #include "scene.glsl"
@@ -27,9 +27,9 @@ layout(scalar, binding = 5) readonly buffer Cells { Cell cells[]; };
 layout(scalar, binding = 6) readonly buffer CellItems { uint cell_face_instance[]; };
 layout(scalar, binding = 7) buffer StripHeights { uint strip_heights[]; }; // float bits, pixels
 layout(scalar, binding = 8) buffer FaceSpeeds { uint face_speeds[]; };     // float bits, pixels per unit u, v
-layout(scalar, binding = 9) buffer SeenBins { uint seen_bins[]; }; // a bit for each bin of a strip, where SCENE_HAS_BINS
+layout(scalar, binding = 9) buffer SeenBins { uint seen_bins[]; }; // a bit for each bin of a strip, with SCENE_HAS_BINS
 
-// That one unit of the cell can cover; negative where nobody sees it.
+// Pixels that one unit of the cell can cover; negative if the cell is not visible.
 float pixels_of(FaceInstance fi, Face face, Cell cell) {
     Instance instance = instances[fi.instance];
     if (frame.table_density > 0.0) return frame.table_density * instance.scale;

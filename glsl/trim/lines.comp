@@ -1,9 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `lines`: mu = ceil(height / spacing) scan lines for each v-strip, and a row of each in every bin from the first to
-// the last that is seen. One thread a bin, of which the first of a strip has all its rows.
-// Twin: src/twin/lines.rs.
+// Pass `lines`: mu = ceil(height / spacing) scan lines for each v-strip, and a row of each in every bin from the first
+// to the last visible one. One thread a bin; the first bin of a strip counts all of its rows. Twin: src/twin/lines.rs.
 #include "u_bins.glsl"
 #include "scene.glsl"
 

@@ -21,7 +21,7 @@ layout(binding = 4) uniform usamplerBuffer curve_items; // the placed face of ea
 layout(binding = 5) uniform usamplerBuffer strip_starts;
 layout(scalar, binding = 6) readonly buffer FaceSpeeds { uint face_speeds[]; };
 layout(scalar, binding = 7) writeonly buffer SegmentCounts { uint segment_counts[]; };
-layout(scalar, binding = 8) readonly buffer SeenBins { uint seen_bins[]; }; // where SCENE_HAS_BINS
+layout(scalar, binding = 8) readonly buffer SeenBins { uint seen_bins[]; }; // with SCENE_HAS_BINS
 
 #include "u_bins.glsl"
 #include "curves.glsl"
@@ -33,8 +33,8 @@ const float MAX_SEGMENTS = 65536.0;
 
 uint first_row(uint bin_item) { return word_at(strip_starts, bin_item); }
 
-// Scan lines of a face's strips from `lo` to `hi` that have rows where the curve counts: in a bin that it or what is
-// right of it in its loop reaches. Of a loop left of all bins that are seen no winding number is left.
+// Scan lines of those strips from `lo` to `hi` that have a visible bin between the curve's lowest u and its loop's
+// highest. A loop left of all visible bins adds nothing to winding numbers there.
 uint lines_of(FaceInstance fi, uint bins, uint lo, uint hi, Curve curve) {
     if (!SCENE_HAS_BINS) return first_row(fi.first_bin + hi + 1u) - first_row(fi.first_bin + lo);
     uint from = bin_of(curve.range_u.x, bins);

@@ -1,8 +1,9 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `sizes`: where the rows of each v-strip are, as a look-up wants it; and of the whole trim table rows and segments,
-// and the dispatches that follow from them. One thread a bin, of which the first of all does the rest. Twin: src/twin/sizes.rs.
+// Pass `sizes`: the rows of each v-strip, as the look-up reads them; for the whole trim table, the numbers of rows and
+// segments and the dispatches that follow. One thread a bin; the first of all also does the rest. Twin:
+// src/twin/sizes.rs.
 #include "u_bins.glsl"
 #include "scene.glsl"
 
@@ -18,11 +19,11 @@ layout(scalar, binding = 2) readonly buffer SegmentStarts { uint segment_starts[
 layout(scalar, binding = 3) writeonly buffer Dispatches { uvec3 dispatches[]; }; // cross, sort, scan of the rows
 layout(scalar, binding = 4) writeonly buffer Strips { StripRows strips[]; };
 layout(scalar, binding = 5) buffer CountersBuffer { Counters counters; };
-layout(scalar, binding = 6) readonly buffer SeenBins { uint seen_bins[]; }; // where SCENE_HAS_BINS
+layout(scalar, binding = 6) readonly buffer SeenBins { uint seen_bins[]; }; // with SCENE_HAS_BINS
 
 const uint GROUP = 128u;        // threads of a workgroup in passes cross and sort
 const uint SCAN_BLOCK = 1024u;  // rows of a workgroup in the prefix sum
-const uint MOST_NUMBERED = 0x80000000u; // the threads that fill the last row have numbers of 32 bits too
+const uint MOST_NUMBERED = 0x80000000u; // the threads that fill the last row have 32-bit numbers, too
 
 void main() {
     uint strip = thread_number();

@@ -1,10 +1,10 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `sort`: each row in order of u, reduced to the places where inside and outside change.
-// One thread a row; sorted, so that the result does not depend on the order of insertion: few intercepts, as most rows
-// have, in registers, the others by heap, in place. What a row holds behind its flips is nobody's. A driver may end the loops
-// of a row of more than some 4500: that counts as a clamp.
+// Pass `sort`: sorts each row by u, and reduces it to the places where inside and outside change. One thread a row.
+// Sorting makes the result independent of the order of insertion. Few intercepts, as most rows have, are sorted in
+// registers, others in place by heap sort. Words behind a row's flips are unused. A driver may end the loops of a row
+// of more than some 4500, which counts as a clamp.
 //
 //   intercepts   ↑  ↑  ↓  ↑  ↓  ↓        winding   0 1 2 1 2 1 0
 //   flips        |              |        inside    0 1 1 1 1 1 0
@@ -14,7 +14,7 @@
 #include "scene.glsl"
 #include "words.glsl"
 
-// Strips of some face have several bins: their rows begin with the winding number of what is left of them.
+// Strips of some face have several bins: their rows start with the winding number of the bins to the left.
 layout(constant_id = 1) const bool SCENE_HAS_BINS = false;
 
 layout(local_size_x = 128) in;
@@ -25,7 +25,7 @@ layout(scalar, binding = 2) readonly buffer RowTotal { uint row_total; };
 layout(scalar, binding = 3) writeonly buffer Rows { uvec2 rows[]; }; // first flip; flips << 1 | inside before it
 layout(scalar, binding = 4) buffer Intercepts { uint intercepts[]; };
 layout(scalar, binding = 5) buffer CountersBuffer { Counters counters; };
-layout(scalar, binding = 6) readonly buffer RowWindings { int row_windings[]; }; // where SCENE_HAS_BINS
+layout(scalar, binding = 6) readonly buffer RowWindings { int row_windings[]; }; // with SCENE_HAS_BINS
 
 const uint FEW = 16u;
 
@@ -42,8 +42,8 @@ void sift(uint first, uint root, uint count) {
     intercepts[first + root] = value;
 }
 
-// Each number finds its place among those before it, all of which stay in registers; how many flips there are. Loops as
-// long as the row: a rasterizer in software takes as many rounds as the longest of the rows that it works on at once.
+// Inserts each number among those before it, all in registers; returns the number of flips. Loops are as long as the
+// row: a software rasteriser runs as many rounds as the longest of the rows that it processes together.
 uint sort_few(uint first, uint count, int winding) {
     uint v[FEW];
     for (uint k = 0u; k < FEW; ++k) v[k] = 0xffffffffu;
@@ -80,7 +80,7 @@ void main() {
     uint first = word_at(row_starts, row);
     uint end = row + 1u < row_count ? word_at(row_starts, row + 1u) : row_total;
     if (end > frame.intercept_capacity) {
-        rows[row] = uvec2(first, 0u); // the host grows the table and records again
+        rows[row] = uvec2(first, 0u); // the host enlarges the table and records again
         return;
     }
     uint count = end - first;

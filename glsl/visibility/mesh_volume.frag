@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `mesh`, within a volume: which triangle is seen, where its point is within it.
+// Pass `mesh`, within a volume: writes the visible triangle, if its point is within the volume.
 #include "scene.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };

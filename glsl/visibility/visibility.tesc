@@ -25,8 +25,8 @@ layout(location = 3) patch out uvec2 out_place;
 layout(location = 4) patch out uvec2 out_splits;
 layout(location = 5) patch out uvec4 out_edges; // segments of the patch's sides u = 0, v = 0, u = 1, v = 1
 
-// A split patch reaches far beyond the picture: leave out the sub-patches that nobody sees. Every
-// point of one lies within `bend / 8 n^2` of the bilinear surface through its corners.
+// A split patch may reach far beyond the picture: sub-patches outside it are left out. Every point of one lies within
+// `bend / 8 n^2` of the bilinear surface through its corners.
 bool seen(Patch patch_, View view, vec2 lo, vec2 hi, float far) {
     vec3 a = patch_jet(patch_.first, patch_.shape, lo).point;
     vec3 b = patch_jet(patch_.first, patch_.shape, hi).point;
@@ -60,7 +60,7 @@ void main() {
     outer.y = place.y == 0u ? edges.y / splits.x : inner.x;
     outer.z = place.x + 1u == splits.x ? edges.z / splits.y : inner.y;
     outer.w = place.y + 1u == splits.y ? edges.w / splits.x : inner.x;
-    // faces of operands are among the others
+    // the draw also contains faces of operands
     bool operand = (face_at(fi.face).flags & FACE_OPERAND) != 0u;
     if (SCENE_HAS_OPERANDS && operand != DRAWS_OPERANDS) outer = uvec4(0u);
     if (splits != uvec2(1u)) {

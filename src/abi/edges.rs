@@ -12,7 +12,7 @@ pub struct EdgePiece {
     pub edge: u32,
 }
 
-/// What is drawn along an edge.
+/// The line along one edge.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
 pub struct EdgeLine {
@@ -23,7 +23,7 @@ pub struct EdgeLine {
     pub off: f32,
 }
 
-/// A piece as it is placed.
+/// A placed piece.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
 pub struct EdgeItem {

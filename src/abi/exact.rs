@@ -3,16 +3,16 @@
 pub use crate::abi::constants::exact::{ARC_LAST, ARC_UP, CELL_SPLIT};
 use bytemuck::{Pod, Zeroable};
 
-/// Where a face's cells are.
+/// The place of a face's cells.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
 pub struct ExactFace {
     pub first_cell: u32,
-    /// Place of the first column; that of the first row in the upper half. Signed.
+    /// Number of the first column; in the upper half, number of the first row. Signed.
     pub first: u32,
-    /// Columns; rows in the upper half.
+    /// Number of columns; in the upper half, number of rows.
     pub counts: u32,
-    /// Columns to the domain, as a power of two; rows in the upper half.
+    /// Columns in the domain, as a power of two; in the upper half, rows.
     pub bits: u32,
 }
 
@@ -22,7 +22,7 @@ pub struct ExactFace {
 pub struct ExactCell {
     /// First arc of its list, or [`CELL_SPLIT`] and its first part.
     pub first: u32,
-    /// Winding number by what is not in the list; or halvings.
+    /// Winding number of the arcs that are not in the list; or halvings.
     pub winding: i32,
 }
 

@@ -1,4 +1,4 @@
-//! What changes with every frame.
+//! Data that changes in every frame.
 
 pub use crate::abi::constants::scene::ENCODE_SUMMED;
 use bytemuck::{Pod, Zeroable};
@@ -58,13 +58,14 @@ pub struct Frame {
     pub spread_px: f32,
     pub samples: u32,
     pub style: u32,
+    pub curvature: f32,
     pub most_groups: u32,
     pub focal_px: [f32; 2],
     pub principal_px: [f32; 2],
 }
 
 impl Counters {
-    /// The larger of each count, of two samples of one frame.
+    /// The larger of each count, for two samples of one frame.
     pub fn most(self, other: Self) -> Self {
         let (mut all, others) = (self, bytemuck::cast::<Self, [u32; COUNTERS]>(other));
         let words: &mut [u32; COUNTERS] = bytemuck::cast_mut(&mut all);
@@ -118,7 +119,7 @@ pub struct Factors {
     pub splits: u32,
 }
 
-/// A pixel for pass `gap_fill`, and what is seen there.
+/// A pixel for pass `gap_fill`, with the surface visible there.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
 pub struct GapCandidate {

@@ -2,7 +2,7 @@
 //! `view.glsl`, `edges.glsl`, `exact.glsl`, `solids.glsl`, `tiles.glsl` and `sun.glsl`; the build asserts every offset and stride
 //! against the compiled shaders.
 
-// Fields carry their meaning and units in the GLSL, which the build holds them against.
+// the GLSL states the meaning and units of the fields; the build compares both
 #![allow(missing_docs)]
 
 mod edges;
@@ -23,8 +23,8 @@ pub use sun::*;
 
 include!(concat!(env!("OUT_DIR"), "/spirv/layout.rs"));
 
-/// The constants of `glsl/`, a module a file: what Rust and GLSL share is stated there alone.
-#[allow(dead_code, clippy::approx_constant, clippy::excessive_precision)] // GLSL has some for itself
+/// The constants of `glsl/`, one module a file. Constants that Rust and GLSL share are stated only there.
+#[allow(dead_code, clippy::approx_constant, clippy::excessive_precision)] // some constants are used only in GLSL
 pub mod constants {
     include!(concat!(env!("OUT_DIR"), "/spirv/constants.rs"));
 }

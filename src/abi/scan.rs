@@ -2,14 +2,14 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// What one prefix sum works on.
+/// The parameters of one prefix sum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ScanParams {
-    /// Elements; or, when the GPU holds their count, the most that there may be.
+    /// Number of elements; if a buffer has the count, the largest possible number.
     pub count: u32,
-    /// Where in `counts` the GPU holds their count.
+    /// Index of the count in `counts`.
     pub count_index: u32,
-    /// Where in `total` their sum goes.
+    /// Index of the sum in `total`.
     pub total_index: u32,
 }

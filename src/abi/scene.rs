@@ -1,4 +1,4 @@
-//! What stays in GPU memory while a model is loaded.
+//! Data that stays in GPU memory while a model is loaded.
 
 pub use crate::abi::constants::behind::OUTSIDE_CELLS;
 pub use crate::abi::constants::border_cells::BORDER_BANDS;
@@ -25,7 +25,7 @@ pub enum Side {
 ///
 /// ```text
 ///   shape   bits 0-3 degree_u | 4-7 degree_v | 8 rational | 9-10 Side | 11-14 borders | 15 a fine net follows |
-///           16-21, 22-27 pieces of its size in the patch that it was cut from, along u and v, less one
+///           16-21, 22-27 pieces of its size in the patch before the split, along u and v, less one
 /// ```
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
@@ -67,9 +67,9 @@ impl Patch {
         shape | 1 << 15
     }
 
-    /// The same word of a patch that is such shares of a larger one, along u and v.
+    /// The same word for a patch that covers these shares of a larger one, along u and v.
     pub fn with_shares(shape: u32, shares: [f64; 2]) -> u32 {
-        // how many there would be of them, less one: six bits each
+        // the number of pieces of this size, less one: six bits each
         let [u, v] = shares.map(|share| ((1.0 / share).ceil() as u32).clamp(1, 64) - 1);
         shape & 0xffff | u << 16 | v << 22
     }
@@ -105,18 +105,17 @@ impl Patch {
     }
 }
 
-/// A side of a patch that is shared with other faces': one of a ring. `place` is 0 where a side is not.
-///
+/// A side of a patch that other faces share: one of a ring of sides. `place` is 0 if the side is not shared.
 /// ```text
 ///   place   bits 0-12 start | 13-16 halvings | 17 reversed | 18 owner | 19 shared
 /// ```
 ///
-/// The ring's sides lie on one curve, this one from `start / 2^halvings`, `1 / 2^halvings` long; each piece of the curve is
-/// that of its *owner*'s control points.
+/// The ring's sides lie on one curve; this one begins at `start / 2^halvings` and is `1 / 2^halvings` long. The control
+/// points of each piece of the curve are those of its *owner*.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
 pub struct Link {
-    /// The next side of the ring: four times its patch, and which of `u = 0`, `v = 0`, `u = 1`, `v = 1`.
+    /// The next side of the ring: four times its patch, plus 0 to 3 for `u = 0`, `v = 0`, `u = 1`, `v = 1`.
     pub next: u32,
     pub place: u32,
 }
@@ -131,7 +130,7 @@ impl Link {
         Self { next, place }
     }
 
-    /// How often the ring's curve was halved to make this side.
+    /// Number of halvings of the ring's curve that give this side.
     pub fn halvings(&self) -> u32 {
         self.place >> 13 & 15
     }
@@ -161,7 +160,7 @@ pub struct Face {
     pub count_u: u32,
     pub count_v: u32,
     pub first_cell: u32,
-    /// Up to whole texels.
+    /// Padding to whole texels.
     pub unused: [u32; 3],
 }
 
@@ -175,7 +174,7 @@ pub struct FaceInstance {
     pub first_bin: u32,
     pub first_cell: u32,
     pub first_curve: u32,
-    /// Up to whole texels.
+    /// Padding to whole texels.
     pub unused: [u32; 2],
 }
 
@@ -188,7 +187,7 @@ pub struct Instance {
     pub colour: u32,
     pub mirrored: u32,
     pub shell: u32,
-    /// Up to whole texels.
+    /// Padding to whole texels.
     pub unused: [u32; 3],
 }
 
@@ -228,7 +227,7 @@ pub struct Cell {
 /// See [`BORDER_BANDS`].
 pub const BORDER_COLUMNS: u32 = crate::abi::constants::border_cells::BORDER_COLUMNS as u32;
 
-/// Where the rows of a v-strip are: `glsl/include/u_bins.glsl`.
+/// The rows of a v-strip: `glsl/include/u_bins.glsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
 pub struct StripRows {

@@ -1,4 +1,4 @@
-//! Boolean solids: leaves, their surfaces, and the tiles that see them.
+//! Boolean solids: leaves, their surfaces, and the tiles that may show them.
 
 pub use crate::abi::constants::shells::NO_PLANE;
 #[cfg(any(test, feature = "baselines"))]
@@ -13,7 +13,7 @@ pub use crate::abi::constants::tiles::{BLOCK, LEAF_RUN, TILE};
 pub use crate::abi::constants::tiles::{TILE_LEAF_ENTRY, TILE_LEAF_GATE};
 use bytemuck::{Pod, Zeroable};
 
-/// What to call scenes of this most general kind.
+/// The name of scenes with this most general kind of surface.
 pub(crate) fn surface_kind(most: u32) -> &'static str {
     match most {
         SURFACE_PLANE => "planes",
@@ -48,7 +48,7 @@ pub struct Leaf {
 }
 
 impl Leaf {
-    /// Its first side, or its shell's number, and its flags, in one word.
+    /// One word with its first side, or its shell's number, and its flags.
     pub fn own(&self) -> u32 {
         self.first << LEAF_FLAG_BITS | self.flags
     }
@@ -73,7 +73,7 @@ pub struct TileLeaf {
     pub of: u32,
 }
 
-/// A mesh that bounds an operand.
+/// A mesh of an operand.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
 pub struct OperandMesh {
@@ -85,7 +85,7 @@ pub struct OperandMesh {
     pub leaf: u32,
 }
 
-/// Where a ray crosses an operand.
+/// A crossing of a ray with an operand.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
 pub struct Fragment {

@@ -1,4 +1,4 @@
-//! The sun: where it is, and what it sees of what casts shadows. Twin of `glsl/include/sun.glsl`.
+//! The sun: its direction, and the tiles of its picture. Twin of `glsl/include/sun.glsl`.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -15,7 +15,7 @@ pub struct Sun {
     pub crack: f32,
 }
 
-/// A tile of what the sun sees.
+/// A tile of the sun's picture.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
 pub struct SunTile {
@@ -28,7 +28,7 @@ pub struct SunTile {
     pub end_facet: u32,
 }
 
-/// A triangle of an operand, as the sun sees it.
+/// A triangle of an operand, projected along the sun's rays.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
 pub struct SunTriangle {
@@ -39,7 +39,7 @@ pub struct SunTriangle {
     pub slack: f32,
 }
 
-/// A triangle of a placed part, likewise.
+/// A triangle of a placed part, projected likewise.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
 pub struct SunFacet {

@@ -4,18 +4,17 @@
 //! ```text
 //!   v ▲  band 3 ┌──────┬─────┐            bands of v; in each, cells of u that hold the pieces there,
 //!     │  band 2 │ ╱‾╲  │  ╱  │  …         cut so that no piece lies in two cells of a band
-//!     │  band 1 │ │ │  │ ╱   │            a point between cells: the parity of what is left of it
-//!     │  band 0 └──────┴─────┘            in a cell: its pieces, each bisected until the box of what
-//!     └───────────────────────▶ u         remains of it lies on one side of the point
+//!     │  band 1 │ │ │  │ ╱   │            a point between cells: the parity of the pieces left of it
+//!     │  band 0 └──────┴─────┘            in a cell: its pieces, each bisected until the box of the rest
+//!     └───────────────────────▶ u         lies on one side of the point
 //! ```
 //!
-//! Pieces are rational Bézier curves that turn back in neither coordinate. In the source bands end at every
-//! end of a piece, and cells are made of the boxes of whole pieces: [`Sorted::Source`]. Tuned beyond it,
-//! [`Sorted::Tuned`]: bands are not more than `most_bands`, because a band for each end of 40,000 pieces costs
-//! tens of megabytes; and a piece reaches in a cell only as far as in its band. Beyond the source in both: the
-//! bracket that is left after the last step is taken as a chord, straight pieces need no step, and a box that
-//! lies between two cells is told as a whole. The shader is `glsl/include/baselines/bisect.glsl`, its twin is
-//! [`Bisect::contains`].
+//! Pieces are rational Bézier curves, monotone in both coordinates. In the source, bands end at every end of a piece,
+//! and cells are unions of the boxes of whole pieces: [`Sorted::Source`]. [`Sorted::Tuned`] limits the number of bands
+//! to `most_bands`, because a band for each end of 40,000 pieces takes tens of megabytes, and clips the boxes to the
+//! band. Both differ from the source in three ways: the bracket after the last step is replaced by a chord, straight
+//! pieces need no step, and a pixel's box between two cells is decided as a whole. The shader is
+//! `glsl/include/baselines/bisect.glsl`, its twin is [`Bisect::contains`].
 
 use super::Sorted;
 use crate::model::{Face, TrimLoop};
@@ -27,25 +26,25 @@ use glam::{DVec2, DVec3, Vec2};
 /// Steps in the source.
 pub const STEPS: u32 = 16;
 
-/// Of one face.
+/// The bands of one face.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct BisectFace {
     /// Index of its first band.
     pub first_band: u32,
-    /// Its bands; one more ends the last.
+    /// Number of its bands; one more band ends the last.
     pub band_count: u32,
     /// Most bisections of a piece.
     pub steps: u32,
 }
 
-/// A range of v: above its own, up to the next band's.
+/// A range of v: from its own `v`, exclusive, to the next band's.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Band {
-    /// Above this.
+    /// Lower end, exclusive.
     pub v: f32,
-    /// Index of its first cell; its last comes before the next band's first.
+    /// Index of its first cell; its cells end at the next band's first.
     pub first_cell: u32,
 }
 
@@ -53,9 +52,9 @@ pub struct Band {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Cell {
-    /// From here
+    /// Smallest u of the pieces.
     pub u_lo: f32,
-    /// to here the pieces reach.
+    /// Largest u of the pieces.
     pub u_hi: f32,
     /// Index into the list of pieces.
     pub first: u32,
@@ -67,9 +66,9 @@ pub struct Cell {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Piece {
-    /// Its ends, bit for bit those of its neighbours.
+    /// Start point; neighbouring pieces share it bit for bit.
     pub start: [f32; 2],
-    /// See `start`.
+    /// End point, shared likewise.
     pub end: [f32; 2],
     /// Index of its first homogeneous control point.
     pub first: u32,
@@ -82,20 +81,20 @@ pub struct Piece {
 pub struct Bisect {
     /// One a face.
     pub faces: Vec<BisectFace>,
-    /// Of all faces.
+    /// Bands of all faces.
     pub bands: Vec<Band>,
-    /// Of all bands.
+    /// Cells of all bands.
     pub cells: Vec<Cell>,
     /// Indices of pieces, cell by cell.
     pub lists: Vec<u32>,
-    /// Of all faces.
+    /// Pieces of all faces.
     pub pieces: Vec<Piece>,
     /// Homogeneous, in normalised (u, v).
     pub points: Vec<[f32; 3]>,
 }
 
-/// Bands of a face with so many pieces: with evenly spread ones, a band then has about as many cells as
-/// there are bands, both found by a binary search.
+/// Most bands for this number of pieces. With evenly spread pieces, a band then has about as many cells as there are
+/// bands; both are found by binary search.
 fn most_bands(pieces: usize) -> usize {
     4 * (pieces as f64).sqrt().ceil() as usize + 4
 }
@@ -122,7 +121,7 @@ impl Bisect {
         let mut members = vec![Vec::new(); ends.len()];
         for (k, piece) in self.pieces[first_piece..].iter().enumerate() {
             let (lo, hi) = (piece.start[1].min(piece.end[1]), piece.start[1].max(piece.end[1]));
-            // crossed by scan lines above lo, up to hi; a level one parts what is above it from what is below
+            // a scan line crosses a piece above `lo` and up to `hi`; a horizontal piece crosses none
             let from = ends.partition_point(|v| *v <= lo).max(1) - 1;
             let to = ends.partition_point(|v| *v < hi);
             members[from..to].iter_mut().for_each(|m: &mut Vec<usize>| m.push(k));
@@ -163,7 +162,7 @@ impl Bisect {
         }
     }
 
-    /// Where bands begin, and where the last one ends: at ends of pieces.
+    /// The starts of the bands, and the end of the last: at ends of pieces.
     fn band_ends(&self, first_piece: usize, sorted: Sorted) -> Vec<f32> {
         let pieces = &self.pieces[first_piece..];
         let mut ends: Vec<f32> = pieces.iter().flat_map(|p| [p.start[1], p.end[1]]).collect();
@@ -214,7 +213,7 @@ impl Bisect {
         of(&self.faces) + of(&self.bands) + of(&self.cells) + of(&self.lists) + of(&self.pieces) + of(&self.points)
     }
 
-    /// Whether a face holds the point: what the shader computes.
+    /// Whether a point is inside a face, as the shader computes it.
     pub fn contains(&self, face: usize, p: Vec2) -> bool {
         let face = self.faces[face];
         let bands = &self.bands[face.first_band as usize..][..face.band_count as usize + 1];
@@ -234,7 +233,7 @@ impl Bisect {
         (cell.count >> 30 & 1 != 0) != (left % 2 == 1)
     }
 
-    /// The piece crosses the point's scan line at or left of it.
+    /// Whether the piece crosses the point's scan line at the point or left of it.
     fn is_left(&self, piece: &Piece, p: Vec2, steps: u32) -> bool {
         let (start, end) = (Vec2::from(piece.start), Vec2::from(piece.end));
         if (start.y >= p.y) == (end.y >= p.y) {
@@ -281,8 +280,8 @@ impl Bisect {
     }
 }
 
-/// The range of u in which a piece lies between two scan lines, with some units in the last place to spare: of u, and of
-/// the lines, since the shader rounds the piece, and where it is nearly level a unit of v is many of u.
+/// The range of u of a piece between two scan lines, with some units in the last place to spare for u and for the
+/// lines. The shader rounds the piece, and in a nearly horizontal piece one unit of v is many units of u.
 fn clipped(piece: &Piece, curve: &Bezier<DVec3>, bottom: f32, top: f32) -> (f32, f32) {
     let (lower, upper) =
         if piece.start[1] <= piece.end[1] { (piece.start, piece.end) } else { (piece.end, piece.start) };
@@ -297,7 +296,7 @@ fn clipped(piece: &Piece, curve: &Bezier<DVec3>, bottom: f32, top: f32) -> (f32,
     };
     let slack = 8.0 * f32::EPSILON;
     let (bottom, top) = (bottom - slack, top + slack);
-    // a level one all along
+    // a horizontal piece lies in the band as a whole
     let a = if bottom <= lower[1] { lower[0] } else { at(bottom) };
     let b = if top >= upper[1] { upper[0] } else { at(top) };
     (a.min(b) - slack, a.max(b) + slack)

@@ -1,4 +1,4 @@
-//! A face with as many holes as one likes: what tells ways to trim apart.
+//! A face with any number of holes, on which ways to trim differ most.
 //!
 //! ```text
 //!   ┌───────────────┐     a wavy bicubic sheet, 100 x 100 mm; in each cell of a grid one round hole,
@@ -42,7 +42,7 @@ pub fn many_holes(across: usize) -> Model {
     }
 }
 
-/// A uniform bicubic B-spline: a wave each way.
+/// A uniform bicubic B-spline with waves in both directions.
 fn sheet() -> Surface {
     let spans = NET - 3;
     let inner = (1..spans).map(|i| SIDE * i as f64 / spans as f64);

@@ -1,4 +1,4 @@
-//! Other ways to do a pass' work, for benchmarks and tests to put beside the engine's own. No embedder gets them.
+//! Baselines: other methods for a pass' work, for benchmarks and tests. They are not part of the embedders' interface.
 //!
 //! | way to trim | decides | knob |
 //! |---|---|---|
@@ -10,9 +10,9 @@
 //! |---|---|---|
 //! | `factors` | several bounds behind one interface, `slefe`s among them | cuts, segments, level |
 //!
-//! Each is written as its source says, and tuned where that leaves room, so that a comparison is worth
-//! something. What they need on the GPU hangs on the same seam as the engine's own ways, behind the feature `baselines`:
-//! `SceneOptions` beside a host's settings say what a scene is made by.
+//! Each follows its source, and is tuned where the source leaves a choice, so the comparison is fair. On the GPU, a
+//! baseline uses the same interfaces as the engine's own ways, behind the feature `baselines`. `SceneOptions` selects
+//! it, in addition to a host's settings.
 
 pub mod bisect;
 pub mod factors;

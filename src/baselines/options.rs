@@ -1,4 +1,4 @@
-//! What a scene is made by in place of the engine's own ways: no setting of a host's names it.
+//! Options that replace the engine's own ways by baselines. No setting of a host names them.
 
 use serde::Serialize;
 
@@ -12,11 +12,11 @@ pub enum Sorted {
     Tuned,
 }
 
-/// Other ways to trim, each with the number that its accuracy hangs on.
+/// Baseline ways to trim, each with the parameter that determines its accuracy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TrimMethod {
-    /// No test: what a frame costs before it is trimmed.
+    /// No test: measures a frame without trimming.
     Untrimmed,
     /// Monotone pieces, bisected in every pixel.
     Bisect {
@@ -33,7 +33,7 @@ pub enum TrimMethod {
 }
 
 impl TrimMethod {
-    /// As in messages.
+    /// The name in messages.
     pub fn name(self) -> &'static str {
         match self {
             Self::Untrimmed => "untrimmed",
@@ -43,16 +43,17 @@ impl TrimMethod {
     }
 }
 
-/// What is done otherwise than a host's [`SceneSettings`](crate::picture::SceneSettings) say.
+/// Changes to a host's [`SceneSettings`](crate::picture::SceneSettings).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SceneOptions {
     /// How to trim, in place of [`SceneSettings::trim`](crate::picture::SceneSettings::trim).
     pub trim: Option<TrimMethod>,
-    /// Patches are divided by slefes of so many segments, 1 to 9, where
-    /// [`FrameSettings::levels`](crate::picture::FrameSettings::levels) says
-    /// [`Levels::Bound`](crate::picture::Levels::Bound): see [`factors`](super::factors). The promise is *not* kept.
+    /// Patches are divided by slefes of so many segments, 1 to 9, if
+    /// [`FrameSettings::levels`](crate::picture::FrameSettings::levels) is
+    /// [`Levels::Bound`](crate::picture::Levels::Bound): see [`factors`](super::factors). The promise does *not* hold.
     pub slefe_segments: Option<usize>,
-    /// Before pass `visibility` the same sub-patches are drawn without a trim test, which nobody sees: pass `visibility
-    /// untested` tells what tests cost. Not in scenes with anything but patches, and where nothing is trimmed.
+    /// Before pass `visibility`, the same sub-patches are drawn without a trim test and then cleared: the time of pass
+    /// `visibility untested` shows the cost of the tests. Only in scenes with nothing but patches, some of them
+    /// trimmed.
     pub untested: bool,
 }

@@ -1,16 +1,16 @@
-//! The industrial practice: every trimmed face triangulated once, at a fixed deflection.
+//! Pretessellation: every trimmed face triangulated once, with a fixed deflection.
 //!
 //! ```text
 //!   loops ──chords within the deflection──▶ constraints ┐
 //!   grid inside the face, by the second derivatives ────┴▶ constrained Delaunay ──▶ inner triangles
 //!                                                             ▲                         │
-//!                                                             └── middles of those ◀────┘
+//!                                                             └── middles of triangles ◀┘
 //!                                                                 that bulge too far
 //! ```
 //!
-//! What CAD viewers do (Open CASCADE's `BRepMesh_IncrementalMesh` with a linear deflection); the
-//! constrained Delaunay triangulation is `spade`'s. Neighbouring faces are cut apart from each other, as
-//! the model holds them, so their borders may part by twice the deflection.
+//! This is what CAD viewers do (Open CASCADE's `BRepMesh_IncrementalMesh` with a linear deflection). The constrained
+//! Delaunay triangulation is `spade`'s. Neighbouring faces are triangulated separately, so their borders may be apart
+//! by twice the deflection.
 
 use crate::model::{Face, Mesh, Model, Part, TrimLoop};
 use crate::spline::{Bezier, PatchGrid};
@@ -19,15 +19,15 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use spade::{ConstrainedDelaunayTriangulation, InsertionError, Point2, Triangulation};
 
-/// Halvings of a curve before its chord is taken as it is: 2^20 chords a curve.
+/// Most halvings of a curve: 2^20 chords a curve.
 const MOST_HALVINGS: u32 = 20;
-/// Rounds in which triangles that bulge get their middle as a point. Each round divides a triangle's
-/// bulge by about three; the grid is nearly fine enough already.
+/// Most rounds that add the middles of bulging triangles. Each round divides a triangle's bulge by about three, and the
+/// initial grid is nearly fine enough.
 const MOST_ROUNDS: u32 = 8;
-/// Points of the grid along one side of a patch, at most.
+/// Most points of the grid along one side of a patch.
 const MOST_STEPS: f64 = 4096.0;
 
-/// What the triangulation came to.
+/// Statistics of the triangulation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Triangulated {
     /// All triangles.
@@ -38,8 +38,8 @@ pub struct Triangulated {
     pub missing: usize,
 }
 
-/// The model with a mesh of the face's number in the place of each face. `deflection`: largest distance
-/// between a chord or triangle and the surface, in model units; above 0.
+/// The model with each face replaced by a mesh with the face's number. `deflection` is the largest distance between a
+/// chord or triangle and the surface, in model units; above 0.
 pub fn pretessellated(model: &Model, deflection: f64) -> (Model, Triangulated) {
     let mut all = Triangulated::default();
     let parts = model.parts.iter().map(|part| {
@@ -63,14 +63,14 @@ pub fn pretessellated(model: &Model, deflection: f64) -> (Model, Triangulated) {
 
 type Cdt = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
-/// A face in the making: (u, v) is scaled so that its units are about as long as the model's.
+/// A face during triangulation: (u, v) is scaled so that its units are about as long as the model's.
 struct Net<'a> {
     grid: &'a PatchGrid,
     scale: DVec2,
     cdt: Cdt,
 }
 
-/// One face as a mesh, and how many of its triangles bulge.
+/// One face as a mesh, and the number of its triangles that bulge.
 fn triangulated(face: &Face, deflection: f64) -> (Option<Mesh>, usize) {
     let grid = face.surface.patches();
     let ((u0, u1), (v0, v1)) = face.surface.domain();
@@ -104,7 +104,7 @@ impl Net<'_> {
             for (k, &from) in ring.iter().enumerate() {
                 let to = ring[(k + 1) % ring.len()];
                 if from != to {
-                    // chords of neighbouring loops may cross where the loops nearly touch
+                    // chords of neighbouring loops may cross if the loops nearly touch
                     self.cdt.add_constraint_and_split(from, to, |p| p);
                 }
             }
@@ -130,7 +130,7 @@ impl Net<'_> {
     }
 
     fn point(&self, p: DVec2) -> Point2<f64> {
-        // spade refuses numbers so small that its predicates lose them
+        // spade rejects numbers so small that its predicates underflow
         let kept = |x: f64| if x.abs() < spade::MIN_ALLOWED_VALUE { 0.0 } else { x };
         Point2::new(kept(p.x * self.scale.x), kept(p.y * self.scale.y))
     }
@@ -139,8 +139,8 @@ impl Net<'_> {
         DVec2::new(p.x, p.y) / self.scale
     }
 
-    /// Where the triangles that bulge beyond the deflection are to be cut: at the middle of the inner side
-    /// that bulges, or at their own. The border stays as it is: the neighbour knows nothing of new points.
+    /// The points to add for triangles that bulge beyond the deflection: the middle of a bulging inner side, or of the
+    /// triangle. Sides at the border stay, because the neighbouring face would not get the new point.
     fn bulging(&self, index: &LoopIndex, deflection: f64) -> Vec<DVec2> {
         let at = |p: DVec2| self.grid.point(p.x, p.y);
         let mut cuts = Vec::new();
@@ -200,13 +200,13 @@ impl Net<'_> {
     }
 }
 
-/// The loop of these corners; `None` when they are fewer than a triangle's.
+/// The loop of these corners; `None` if there are fewer than three.
 fn polygon(points: &[DVec2]) -> Option<TrimLoop> {
     let lines = (0..points.len()).map(|k| (points[k], points[(k + 1) % points.len()])).filter(|(a, b)| a != b);
     TrimLoop::new(lines.map(|(a, b)| Bezier::line(a, b)).collect(), DVec2::ZERO).ok()
 }
 
-/// Points along a chain of curves whose chords stay within `deflection` of it, on the surface.
+/// Points along a chain of curves such that chords, on the surface, stay within `deflection` of the chain.
 fn chords(grid: &PatchGrid, curves: impl Iterator<Item = Bezier<DVec3>>, deflection: f64) -> Vec<DVec2> {
     let mut points = Vec::new();
     for curve in curves {
@@ -238,7 +238,7 @@ fn from_line(p: DVec3, a: DVec3, b: DVec3) -> f64 {
     p.distance(a + along * t)
 }
 
-/// A grid in each patch so fine that triangles between its points stay within the deflection:
+/// A grid in each patch such that triangles between its points stay within the deflection:
 /// `|S - triangle| <= (|S_uu| h_u² + 2 |S_uv| h_u h_v + |S_vv| h_v²) / 8`.
 fn inner(grid: &PatchGrid, deflection: f64) -> Vec<DVec2> {
     let mut points = Vec::new();

@@ -2,18 +2,18 @@
 //! T-spline surfaces*, 2005.
 //!
 //! ```text
-//!   ┌─────────┐    each placed face has a texture of one bit a texel, as fine as the nearest part of it
-//!   │ .##.... │    is seen; drawn anew in every view
+//!   ┌─────────┐    each placed face has a texture of one bit a texel, as fine as its nearest part needs;
+//!   │ .##.... │    it is drawn again for every view
 //!   │ .####.. │
-//!   └─────────┘    a fan of triangles from a point at infinity to the edges of a loop, each inverting
-//!     ▶▶▶▶▶▶▶      what it covers, is in each row a run from a crossing to the end: so a crossing inverts
-//!                  one texel, and a pass along the rows inverts what follows
+//!   └─────────┘    a fan of triangles from a point at infinity to the edges of a loop inverts the texels that it
+//!     ▶▶▶▶▶▶▶      covers: in each row, all texels from a crossing to the end. So a crossing inverts
+//!                  one texel, and a pass along the rows accumulates the bits
 //! ```
 //!
-//! Tuned beyond the source: 32 texels a word, which is the least memory that an exact answer a texel can
-//! take, and one pass along the rows instead of the runs' overdraw. Off by half a texel in u and in v, and by
-//! a sixteenth for the chords. A texture larger than the device binds does not fit, and no frame is drawn:
-//! [`GpuError::TooLarge`](crate::gpu::GpuError::TooLarge). Passes: `src/frame/baselines/texture.rs`.
+//! Tuned beyond the source: 32 texels a word, the least memory for one answer a texel, and one pass along the rows
+//! instead of overdraw. The error is half a texel in u and in v, and a sixteenth for the chords. If a texture is larger
+//! than the device binds, no frame is drawn: [`GpuError::TooLarge`](crate::gpu::GpuError::TooLarge). Passes:
+//! `src/frame/baselines/texture.rs`.
 
 use super::{SceneOptions, TrimMethod};
 use crate::abi::Frame;
@@ -21,10 +21,9 @@ use crate::model::{Camera, Model};
 use crate::scene::{SceneData, SceneRequest, UndrawnSolid, seen_by, view};
 use crate::twin;
 
-/// Bytes that all textures take in a view, had they room: what the passes count, without their limits.
+/// Bytes of all textures of a view, without a limit.
 ///
-/// # Errors
-/// The model cannot be drawn at all.
+/// # Errors The model cannot be drawn.
 pub fn wanted_bytes(model: &Model, camera: &Camera, eighths: u32) -> Result<f64, UndrawnSolid> {
     let baseline = SceneOptions { trim: Some(TrimMethod::Texture { eighths }), ..SceneOptions::default() };
     let data = SceneData::new(model, SceneRequest { baseline, ..SceneRequest::default() })?;

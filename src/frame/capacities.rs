@@ -1,7 +1,7 @@
-//! How much of everything a frame has room for: by what the scene has, and by what the frame before wanted.
+//! The sizes of a frame's lists: from the scene's counts, and from the counters of the previous frame.
 //!
 //! ```text
-//!   Counts       what the scene has ──first──▶ Capacities ──Stages──▶ a frame ──▶ Counters
+//!   Counts       of the scene     ──first──▶ Capacities ──Stages──▶ a frame ──▶ Counters
 //!                                                  ▲                                  │ failed
 //!                                                  └──────────────── grown ◀──────────┘
 //! ```
@@ -11,7 +11,7 @@ use super::{edges, gaps, solids, tessellation, trim};
 use crate::abi::Counters;
 use crate::gpu::{Device, Texel};
 
-/// Room for what only the GPU can count, of each stage that counts.
+/// The sizes of lists whose length only the GPU computes, for each stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Capacities {
     pub tessellation: tessellation::Capacities,
@@ -21,14 +21,14 @@ pub(crate) struct Capacities {
     pub edges: edges::Capacities,
 }
 
-/// What was wanted and a quarter more, but no more than the most, where less was there.
+/// If `wanted` is more than `had`: `wanted` and a quarter more, but no spare room beyond `most`. Else `had`.
 pub(super) fn grown(had: u32, wanted: u32, most: u32) -> u32 {
     let spare = wanted.saturating_add(wanted / 4).min(most);
     if wanted > had { spare.max(wanted) } else { had }
 }
 
 impl Capacities {
-    /// A first guess that fits most scenes in full view, of items so many of whose vertices make a draw.
+    /// A first guess that fits most scenes in full view. `draw_vertices`: vertices of one draw.
     pub(crate) fn first(counts: Counts, draw_vertices: u32) -> Self {
         Self {
             tessellation: tessellation::Capacities::first(counts).drawn_by(counts, draw_vertices),
@@ -37,6 +37,20 @@ impl Capacities {
             solids: solids::Capacities::first(counts),
             edges: edges::Capacities::first(counts),
         }
+    }
+
+    /// The same with at least the first guess for a scene of more parts.
+    pub(crate) fn for_more(self, counts: Counts, draw_vertices: u32) -> Self {
+        let (had, first) = (self, Self::first(counts, draw_vertices));
+        let tessellation = tessellation::Capacities {
+            sub_patches: had.tessellation.sub_patches.max(first.tessellation.sub_patches),
+            draws: had.tessellation.draws.max(first.tessellation.draws),
+        };
+        let trim = trim::Capacities {
+            rows: had.trim.rows.max(first.trim.rows),
+            intercepts: had.trim.intercepts.max(first.trim.intercepts),
+        };
+        Self { tessellation, trim, ..had }
     }
 
     /// See [`solids::Capacities::expecting`].
@@ -51,13 +65,13 @@ impl Capacities {
         Ok(Self { gaps, solids: self.solids.for_picture(counts, size, range)?, ..self })
     }
 
-    /// Buffers made for these take as much as those made for `others`.
+    /// Whether buffers made for `self` have the same sizes as buffers made for `others`.
     pub(crate) fn takes_as_much(self, others: Self) -> bool {
         self.solids.takes_as_much(others.solids) && Self { solids: others.solids, ..self } == others
     }
 
-    /// What the frame that reported `c` would have needed, with a quarter to spare where a list may take it; the same
-    /// when it had enough. `size` is that of the picture.
+    /// The sizes that the frame with counters `c` needed, with a quarter to spare if a list may have it; unchanged if
+    /// they sufficed. `size` is that of the picture.
     pub(crate) fn grown(self, c: &Counters, counts: Counts, size: (u32, u32), ranges: Ranges) -> Result<Self, TooMany> {
         let range = ranges.quads;
         Ok(Self {
@@ -70,12 +84,12 @@ impl Capacities {
     }
 }
 
-/// Most bytes of a list. Shaders read the longest lists as texels, so the device's limit of texels bounds them too.
+/// Most bytes of a list. Shaders read the longest lists as texels, so the device's limit on texels bounds them, too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Ranges {
-    /// Of a list that is read as texels of two words: the trim table.
+    /// Of a list read as texels of two words: the trim table.
     pub pairs: u32,
-    /// Of a list that is read as texels of four words, or as structs.
+    /// Of a list read as texels of four words, or as structs.
     pub quads: u32,
 }
 
@@ -93,7 +107,7 @@ mod tests {
     use crate::abi::constants::scene::FAILED_DRAWS;
     use crate::picture::TakenWay;
 
-    /// Every storage buffer of Vulkan's least capable device.
+    /// The storage buffer range that every Vulkan device supports.
     const RANGE: u32 = 1 << 27;
 
     fn both(range: u32) -> Ranges {
@@ -131,7 +145,7 @@ mod tests {
         assert_eq!(had.tessellation.draws, 4 * first.tessellation.draws);
         assert_eq!(had.trim.intercepts, first.trim.intercepts);
         assert!(!had.takes_as_much(first));
-        // no room for a quarter more in one storage buffer
+        // a storage buffer has no room for a quarter more
         let c = Counters { intercepts: RANGE / 4 - 1, failed: 8, ..Default::default() };
         assert_eq!(grown(first, &c).unwrap().trim.intercepts, RANGE / 4);
     }
@@ -147,7 +161,7 @@ mod tests {
         assert_eq!(over(more), Some(("placed meshes", MOST_SEEN, None)));
     }
 
-    /// A hundred million patches and scan lines, where the device binds as much.
+    /// A hundred million patches and scan lines fit if the device binds such buffers.
     #[test]
     fn what_no_buffer_holds_says_how_much_it_wants() {
         const HUNDRED_MILLION: u32 = 100_000_000;

@@ -1,4 +1,4 @@
-//! What the scene has, and whether it can be counted.
+//! The scene's counts, and checks that 32 bits number all of them.
 
 use super::common::kernel::MOST_THREADS;
 use super::solids::lists::{Limits, Lists};
@@ -8,55 +8,57 @@ use crate::picture::{Samples, TakenWay};
 use crate::scene::SceneData;
 use std::fmt;
 
-/// What the scene has, per placed face.
+/// The scene's counts, summed over placed faces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Counts {
     pub items: u32,
     pub cells: u32,
     pub bins: u32,
-    /// v-strips with several.
+    /// v-strips with several bins.
     pub wide_strips: u32,
     pub curves: u32,
     pub face_instances: u32,
     /// A pass reads the views of all placed parts, not only of those in sight.
     pub views_all: bool,
-    /// Patches may lie behind others.
+    /// The scene has occlusion culling.
     pub hides: bool,
-    /// Patches or meshes are seen themselves.
+    /// Patches or meshes are drawn as surfaces of their own.
     pub has_surfaces: bool,
     /// Leaves of Boolean solids.
     pub leaves: u32,
-    /// Operands of theirs without equations.
+    /// Operands of Boolean solids without equations.
     pub shells: u32,
-    /// Patches bound some of those.
+    /// Patches bound some operands.
     pub operand_patches: bool,
     /// [`SolidWay::Blister`](crate::picture::SolidWay::Blister) draws the solids.
     pub blister: bool,
-    /// [`SolidWay::Events`](crate::picture::SolidWay::Events) does, and where lists are too large, band by band.
+    /// [`SolidWay::Events`](crate::picture::SolidWay::Events) draws the solids, band by band if lists are too large.
     pub events: bool,
     /// Most bytes of the lists of events: [`SceneSettings::solid_budget`](crate::picture::SceneSettings::solid_budget).
     pub solid_budget: Option<u64>,
     pub triangles: u32,
-    /// Of leaves with equations; with the triangles of the others.
+    /// Sides of leaves with equations, and triangles of the other leaves.
     pub leaf_sides: u32,
     pub sides: u32,
     pub mesh_instances: u32,
-    /// How faces are trimmed, where some are.
+    /// The way to trim, if some face is trimmed.
     pub trim: Option<TakenWay>,
-    /// Of each pixel.
+    /// Samples of each pixel.
     pub samples: Samples,
-    /// The first leaf of items that rays are followed through; there are some.
+    /// The first leaf of items that rays are followed through, if there are any.
     pub followed_leaf: u32,
     pub is_followed: bool,
-    /// Lengths within solids are wanted.
+    /// Styles may show curvature.
+    pub curvature: bool,
+    /// The scene measures lengths within solids.
     pub thickness: bool,
-    /// Instances drawn opaque because they are not closed.
+    /// Instances drawn opaque, although transparent, because they are not closed.
     pub open: u32,
-    /// What casts no shadow in a scene with a sun.
+    /// Number of things that cast no shadow, in a scene with a sun.
     pub shadowless: u32,
-    /// Pieces of edges that lines are drawn along.
+    /// Placed pieces of edges along which lines are drawn.
     pub edge_items: u32,
-    /// There are lines, along edges or around curved faces.
+    /// There are lines, along edges or silhouettes.
     pub lines: bool,
 }
 
@@ -88,6 +90,7 @@ impl Counts {
             samples: data.samples,
             followed_leaf: data.solids.followed,
             is_followed: data.solids.is_followed(),
+            curvature: data.curvature,
             thickness: data.thickness,
             open: count(data.open),
             shadowless: count(data.shadowless),
@@ -96,12 +99,37 @@ impl Counts {
         }
     }
 
-    /// Where rays cross operands is stored.
+    /// What grows when a model joins the scene.
+    fn sizes(&mut self) -> [&mut u32; 8] {
+        let Self { items, cells, bins, wide_strips, curves, face_instances, triangles, mesh_instances, .. } = self;
+        [items, cells, bins, wide_strips, curves, face_instances, triangles, mesh_instances]
+    }
+
+    /// With those of a model that joins the scene: parts, and nothing that the scene has none of.
+    pub(crate) fn and(mut self, mut more: Self) -> Self {
+        let pairs = self.sizes().into_iter().zip(more.sizes());
+        pairs.for_each(|(sum, more)| *sum = sum.saturating_add(*more));
+        self.views_all |= more.views_all;
+        self
+    }
+
+    /// With half as much again of all that grows.
+    pub(crate) fn with_spare(mut self) -> Self {
+        self.sizes().into_iter().for_each(|size| *size = size.saturating_add(*size / 2));
+        self
+    }
+
+    /// Buffers that were made for `room` hold as much.
+    pub(crate) fn fits(mut self, mut room: Self) -> bool {
+        self.sizes().into_iter().zip(room.sizes()).all(|(size, room)| size <= room)
+    }
+
+    /// The crossings of rays with operands are stored.
     pub(crate) fn has_fragments(self) -> bool {
         self.shells > 0 && !self.blister
     }
 
-    /// What the lists of events may take where one storage buffer has `range` bytes.
+    /// Limits of the event lists, for storage buffers of `range` bytes.
     pub(crate) fn limits(self, range: u32) -> Limits {
         Limits { range, budget: self.solid_budget.unwrap_or(u64::MAX) }
     }
@@ -110,8 +138,8 @@ impl Counts {
         Lists { size, has_fragments: self.has_fragments(), limits: self.limits(range) }
     }
 
-    /// Checks that 32 bits number all of them, and that a storage buffer of `range` bytes holds the largest list of
-    /// each.
+    /// Checks that 32 bits number everything, and that a storage buffer of `range` bytes holds the largest list of each
+    /// kind.
     pub(crate) fn check(self, range: u32) -> Result<(), TooMany> {
         let border_cells = if self.operand_patches { size_of::<BorderCells>() } else { 0 };
         let word = size_of::<u32>();
@@ -135,25 +163,24 @@ impl Counts {
     }
 }
 
-/// The model, or what a view needs of it, is more than the engine counts, or than a buffer of the device holds.
+/// The model, or one view of it, exceeds the engine's numbers or the device's buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{count} {what} are too many: at most {most} can be drawn{}; {help}", Why(.bytes))]
 #[non_exhaustive]
 pub struct TooMany {
-    /// What there is too much of.
+    /// The kind of thing of which there are too many.
     pub what: &'static str,
-    /// How many there are.
+    /// Their number.
     pub count: u32,
-    /// How many there may be.
+    /// The largest possible number.
     pub most: u32,
-    /// If a buffer is too small: the bytes that all of them take in one buffer, and the most bytes that the device
-    /// binds.
+    /// If a buffer is too small: the bytes needed, and the most bytes that the device binds.
     pub bytes: Option<(u64, u64)>,
-    /// What to ask for in its place.
+    /// What to do instead.
     pub help: &'static str,
 }
 
-/// The reason within the message of [`TooMany`].
+/// The reason, as part of the message of [`TooMany`].
 struct Why<'a>(&'a Option<(u64, u64)>);
 
 impl fmt::Display for Why<'_> {
@@ -168,12 +195,12 @@ impl fmt::Display for Why<'_> {
 }
 
 impl TooMany {
-    /// `None` where so many can be numbered.
+    /// `None` if `count` is at most `most`.
     pub(crate) fn of_numbers(what: &'static str, count: u32, most: u32, help: &'static str) -> Option<Self> {
         (count > most).then_some(Self { what, count, most, bytes: None, help })
     }
 
-    /// `None` where a buffer of `range` bytes holds so many of `bytes` each.
+    /// `None` if a buffer of `range` bytes holds `count` elements of this size.
     pub(crate) fn of_bytes(
         (what, count): (&'static str, u32),
         bytes: usize,
@@ -185,7 +212,7 @@ impl TooMany {
         (count > most).then_some(Self { what, count, most, bytes: Some((wanted, range.into())), help })
     }
 
-    /// It is the trim table that has no room: the exact way needs none.
+    /// Whether the trim table is too large. The exact way needs none.
     pub(crate) fn is_of_table(&self) -> bool {
         self.help == EXACT
     }
@@ -197,7 +224,7 @@ pub(super) const FEWER_PARTS: &str = "draw fewer parts at once, or place fewer c
 const FEWER_SOLIDS: &str = "draw fewer of the Boolean solids at once";
 pub(super) const SMALLER: &str = "draw a smaller picture";
 
-/// Triangles whose corners, and vertices whose coordinates, have numbers of 32 bits.
+/// Most triangles: 32 bits number their corners, and the coordinates of their vertices.
 pub(super) const MOST_TRIANGLES: u32 = u32::MAX / 3;
-/// What the bits of the visibility image tell apart.
+/// The numbers that the visibility image can tell apart.
 pub(super) const MOST_SEEN: u32 = 1 << 29;

@@ -1,4 +1,4 @@
-//! What one pixel sees, read back.
+//! Reads back the visibility words of one pixel.
 //!
 //! ```text
 //!   visibility, others ──a pixel of each──▶ host, after the fence
@@ -9,11 +9,11 @@ use crate::gpu::{Access, Commands, ReadBack, barrier};
 
 /// Bytes of a pixel of one of the images.
 const PIXEL_BYTES: u64 = 8;
-/// Of both.
+/// Bytes of a pixel of both images.
 pub(crate) const PICK_BYTES: u64 = 2 * PIXEL_BYTES;
 
 impl Frame<'_> {
-    /// After the frame: copies the words of a pixel. A frame may reuse the images next.
+    /// After the frame: copies the words of a pixel. The next frame may reuse the images.
     pub(crate) fn pick(&self, cmd: &Commands<'_>, at: (u32, u32), into: &ReadBack) {
         let read = Access::COMPUTE_READ | Access::FRAGMENT_READ;
         let v = &self.stages.visibility;

@@ -1,7 +1,7 @@
-//! What stays from frame to frame: what each pixel sees, and the trim table.
+//! Reuse of the previous frame's results: the visibility of each pixel, and the trim table.
 //!
 //! ```text
-//!   a new view, an edit, new buffers   ──▶ reset ─▶ trim table ─▶ tessellation ─▶ mesh … heal ─▶ resolve … layers
+//!   a new view, an edit, new buffers   ──▶ reset ─▶ trim table ─▶ tessellation ─▶ mesh … gaps ─▶ resolve … layers
 //!                                                   │ counters       ┊            │ counters
 //!                                                   ▼                ┊            ▼
 //!                                             counters of the        ┊      kept counters
@@ -9,35 +9,35 @@
 //!                                                   │ counters       ┊            │
 //!   a view that the table serves       ──▶ reset ───●───────▶ tessellation ─ …    │ counters
 //!                                                 several samples a pixel: here   │
-//!   the view of the frame before, again ──▶ ─────────────────────────┴────────────●────────────▶ resolve … layers
+//!   the same view as the frame before  ──▶ ─────────────────────────┴────────────●────────────▶ resolve … layers
 //! ```
 //!
-//! What these passes write hangs on the view, the settings, the scene and the room that there is, and what comes after them
-//! writes none of it but the counters: while all of that stays, so do sub-patches, draws, table, lists, visibility and depth
-//! where they are, and making them once more would give the same bits. `renderer::history` says when. The host's targets are
-//! another matter: they are drawn into in every frame. Samples share one visibility image, so those are drawn in every
-//! frame, too, from the patches and the table.
+//! The results of these passes depend only on the view, the settings, the scene and the buffers' sizes, and later
+//! passes change only the counters. So while all of these stay the same, sub-patches, draws, table, lists, visibility
+//! and depth are still valid, and making them again would give the same bits. `renderer::history` decides when that
+//! holds. The host's targets are drawn in every frame. Samples share one visibility image, so samples are drawn in
+//! every frame, too, from the same patches and table.
 //!
-//! Counters begin as they were after what is kept: counts that go on, clamps among them, are those of a whole frame, and
-//! what had no room is told again by every frame that keeps it.
+//! Counters start with their values after the reused passes. Every frame thus reports the counts of a whole frame,
+//! including clamps and lists that were too short.
 
 use super::Frame;
 use super::trim::table::Table;
 use crate::abi::Counters;
 use crate::gpu::{Access, Buffer, Commands, barrier};
 
-/// Who touches counters before and after.
+/// Accesses to the counters before and after.
 fn counted() -> Access {
     Access::COMPUTE_WRITE | Access::INDIRECT_READ
 }
 
 impl Frame<'_> {
-    /// Records what this view is made of, for frames to come; or takes up what the frame before left.
+    /// Records the passes of a new view and stores their counters; or restores the counters of the previous frame.
     pub(super) fn unless_seen(&self, cmd: &Commands<'_>, record: impl FnOnce()) {
         self.unless_kept(cmd, (self.keeps, &self.stages.common.kept_counters), record);
     }
 
-    /// The same of the trim table, at the beginning of a view: nothing has been counted yet.
+    /// The same for the trim table, at the start of a view, when nothing has been counted yet.
     pub(super) fn unless_made(&self, cmd: &Commands<'_>, table: &Table, record: impl FnOnce()) {
         self.unless_kept(cmd, (self.keeps_table, &table.counters), record);
     }

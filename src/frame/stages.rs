@@ -1,5 +1,4 @@
-//! What a scene needs of each stage: its passes, made with the scene; and with them its buffers, made for pictures of one
-//! size.
+//! The stages that a scene needs: passes, made with the scene, and buffers, made for pictures of one size.
 
 use super::antialiasing::border_mix::BorderMix;
 use super::antialiasing::coverage::Coverage;
@@ -49,7 +48,7 @@ impl Passes {
     pub(crate) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Self, GpuError> {
         let trim = trim::Passes::new(device, data)?;
         let test = trim.as_ref().map(trim::Passes::test);
-        // a driver takes milliseconds for each pipeline, and as many threads as ask it
+        // a driver takes milliseconds for each pipeline and makes them on several threads at once
         let pictures = || {
             let shading = shading::Passes::new(device, data, formats)?;
             let samples = samples::Passes::new(device, data, formats)?;
@@ -97,9 +96,10 @@ impl Passes {
     }
 }
 
-/// The stages of a frame: those that the scene needs, for pictures of one size.
+/// The stages of a frame that the scene needs, for pictures of one size.
 pub(crate) struct Stages {
     /// What they were made for.
+    counts: Counts,
     capacities: Capacities,
     size: (u32, u32),
     pub(super) common: Common,
@@ -133,6 +133,7 @@ impl Stages {
         let scanned = scanned.fold(solids::buffers::scanned(room), u32::max);
         let p = passes;
         Ok(Self {
+            counts,
             capacities,
             size,
             common: Common::new(room, &p.common, scanned)?,
@@ -153,28 +154,28 @@ impl Stages {
         })
     }
 
-    /// They suffice for a picture of this size.
-    pub(crate) fn suffice(&self, capacities: Capacities, size: (u32, u32)) -> bool {
-        self.size == size && self.capacities.takes_as_much(capacities)
+    /// They suffice for a scene with so much, and for a picture of this size.
+    pub(crate) fn suffice(&self, counts: Counts, capacities: Capacities, size: (u32, u32)) -> bool {
+        self.size == size && counts.fits(self.counts) && self.capacities.takes_as_much(capacities)
     }
 
-    /// Linear colour and depth, where a later pass mixes the colour from it.
+    /// Linear colour and depth, if a later pass mixes the colour from them.
     pub(super) fn unmixed(&self) -> Option<&Image> {
         self.linear.as_ref().map(|linear| &linear.resolved)
     }
 
-    /// Of the picture.
+    /// Size of the picture.
     pub(crate) fn size(&self) -> (u32, u32) {
         self.size
     }
 
-    /// In place of an image that the host does not want, but that is drawn with others: depth, face, (u, v), normal, edge,
-    /// part, instance.
+    /// The spare image in place of the host's image of this number, which passes must draw together with others: depth,
+    /// face, (u, v), normal, edge, part, instance.
     pub(crate) fn spare(&self, number: usize) -> Option<&Image> {
         self.shading.spare(number)
     }
 
-    /// Boolean solids, where the scene has some.
+    /// Boolean solids, if the scene has any.
     pub(crate) fn solids(&self) -> Option<&Solids> {
         self.solids.as_ref()
     }

@@ -17,9 +17,9 @@ pub struct Access {
 /// `GENERAL`, attachments and copies use theirs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImageAccess {
-    /// What touches it, and how.
+    /// The stages and accesses.
     pub access: Access,
-    /// Layout that it is in meanwhile.
+    /// Its layout during the access.
     pub layout: L,
 }
 
@@ -31,7 +31,7 @@ const GEOMETRY: S = S::from_raw(
 const DEPTH: S = S::from_raw(S::EARLY_FRAGMENT_TESTS.as_raw() | S::LATE_FRAGMENT_TESTS.as_raw());
 
 impl Access {
-    /// Nothing happened before: the first use of a new resource.
+    /// No access: before the first use of a new resource.
     pub const NONE: Self = Self::new(S::NONE, A::NONE);
     /// A compute shader reads a storage buffer, or an image by `imageLoad` or a sampler.
     pub const COMPUTE_READ: Self = Self::new(S::COMPUTE_SHADER, SHADER_READ);
@@ -67,18 +67,17 @@ impl Access {
     /// The CPU reads mapped memory after the fence.
     pub const HOST_READ: Self = Self::new(S::HOST, A::HOST_READ);
 
-    /// An access of one's own, for what a host does.
+    /// Any other access, for a host's own commands.
     pub const fn new(stages: S, mask: A) -> Self {
         Self { stages, mask }
     }
 
-    /// The same uses, but the contents of the image may be thrown away: what comes before a pass
-    /// that overwrites all of it.
+    /// The same uses, but the image's contents may be lost: before a pass that overwrites all of it.
     pub const fn discarded(self) -> ImageAccess {
         ImageAccess { access: self, layout: L::UNDEFINED }
     }
 
-    /// The layout of an image that is accessed so; `None` where that is no single one.
+    /// The layout of an image for this access; `None` if there is no single one.
     fn layout(self) -> Option<L> {
         let own = [
             (A::NONE, L::UNDEFINED),
@@ -94,8 +93,7 @@ impl Access {
 }
 
 impl From<Access> for ImageAccess {
-    /// # Panics
-    /// When its parts have different layouts: an image is in one layout at a time.
+    /// # Panics If its parts need different layouts: an image is in one layout at a time.
     fn from(access: Access) -> Self {
         let layout = access.layout();
         Self { access, layout: layout.unwrap_or_else(|| panic!("{access:?} is not one access of an image")) }

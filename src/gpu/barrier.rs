@@ -1,4 +1,4 @@
-//! One-line barriers: a resource, what happened to it before, what happens to it next.
+//! One-line barriers: a resource, its access before and its access after.
 //!
 //! ```text
 //!   barrier::buffers(cmd, &[(&counts, Access::COMPUTE_WRITE, Access::COMPUTE_READ)]);

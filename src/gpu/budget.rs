@@ -7,9 +7,9 @@
 //!     without it             all of the engine's memory               + the new object  <=  size of the heap
 //! ```
 //!
-//! The driver's figures are read anew for each object, because other programs take memory too. The allocator may try
+//! The driver's figures are read again for each object, because other programs take memory, too. The allocator may try
 //! several memory types, so an object is refused only if none of their heaps has room. The allocator takes memory in
-//! blocks: the figures count whole blocks, and an object may find room in a block that is already taken.
+//! blocks: the figures count whole blocks, although an object may fit into a block that is already taken.
 
 use super::{BudgetOwner, Device, GpuError, MemoryLocation};
 use ash::vk;
@@ -24,7 +24,7 @@ pub(super) struct Heaps {
     most: Option<u64>,
 }
 
-/// Bytes that are left, of `most`.
+/// Bytes left, of `most`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Room {
     left: u64,
@@ -32,8 +32,7 @@ struct Room {
 }
 
 impl Heaps {
-    /// # Safety
-    /// The physical device belongs to the instance, which lives as long as the value.
+    /// # Safety `physical` belongs to `instance`, which outlives the value.
     pub(super) unsafe fn new(instance: &ash::Instance, physical: vk::PhysicalDevice, most: Option<u64>) -> Self {
         // SAFETY: the caller's promise.
         let (memory, extensions) = unsafe {
@@ -51,7 +50,7 @@ impl Heaps {
         self.most
     }
 
-    /// Refuses an object of so many bytes that does not fit.
+    /// Refuses an object of `bytes` bytes that does not fit.
     pub(super) fn check(
         &self,
         device: &Device,
@@ -64,7 +63,7 @@ impl Heaps {
             Some(most) => (Room { left: most.saturating_sub(taken), most }, BudgetOwner::Host),
             None => match self.of_heaps(types, location, taken) {
                 Some(room) => (room, BudgetOwner::Heap),
-                None => return Ok(()), // there is no such memory: the allocator returns the error
+                None => return Ok(()), // no such memory type: the allocator returns the error
             },
         };
         if bytes <= room.left {
@@ -73,7 +72,7 @@ impl Heaps {
         Err(GpuError::OverBudget { resource: name.to_owned(), bytes, left: room.left, most: room.most, of })
     }
 
-    /// The heap with the most room among those that an object may come from.
+    /// The heap with the most room, among those of an object's memory types.
     fn of_heaps(&self, types: u32, location: MemoryLocation, taken: u64) -> Option<Room> {
         let mut budget = vk::PhysicalDeviceMemoryBudgetPropertiesEXT::default();
         if self.tells_budget {
@@ -91,7 +90,7 @@ impl Heaps {
     }
 }
 
-/// Heaps of the memory types that the allocator may take.
+/// Heaps of the memory types that the allocator may use.
 fn heaps_of(
     memory: &vk::PhysicalDeviceMemoryProperties,
     types: u32,

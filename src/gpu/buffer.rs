@@ -6,34 +6,36 @@ use super::{Device, GpuError, MemoryLocation, Named, Pool};
 use ash::vk;
 use bytemuck::Pod;
 
-/// What a buffer is made from.
+/// The parameters of a buffer.
 #[derive(Clone, Copy, Debug)]
 pub struct BufferInfo<'a> {
     /// Name in errors, validation messages and [`Device::objects`].
     pub name: &'a str,
     /// Size; rounded up to a multiple of [`Buffer::LEAST_BYTES`].
     pub bytes: u64,
-    /// What it is used for.
+    /// Its uses.
     pub usage: vk::BufferUsageFlags,
-    /// How long it lives.
+    /// Its lifetime.
     pub pool: Pool,
     /// Where its memory is.
     pub location: MemoryLocation,
 }
 
-/// A buffer; frees itself and its memory on drop. The GPU must have finished with it by then.
+/// A buffer; frees itself and its memory on drop. The GPU must have finished with it before.
 #[derive(Debug)]
 pub struct Buffer {
     handle: vk::Buffer,
     bytes: u64,
+    usage: vk::BufferUsageFlags,
     name: String,
-    // Declared in the order in which they go.
+    // declared in the order of destruction
     memory: Memory,
     registration: Registration,
 }
 
 impl Buffer {
-    /// Every size is a multiple of this: Vulkan has no empty buffers, and the last texel of four words is whole.
+    /// Every size is a multiple of this: Vulkan has no empty buffers, and the last texel of four words must be
+    /// complete.
     pub const LEAST_BYTES: u64 = 16;
 
     /// Usage of a buffer that passes fill, read, copy and take arguments from.
@@ -77,7 +79,7 @@ impl Buffer {
         })?;
         device.set_name(handle, info.name);
         let registration = device.register(info.name, memory.bytes());
-        Ok(Self { handle, bytes, name: info.name.to_owned(), memory, registration })
+        Ok(Self { handle, bytes, usage: info.usage, name: info.name.to_owned(), memory, registration })
     }
 
     /// A [`STORAGE`](Self::STORAGE) buffer in device memory.
@@ -94,6 +96,16 @@ impl Buffer {
     /// See [`Buffer::new`].
     pub fn indirect(device: &Device, pool: Pool, name: &str, bytes: u64) -> Result<Self, GpuError> {
         Self::new(device, &BufferInfo { name, bytes, usage: Self::INDIRECT, pool, location: MemoryLocation::Device })
+    }
+
+    /// A buffer in device memory of the same name, usage and pool, of another size and with undefined contents.
+    ///
+    /// # Errors
+    /// See [`Buffer::new`].
+    pub(crate) fn of_size(&self, bytes: u64) -> Result<Self, GpuError> {
+        let (name, usage, pool) = (self.name.as_str(), self.usage, self.pool());
+        let info = BufferInfo { name, bytes, usage, pool, location: MemoryLocation::Device };
+        Self::new(self.registration.device(), &info)
     }
 
     /// The Vulkan buffer.
@@ -116,16 +128,15 @@ impl Buffer {
         self.memory.pool()
     }
 
-    /// The mapped contents; `None` where the CPU does not see the memory. What the GPU wrote is there
-    /// after a barrier to [`Access::HOST_READ`](super::Access::HOST_READ) and the frame's fence.
+    /// The mapped contents; `None` if the memory is not visible to the CPU. Data written by the GPU is visible after a
+    /// barrier to [`Access::HOST_READ`](super::Access::HOST_READ) and the frame's fence.
     pub fn mapped(&self) -> Option<&[u8]> {
         self.memory.mapped().map(|slice| &slice[..self.bytes as usize])
     }
 
     /// Writes `data` at `offset` bytes. The GPU must not be using the buffer.
     ///
-    /// # Panics
-    /// When the buffer is not mapped, or `data` does not fit.
+    /// # Panics If the buffer is not mapped, or `data` does not fit.
     pub fn write<T: Pod>(&mut self, offset: u64, data: &[T]) {
         let bytes: &[u8] = bytemuck::cast_slice(data);
         let (start, end) = (offset as usize, offset as usize + bytes.len());

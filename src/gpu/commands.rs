@@ -1,14 +1,14 @@
-//! Recording into a command buffer of the host's.
+//! Records into the host's command buffer.
 
 use super::{Access, Attachment, Buffer, Device, Image, ImageAccess, Pipeline, Resource, barrier, push};
 use ash::vk;
 use std::ffi::CString;
 use std::ops::Range;
 
-/// A command buffer being recorded, and the device that it belongs to.
+/// A command buffer in the recording state, and its device.
 ///
-/// The methods are Vulkan's commands with the engine's types. Cheap checks are made;
-/// Vulkan's other rules are the caller's, and the validation layers' to find broken.
+/// The methods are Vulkan's commands with the engine's types. Cheap checks are made; the caller is responsible for
+/// Vulkan's other rules, which validation layers check.
 #[derive(Clone, Copy)]
 pub struct Commands<'a> {
     device: &'a Device,
@@ -55,8 +55,7 @@ impl<'a> Commands<'a> {
 
     /// Replaces the push constants of the pipeline bound last.
     ///
-    /// # Panics
-    /// When their size is not the pipeline's.
+    /// # Panics If their size is not the pipeline's.
     pub fn push_constants(&self, pipeline: &Pipeline, bytes: &[u8]) {
         assert_eq!(bytes.len(), pipeline.push_bytes() as usize, "push constants of `{}`", pipeline.name());
         if !bytes.is_empty() {
@@ -86,7 +85,7 @@ impl<'a> Commands<'a> {
         unsafe { self.device.raw().cmd_dispatch(self.raw, x, y, z) };
     }
 
-    /// Starts the grid that stands at `offset` bytes of `arguments` (`VkDispatchIndirectCommand`).
+    /// Starts the grid stored at `offset` bytes of `arguments` (`VkDispatchIndirectCommand`).
     pub fn dispatch_indirect(&self, arguments: &Buffer, offset: u64) {
         // SAFETY: recording; a compute pipeline is bound.
         unsafe { self.device.raw().cmd_dispatch_indirect(self.raw, arguments.handle(), offset) };
@@ -105,8 +104,8 @@ impl<'a> Commands<'a> {
         unsafe { self.device.raw().cmd_draw(self.raw, count, copies, vertices.start, instances.start) };
     }
 
-    /// Draws whose arguments the GPU wrote at `offset` bytes of a buffer, and their number at `count_offset` bytes of
-    /// `count`; at most `most` are made.
+    /// Draws with arguments and a count from the GPU: `offset` bytes into `arguments`, `count_offset` bytes into
+    /// `count`; at most `most` draws.
     pub fn draw_indirect_count(&self, arguments: &Buffer, offset: u64, count: &Buffer, count_offset: u64, most: u32) {
         let (arguments, count) = (arguments.handle(), count.handle());
         let stride = size_of::<vk::DrawIndirectCommand>() as u32;
@@ -128,7 +127,7 @@ impl<'a> Commands<'a> {
         self.rendering_to((size, 0..size.1), colour, (depth, None), record)
     }
 
-    /// As [`rendering`](Self::rendering), to these rows of pixels alone: what the attachments hold elsewhere stays.
+    /// As [`rendering`](Self::rendering), restricted to these rows of pixels; other rows of the attachments stay.
     pub fn rendering_rows<R>(
         &self,
         size: ((u32, u32), Range<u32>),
@@ -139,7 +138,7 @@ impl<'a> Commands<'a> {
         self.rendering_to(size, colour, (depth, None), record)
     }
 
-    /// As [`rendering`](Self::rendering), with a stencil attachment in place of one for depth.
+    /// As [`rendering`](Self::rendering), with a stencil attachment instead of a depth attachment.
     pub fn rendering_stencil<R>(
         &self,
         size: (u32, u32),
@@ -186,7 +185,7 @@ impl<'a> Commands<'a> {
         result
     }
 
-    /// What pipelines with a stencil test compare with, under which mask, and which bits they write.
+    /// Sets the reference of the stencil test, the mask of compared bits and the mask of written bits.
     pub fn stencil(&self, reference: u32, compare: u32, write: u32) {
         let (device, both) = (self.device.raw(), vk::StencilFaceFlags::FRONT_AND_BACK);
         // SAFETY: recording.
@@ -235,7 +234,7 @@ impl<'a> Commands<'a> {
         unsafe { self.device.raw().cmd_copy_buffer(self.raw, from.handle(), to.handle(), &[region]) };
     }
 
-    /// Copies one pixel of a colour image in layout `GENERAL` to `offset` bytes of a buffer; it has so many bytes.
+    /// Copies one pixel, of `bytes` bytes, of a colour image in layout `GENERAL` to `offset` bytes of a buffer.
     ///
     /// # Panics
     /// When the pixel is not in the image, or its bytes do not fit.
@@ -295,7 +294,7 @@ impl<'a> Commands<'a> {
         unsafe { self.device.raw().cmd_copy_image(self.raw, from.handle(), read, to.handle(), write, &regions) };
     }
 
-    /// Names what `record` records, for captures and validation messages.
+    /// Labels the commands of `record` in captures and validation messages.
     pub fn labelled<R>(&self, name: &str, record: impl FnOnce() -> R) -> R {
         let debug = self.device.debug_utils().zip(CString::new(name).ok());
         if let Some((debug, name)) = &debug {

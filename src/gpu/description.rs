@@ -1,4 +1,4 @@
-//! All that a pipeline is made of, as a key: two pipelines of equal descriptions are interchangeable.
+//! All parameters of a pipeline as a key: pipelines with equal descriptions are interchangeable.
 
 use super::layout::Binding;
 use super::{Blend, ComputeInfo, GraphicsInfo};
@@ -7,8 +7,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// The description of a pipeline.
 ///
-/// Every list is preceded by its length, so that no two descriptions have the same words. Of SPIR-V, hundreds of kilobytes
-/// in a large shader, 128 bits of digest stand for the rest.
+/// Each list is preceded by its length, so different descriptions have different words. A 128-bit digest replaces the
+/// SPIR-V, which may have hundreds of kilobytes.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Description(Vec<u32>);
 
@@ -69,7 +69,7 @@ impl Description {
         description
     }
 
-    /// The name is a part of it: messages of the validation layer and captures show it.
+    /// The name is part of the key, because messages of the validation layer and captures show it.
     fn push_common(&mut self, name: &str, bindings: &[Binding], push_bytes: u32, constants: &[(u32, u32)]) {
         self.push(name.len() as u32);
         name.bytes().for_each(|byte| self.push(u32::from(byte)));

@@ -14,9 +14,9 @@ use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, Weak};
 use std::time::{Duration, Instant};
 
-/// What a host hands over. The engine destroys none of it.
+/// The host's objects. The engine destroys none of them.
 pub struct HostDevice<'a> {
-    /// The instance that `physical` belongs to.
+    /// The instance of `physical`.
     pub instance: &'a ash::Instance,
     /// A device for which [`Requirements::missing`](super::Requirements::missing) is empty.
     pub physical: vk::PhysicalDevice,
@@ -30,10 +30,10 @@ pub struct HostDevice<'a> {
     pub debug_names: bool,
     /// The device has the feature `pipelineStatisticsQuery`: the triangle count is measured.
     pub pipeline_statistics: bool,
-    /// The cache that every pipeline is created with; null for none. It must outlive everything made from the device,
-    /// and the host must not merge into it meanwhile.
+    /// The cache for all pipelines; null for none. It must outlive everything made from the device, and meanwhile the
+    /// host must not merge into it.
     pub pipeline_cache: vk::PipelineCache,
-    /// Bytes that the engine may take on this device; `None`: as many as its heaps have.
+    /// Most bytes of memory on this device; `None`: no limit but the heaps.
     pub memory_budget: Option<u64>,
 }
 
@@ -48,7 +48,7 @@ pub struct LowerLimits {
 }
 
 impl LowerLimits {
-    /// The device's own.
+    /// No change.
     pub const NONE: Self = Self { work_groups: None, storage_range: None };
 
     fn lower(self, limits: &mut vk::PhysicalDeviceLimits) {
@@ -60,7 +60,7 @@ impl LowerLimits {
     }
 }
 
-/// A cheap handle to the host's device; every wrapper holds one.
+/// A cheap handle to the host's device; every wrapper has one.
 #[derive(Clone)]
 pub struct Device(Arc<Inner>);
 
@@ -86,7 +86,7 @@ struct Inner {
     pipeline_nanoseconds: AtomicU64,
     /// The call that first returned `VK_ERROR_DEVICE_LOST`, and its object.
     lost: OnceLock<(&'static str, String)>,
-    /// The device's handle is not valid any more.
+    /// The device's handle is no longer valid.
     gone: AtomicBool,
     /// Rewrites each shader: tests imitate the arithmetic of other GPUs.
     #[cfg(test)]
@@ -98,11 +98,11 @@ struct Inner {
 pub(crate) type Rewriting = fn(&[u32]) -> Vec<u32>;
 
 impl Device {
-    /// Takes the host's device on loan.
+    /// Borrows the host's device.
     ///
     /// # Safety
-    /// The handles are valid and fit together as [`HostDevice`] says, and stay so until the last
-    /// clone of this value and everything made from it is dropped.
+    /// The handles are valid and belong together as [`HostDevice`] states, and stay so until the last clone of this value
+    /// and everything made from it is dropped.
     pub unsafe fn new(host: HostDevice<'_>) -> Self {
         // SAFETY: the caller's promise.
         unsafe { Self::limited(host, LowerLimits::NONE) }
@@ -124,7 +124,7 @@ impl Device {
         // SAFETY: the caller's promise.
         let of_stencil = unsafe { instance.get_physical_device_format_properties(physical, vk::Format::S8_UINT) };
         let is_attachment = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;
-        // one of the other two is there by Vulkan 1.3, section 34.3
+        // Vulkan 1.3, section 34.3 guarantees one of the other two
         let stencil_format = if of_stencil.optimal_tiling_features.contains(is_attachment) {
             vk::Format::S8_UINT
         } else {
@@ -164,7 +164,7 @@ impl Device {
         }))
     }
 
-    /// Nothing more can be drawn with it.
+    /// The device is lost; nothing can be drawn with it.
     pub fn is_lost(&self) -> bool {
         self.0.lost.get().is_some()
     }
@@ -175,14 +175,14 @@ impl Device {
         let _ = self.0.lost.set((call, resource.to_owned()));
     }
 
-    /// Remembers an error that the device does not survive.
+    /// Stores an error after which the device is unusable.
     pub(crate) fn note(&self, error: &GpuError) {
         if let GpuError::DeviceLost { call, resource } = error {
             self.set_lost(call, resource);
         }
     }
 
-    /// Rewrites every shader from now on.
+    /// Rewrites every shader made after this call.
     #[cfg(test)]
     pub(crate) fn rewrite(&self, rewriting: Rewriting) {
         let _ = self.0.rewriting.set(rewriting);
@@ -193,12 +193,12 @@ impl Device {
         self.0.rewriting.get().copied()
     }
 
-    /// The device's handle is not valid any more: objects made from it free only host memory from now on.
+    /// Marks the device's handle as invalid: objects made from it then free only host memory.
     pub(crate) fn abandon(&self) {
         self.0.gone.store(true, Ordering::Relaxed);
     }
 
-    /// The device's handle is not valid any more.
+    /// The device's handle is no longer valid.
     #[cfg(feature = "headless")]
     pub(crate) fn is_gone(&self) -> bool {
         self.living().is_none()
@@ -212,8 +212,8 @@ impl Device {
         }
     }
 
-    /// Vulkan's functions, to destroy objects; `None` if the device's handle is not valid any more. The handle of a
-    /// lost device is valid: its objects must be destroyed before it (Vulkan 1.3, section 5.2.3, "Lost Device").
+    /// Vulkan's functions, to destroy objects; `None` if the device's handle is no longer valid. The handle of a lost
+    /// device is valid: its objects must be destroyed before it (Vulkan 1.3, section 5.2.3, "Lost Device").
     pub(super) fn living(&self) -> Option<&ash::Device> {
         (!self.0.gone.load(Ordering::Relaxed)).then_some(&self.0.raw)
     }
@@ -233,12 +233,12 @@ impl Device {
         &self.0.limits
     }
 
-    /// A format with 8 bits of stencil that can be drawn to, with as little else as the device offers.
+    /// A format for attachments with 8 bits of stencil and, if possible, nothing else.
     pub fn stencil_format(&self) -> vk::Format {
         self.0.stencil_format
     }
 
-    /// What this driver gets wrong.
+    /// Known faults of this driver.
     pub fn quirks(&self) -> Quirks {
         self.0.quirks
     }
@@ -258,7 +258,7 @@ impl Device {
         Pool::ALL.map(|pool| (pool, self.0.pool_bytes[pool as usize].load(Ordering::Relaxed).max(0) as u64))
     }
 
-    /// The time that the driver has spent so far on making pipelines; those made side by side count each for itself.
+    /// Total time that the driver has spent making pipelines, summed over threads.
     pub fn pipeline_time(&self) -> Duration {
         Duration::from_nanos(self.0.pipeline_nanoseconds.load(Ordering::Relaxed))
     }
@@ -273,7 +273,7 @@ impl Device {
         lock(&self.0.objects).values().cloned().collect()
     }
 
-    /// Nothing made from this device lives any more, and this is its last handle.
+    /// This is the last handle, and no object made from the device is left.
     #[cfg(feature = "headless")]
     pub(crate) fn is_last(&self) -> bool {
         Arc::strong_count(&self.0) == 1
@@ -287,7 +287,7 @@ impl Device {
         self.0.debug_utils.as_ref()
     }
 
-    /// Bits of a timestamp that count; 0 when the queue family has none.
+    /// Number of valid bits of a timestamp; 0 if the queue family has none.
     pub(crate) fn timestamp_bits(&self) -> u32 {
         self.0.timestamp_bits
     }
@@ -300,7 +300,7 @@ impl Device {
         &self.0.heaps
     }
 
-    /// The host's budget: bytes that the engine may take on this device.
+    /// The host's budget: most bytes of memory on this device.
     pub fn memory_budget(&self) -> Option<u64> {
         self.0.heaps.most()
     }
@@ -317,16 +317,16 @@ impl Device {
         self.0.pool_bytes[pool as usize].fetch_add(change, Ordering::Relaxed);
     }
 
-    /// Gives `handle` its name in validation messages and captures.
+    /// Sets the name of `handle` in validation messages and captures.
     pub(crate) fn set_name<H: Handle>(&self, handle: H, name: &str) {
         let (Some(debug), Ok(name)) = (self.debug_utils(), CString::new(name)) else { return };
         let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(handle).object_name(&name);
-        // A name is a courtesy: failing to set one changes nothing that is drawn.
+        // an error is ignored: names do not change the picture
         // SAFETY: the handle belongs to this device and is not in use elsewhere yet.
         let _ = unsafe { debug.set_debug_utils_object_name(&info) };
     }
 
-    /// Runs what makes a pipeline, and counts its time.
+    /// Runs `make`, which makes a pipeline, and adds its time.
     pub(super) fn timing_pipeline<T>(&self, make: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let made = make();
@@ -334,12 +334,12 @@ impl Device {
         made
     }
 
-    /// The living pipeline of a description, if there is one.
+    /// The existing pipeline of a description.
     pub(super) fn pipeline(&self, description: &Description) -> Option<Arc<Made>> {
         lock(&self.0.pipelines).get(description)?.upgrade()
     }
 
-    /// From now on, and as long as it lives, the pipeline of this description.
+    /// Registers the pipeline of a description, for as long as it exists.
     pub(super) fn share_pipeline(&self, description: Description, made: &Arc<Made>) {
         let mut pipelines = lock(&self.0.pipelines);
         pipelines.retain(|_, made| made.strong_count() > 0);

@@ -1,9 +1,9 @@
-//! What can go wrong below the passes: a Vulkan failure names its call, an allocation its resource.
+//! Errors below the passes. A Vulkan error names its call, an allocation its resource.
 
 use ash::vk;
 use gpu_allocator::AllocationError;
 
-/// A failure that the caller could not foresee. Misuse panics instead, naming the invariant.
+/// A failure that the caller could not foresee. Misuse panics instead and names the invariant.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
@@ -13,7 +13,7 @@ pub enum GpuError {
     DeviceLost {
         /// The first function that returned it, as Vulkan spells it.
         call: &'static str,
-        /// Name of the object that it was called for.
+        /// Name of the object of the call.
         resource: String,
     },
     /// The driver found no memory.
@@ -21,9 +21,9 @@ pub enum GpuError {
     OutOfMemory {
         /// The function, as Vulkan spells it.
         call: &'static str,
-        /// Name of the object that it was called for.
+        /// Name of the object of the call.
         resource: String,
-        /// Whose memory ran out.
+        /// The kind of memory that ran out.
         memory: MemoryOwner,
     },
     /// A Vulkan function returned another error.
@@ -31,9 +31,9 @@ pub enum GpuError {
     Vulkan {
         /// The function, as Vulkan spells it.
         call: &'static str,
-        /// Name of the object that it was called for.
+        /// Name of the object of the call.
         resource: String,
-        /// What it returned.
+        /// The returned result.
         result: vk::Result,
     },
     /// The object exceeds the memory budget; nothing was allocated.
@@ -50,7 +50,7 @@ pub enum GpuError {
         left: u64,
         /// Bytes of the whole budget.
         most: u64,
-        /// Whose budget it is.
+        /// The owner of the budget.
         of: BudgetOwner,
     },
     /// The allocator failed, without an error of the driver.
@@ -63,7 +63,7 @@ pub enum GpuError {
         /// The allocator's reason.
         source: AllocationError,
     },
-    /// A storage buffer larger than a shader of this device may see.
+    /// A storage buffer larger than the device binds.
     #[error(
         "`{resource}` needs {bytes} bytes, but this device binds at most {limit} (maxStorageBufferRange); draw less at once: fewer parts, or a smaller picture"
     )]
@@ -77,7 +77,7 @@ pub enum GpuError {
     },
 }
 
-/// Whose memory ran out.
+/// The kind of memory that ran out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MemoryOwner {
     /// The host's: `VK_ERROR_OUT_OF_HOST_MEMORY`.
@@ -95,7 +95,7 @@ impl std::fmt::Display for MemoryOwner {
     }
 }
 
-/// Whose memory budget it is.
+/// The owner of a memory budget.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BudgetOwner {
     /// [`HostDevice::memory_budget`](super::HostDevice::memory_budget).
@@ -139,7 +139,7 @@ impl GpuError {
     }
 
     /// The error of the allocator. It has a variant for the commonest result of `vkAllocateMemory`; other results, and
-    /// those of `vkMapMemory`, appear only in its text.
+    /// those of `vkMapMemory`, are only in its text.
     pub(super) fn of_allocator(source: AllocationError, resource: &str, bytes: u64) -> Self {
         let call = match &source {
             AllocationError::FailedToMap(_) => "vkMapMemory",
@@ -165,7 +165,7 @@ impl GpuError {
 const TYPED: [vk::Result; 3] =
     [vk::Result::ERROR_DEVICE_LOST, vk::Result::ERROR_OUT_OF_HOST_MEMORY, vk::Result::ERROR_OUT_OF_DEVICE_MEMORY];
 
-/// Gives a bare `vk::Result` the name of its call and object.
+/// Adds call and object to a bare `vk::Result`.
 pub(crate) trait Named<T> {
     /// The value, or the error of the call.
     fn named(self, call: &'static str, resource: &str) -> Result<T, GpuError>;

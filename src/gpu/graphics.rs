@@ -1,7 +1,7 @@
 //! Graphics pipelines, with or without tessellation.
 //!
-//! They draw without vertex buffers: shaders fetch what they need by index. Viewport and scissor are
-//! dynamic; attachments are named by format (dynamic rendering).
+//! They draw without vertex buffers: shaders fetch vertices by index. Viewport and scissor are dynamic; attachments are
+//! given by format (dynamic rendering).
 
 use super::description::Description;
 use super::layout::{Binding, Layout};
@@ -9,7 +9,7 @@ use super::pipeline::{Constants, ENTRY, Made, Module};
 use super::{Device, GpuError, Named, Pipeline};
 use ash::vk;
 
-/// What a graphics pipeline is made from.
+/// The parameters of a graphics pipeline.
 #[derive(Clone, Copy, Debug)]
 pub struct GraphicsInfo<'a> {
     /// Name in errors, validation messages and [`Device::objects`].
@@ -22,7 +22,7 @@ pub struct GraphicsInfo<'a> {
     pub push_bytes: u32,
     /// Specialisation constants, given to every stage: `constant_id` and value bits.
     pub constants: &'a [(u32, u32)],
-    /// What vertices form: `PATCH_LIST` with tessellation stages.
+    /// The primitive of the vertices: `PATCH_LIST` with tessellation stages.
     pub topology: vk::PrimitiveTopology,
     /// Vertices of a patch; 0 without tessellation.
     pub patch_points: u32,
@@ -43,14 +43,14 @@ pub struct GraphicsInfo<'a> {
 pub struct ColourTarget {
     /// Its format.
     pub format: vk::Format,
-    /// How a fragment's colour is combined with the attachment's.
+    /// The combination of a fragment's colour with the attachment's.
     pub blend: Blend,
 }
 
-/// How a fragment's colour is combined with the attachment's.
+/// The combination of a fragment's colour with the attachment's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blend {
-    /// It replaces it.
+    /// The fragment's colour replaces the target's.
     Replace,
     /// `source + (1 - source alpha) target`, for colours already multiplied by their opacity.
     Over,
@@ -71,15 +71,15 @@ pub struct DepthTest {
     pub write: bool,
 }
 
-/// Stencil test of a pipeline, the same for both sides of faces. A fragment passes when the stored bits under the
-/// compare mask are those of the reference; [`Commands::stencil`] sets both masks and the reference.
+/// Stencil test of a pipeline, the same for both sides of faces. A fragment passes if the stored bits under the compare
+/// mask equal those of the reference; [`Commands::stencil`] sets both masks and the reference.
 ///
 /// [`Commands::stencil`]: super::Commands::stencil
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StencilTest {
     /// Format of the attachment.
     pub format: vk::Format,
-    /// What passing fragments do to the bits under the write mask; others do nothing.
+    /// The operation of passing fragments on the bits under the write mask; failing fragments change nothing.
     pub pass: vk::StencilOp,
 }
 

@@ -5,7 +5,7 @@ use super::memory::Memory;
 use super::{Device, GpuError, MemoryLocation, Named, Pool};
 use ash::vk;
 
-/// What an image is made from: one layer, one level, one sample a pixel.
+/// The parameters of an image: one layer, one level, one sample a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct ImageInfo<'a> {
     /// Name in errors, validation messages and [`Device::objects`].
@@ -14,13 +14,13 @@ pub struct ImageInfo<'a> {
     pub size: (u32, u32),
     /// Format; depth formats get a depth view.
     pub format: vk::Format,
-    /// What it is used for.
+    /// Its uses.
     pub usage: vk::ImageUsageFlags,
-    /// How long it lives.
+    /// Its lifetime.
     pub pool: Pool,
 }
 
-/// An image and its view; frees what it owns on drop. The GPU must have finished with it by then.
+/// An image and its view; frees what it owns on drop. The GPU must have finished with it before.
 #[derive(Debug)]
 pub struct Image {
     handle: vk::Image,
@@ -95,7 +95,7 @@ impl Image {
         Ok(memory)
     }
 
-    /// The host's image, such as one of its swapchain: never destroyed here.
+    /// Borrows the host's image, such as one of its swapchain; it is never destroyed here.
     ///
     /// # Safety
     /// `view` shows the only layer and level of `handle`, whose size and format are as given; both
@@ -111,7 +111,7 @@ impl Image {
         Self { handle, view, size, format, aspect, name, memory: None, registration: None }
     }
 
-    /// Bytes of memory that it takes; 0 of the host's.
+    /// Bytes of its memory; 0 for the host's images.
     pub fn bytes(&self) -> u64 {
         self.memory.as_ref().map_or(0, Memory::bytes)
     }

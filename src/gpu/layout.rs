@@ -3,7 +3,7 @@
 use super::{Device, GpuError, Named};
 use ash::vk;
 
-/// What a shader finds at a binding of set 0.
+/// The kind of resource at a binding of set 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Binding {
     /// `buffer` block.
@@ -12,16 +12,16 @@ pub enum Binding {
     Uniform,
     /// `samplerBuffer`.
     TexelBuffer,
-    /// `image2D` and its kin.
+    /// `image2D` and similar.
     StorageImage,
-    /// `sampler2D` and its kin: image and sampler in one.
+    /// `sampler2D` and similar: image and sampler in one.
     Sampled,
     /// No stage reads it: it takes no resource.
     Unused,
 }
 
 impl Binding {
-    /// `None` where nothing stands there.
+    /// `None` for an unused binding.
     pub(crate) fn descriptor_type(self) -> Option<vk::DescriptorType> {
         Some(match self {
             Self::Unused => return None,

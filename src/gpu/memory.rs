@@ -1,4 +1,4 @@
-//! Device memory in three pools, by how long a resource lives; each pool counts its bytes.
+//! Device memory in three pools by lifetime; each pool counts its bytes.
 //!
 //! ```text
 //!   persistent   with the scene          control points, trim curves, trees
@@ -13,7 +13,7 @@ use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 use std::mem::ManuallyDrop;
 use std::sync::PoisonError;
 
-/// How long a resource lives; its bytes are counted there (see [`Device::pool_bytes`]).
+/// The lifetime of a resource. Its bytes are counted in this pool (see [`Device::pool_bytes`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pool {
     /// As long as the scene.
@@ -38,7 +38,7 @@ impl Pool {
     }
 }
 
-/// Which side of the bus the memory is on, and whether the CPU sees it.
+/// Where memory is, and whether the CPU can access it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MemoryLocation {
     /// Fastest for the GPU; not mapped.
@@ -49,7 +49,7 @@ pub enum MemoryLocation {
     ReadBack,
 }
 
-/// A piece of device memory, counted in its pool and given back on drop.
+/// A piece of device memory, counted in its pool and freed on drop.
 #[derive(Debug)]
 pub(crate) struct Memory {
     device: Device,
@@ -110,7 +110,7 @@ impl Drop for Memory {
         // SAFETY: the allocation is taken once, here.
         let allocation = unsafe { ManuallyDrop::take(&mut self.allocation) };
         if self.device.living().is_none() {
-            return; // the memory went with its device
+            return; // the memory was freed with its device
         }
         // `free` fails only for memory of another allocator, which `new` rules out.
         let freed = self.device.allocator().free(allocation);

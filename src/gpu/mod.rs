@@ -11,9 +11,9 @@
 //!        bind · dispatch · draw · rendering · barrier::buffers · Uploads · ReadBack
 //! ```
 //!
-//! The device stays the host's: this layer records into the host's command buffers, and never submits, waits, or destroys
-//! a device. It has no geometry in it. `unsafe` lives here (and in `headless`, which plays the host for tools and tests),
-//! so that the passes need none.
+//! The device belongs to the host: this layer records into the host's command buffers, and never submits, waits, or
+//! destroys a device. It contains no geometry. `unsafe` is confined to this layer (and `headless`, the host for tools
+//! and tests), so the passes need none.
 
 #[doc(hidden)]
 pub mod barrier;

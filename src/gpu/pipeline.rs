@@ -1,7 +1,7 @@
-//! Pipelines from SPIR-V, a list of bindings and named constants.
+//! Pipelines from SPIR-V, a list of bindings and specialisation constants.
 //!
-//! A driver may compile a pipeline for seconds, and successive models need mostly the same ones. So two pipelines of equal
-//! descriptions share one Vulkan object as long as one of them lives.
+//! A driver may need seconds for a pipeline, and successive models mostly need the same ones. So pipelines with equal
+//! descriptions share one Vulkan object while one of them exists.
 //!
 //! ```text
 //!   set 0, push descriptors          push constants             specialisation constants
@@ -17,7 +17,7 @@ use ash::vk;
 use std::ffi::CStr;
 use std::sync::Arc;
 
-/// What a compute pipeline is made from.
+/// The parameters of a compute pipeline.
 #[derive(Clone, Copy, Debug)]
 pub struct ComputeInfo<'a> {
     /// Name in errors, validation messages and [`Device::objects`].
@@ -32,15 +32,15 @@ pub struct ComputeInfo<'a> {
     pub constants: &'a [(u32, u32)],
 }
 
-/// A pipeline with its layout. The last of those that share one frees it on drop; the GPU must have finished with it by
-/// then.
+/// A pipeline with its layout. The last pipeline that shares a Vulkan object frees it on drop; the GPU must have
+/// finished with it before.
 #[derive(Debug)]
 pub struct Pipeline {
     made: Arc<Made>,
     _registration: Registration,
 }
 
-/// What pipelines of one description share.
+/// The shared objects of pipelines with one description.
 #[derive(Debug)]
 pub(super) struct Made {
     pub(super) device: Device,
@@ -101,7 +101,7 @@ impl Pipeline {
         Self::sharing(made)
     }
 
-    /// One more pipeline of a description.
+    /// Another pipeline of an existing description.
     pub(super) fn sharing(made: Arc<Made>) -> Self {
         Self { _registration: made.device.register(&made.name, 0), made }
     }

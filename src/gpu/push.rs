@@ -3,7 +3,7 @@
 use super::{Binding, Buffer, Commands, Image, Pipeline, Sampler, TexelBuffer};
 use ash::vk;
 
-/// What stands at one binding.
+/// The resource at one binding.
 #[derive(Clone, Copy, Debug)]
 pub enum Resource<'a> {
     /// All of a buffer.
@@ -22,7 +22,7 @@ pub enum Resource<'a> {
     TexelBuffer(&'a TexelBuffer),
     /// A storage image in layout `GENERAL`.
     Image(&'a Image),
-    /// An image in layout `GENERAL`, seen through a sampler.
+    /// An image in layout `GENERAL`, with a sampler.
     Sampled(&'a Image, &'a Sampler),
 }
 
@@ -44,7 +44,7 @@ impl<'a> From<&'a Image> for Resource<'a> {
     }
 }
 
-/// Vulkan's description of a resource; one of the two, by binding. TexelBuffer need neither.
+/// Vulkan's description of a resource: one of the two, by kind of binding. Texel buffers need neither.
 #[derive(Clone, Copy, Default)]
 struct Descriptor {
     buffer: vk::DescriptorBufferInfo,
@@ -77,8 +77,7 @@ impl Descriptor {
 
 /// Pushes the resources of `pipeline` in binding order.
 ///
-/// # Panics
-/// When their number or kinds are not those of the pipeline's bindings.
+/// # Panics If their number or kinds differ from the pipeline's bindings.
 pub(crate) fn resources(cmd: &Commands<'_>, pipeline: &Pipeline, resources: &[Resource<'_>]) {
     let bindings = (0u32..).zip(pipeline.bindings()).filter_map(|(i, b)| Some((i, b, b.descriptor_type()?)));
     let bindings: Vec<_> = bindings.collect();

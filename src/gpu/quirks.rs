@@ -1,27 +1,25 @@
-//! Where a driver departs from what Vulkan promises: each with its measurement and way around.
+//! Faults of drivers, each with its cause and workaround.
 
 use ash::vk;
 
-/// What passes must respect on this driver, beyond the device's limits.
+/// Restrictions that passes must respect on this driver, in addition to the device's limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quirks {
-    /// Most vertices that the tessellator may make in one draw; `u32::MAX` when any number may.
+    /// Most vertices that the tessellator may make in one draw; `u32::MAX` for no limit.
     ///
-    /// llvmpipe (Mesa 22.3.6 and 25.0.7) loses tessellated vertices beyond 65,536 in a draw without
-    /// a word, and such a draw takes 10 to 45 s.
+    /// llvmpipe (Mesa 22.3.6 and 25.0.7) silently loses tessellated vertices beyond 65,536 in a draw, and such a draw
+    /// takes many seconds.
     ///
-    /// Once a vertex of a draw lies far outside of the picture, it takes all of the draw through its clipper, which visits
-    /// every vertex of the draw again each time that its output is full: the time grows with the square of their number
-    /// (Mesa 22.3.6, `draw_reset_vertex_ids`). Pass `visibility` of m6_countersunk_screw, ten times closer in a
-    /// picture of 1920 x 1080, takes 330 ms with draws of 60,000 vertices, 144 of 20,000, 118 of 12,000, 107 of 8,000 and
-    /// 95 of 5,000; of axom_boxed_sphere 260, 120, 117, 100 and 100. Where nothing is clipped the number does not matter.
+    /// If a vertex of a draw lies far outside the picture, llvmpipe sends the whole draw through its clipper. The
+    /// clipper visits every vertex of the draw each time its output is full, so the time grows with the square of their
+    /// number (Mesa 22.3.6, `draw_reset_vertex_ids`). Draws with few vertices avoid this.
     pub max_tessellated_vertices_per_draw: u32,
-    /// Whether the size of a texel buffer is part of what the driver compiles a shader for.
+    /// Whether the driver compiles a shader again for another size of a texel buffer.
     ///
-    /// llvmpipe's key of a compiled shader (Mesa 22.3.6 to 25, `lp_sampler_static_texture_state`) asks of each texture
-    /// whether its width is a power of two and whether it has one level alone. Of a texel buffer the first is the
-    /// buffer's size, the second bits 8 to 15 of the view's size: so a buffer that grows makes every shader that reads
-    /// it compile again, and a disk cache misses it. The gap filler takes 4 s a time.
+    /// llvmpipe's key of a compiled shader (Mesa 22.3.6 to 25, `lp_sampler_static_texture_state`) contains, for each
+    /// texture, whether its width is a power of two and whether it has only one level. For a texel buffer the first is
+    /// the buffer's size, the second bits 8 to 15 of the view's size. So a buffer that grows makes every shader that
+    /// reads it compile again, which takes seconds, and a disk cache misses it.
     sized_texel_buffers: bool,
 }
 
@@ -33,8 +31,8 @@ impl Quirks {
         Self { max_tessellated_vertices_per_draw, sized_texel_buffers: llvmpipe }
     }
 
-    /// Size of a texel buffer that holds `bytes`, a multiple of 16: at most 272 bytes more, so that all sizes are alike
-    /// to the driver.
+    /// Size of a texel buffer for `bytes`, a multiple of 16: at most 272 bytes more, so that the driver's key is the
+    /// same for all sizes.
     pub fn texel_buffer_bytes(self, bytes: u64) -> u64 {
         if !self.sized_texel_buffers {
             return bytes;

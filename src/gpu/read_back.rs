@@ -1,10 +1,10 @@
-//! Device memory copied to where the CPU reads it, after the fence.
+//! Copies device memory to memory that the CPU reads after the fence.
 
 use super::{Access, Buffer, BufferInfo, Commands, Device, GpuError, Image, MemoryLocation, Pool, barrier};
 use ash::vk;
 use bytemuck::Pod;
 
-/// A mapped buffer for the CPU to read; keep it and record into it again each frame.
+/// A mapped buffer for the CPU to read; it is recorded into again in each frame.
 #[derive(Debug)]
 pub struct ReadBack {
     buffer: Buffer,
@@ -23,16 +23,14 @@ impl ReadBack {
 
     /// Records the copy of the first `bytes` of `from`, which is in [`Access::TRANSFER_READ`].
     ///
-    /// # Panics
-    /// When they do not fit.
+    /// # Panics If they do not fit.
     pub fn record(&self, cmd: &Commands<'_>, from: &Buffer, bytes: u64) {
         self.record_nth(cmd, from, bytes, 0);
     }
 
-    /// The same behind `nth` others of the same size.
+    /// The same, after `nth` copies of the same size.
     ///
-    /// # Panics
-    /// When they do not fit.
+    /// # Panics If they do not fit.
     pub fn record_nth(&self, cmd: &Commands<'_>, from: &Buffer, bytes: u64, nth: u64) {
         cmd.copy(from, 0, &self.buffer, nth * bytes, bytes);
         barrier::buffers(cmd, &[(&self.buffer, Access::TRANSFER_WRITE, Access::HOST_READ)]);
@@ -45,11 +43,10 @@ impl ReadBack {
         barrier::buffers(cmd, &[(&self.buffer, Access::TRANSFER_WRITE, Access::HOST_READ)]);
     }
 
-    /// Records the copies of one pixel of each image, of so many bytes, one after another; the images are in layout
-    /// `GENERAL`, and what touches them next to a copy is ordered by [`Access::TRANSFER_READ`].
+    /// Records the copies of one pixel of each image, of `bytes` bytes, one after another. The images are in layout
+    /// `GENERAL`; a barrier from [`Access::TRANSFER_READ`] must precede their next use.
     ///
-    /// # Panics
-    /// When they do not fit.
+    /// # Panics If they do not fit.
     pub fn record_pixels(&self, cmd: &Commands<'_>, from: &[&Image], at: (u32, u32), bytes: u64) {
         for (nth, image) in (0..).zip(from) {
             cmd.copy_pixel(image, at, &self.buffer, (nth * bytes, bytes));
@@ -57,10 +54,9 @@ impl ReadBack {
         barrier::buffers(cmd, &[(&self.buffer, Access::TRANSFER_WRITE, Access::HOST_READ)]);
     }
 
-    /// The first `count` values where they are, after the fence.
+    /// The first `count` values in place, after the fence.
     ///
-    /// # Panics
-    /// When there is no room for that many.
+    /// # Panics If the buffer is shorter.
     pub fn slice<T: Pod>(&self, count: usize) -> &[T] {
         let Some(mapped) = self.buffer.mapped() else { panic!("`{}` is not mapped", self.buffer.name()) };
         bytemuck::cast_slice(&mapped[..count * size_of::<T>()])
@@ -68,8 +64,7 @@ impl ReadBack {
 
     /// A copy of the first `count` values, after the fence.
     ///
-    /// # Panics
-    /// When there is no room for that many.
+    /// # Panics If the buffer is shorter.
     pub fn values<T: Pod>(&self, count: usize) -> Vec<T> {
         self.slice(count).to_vec()
     }

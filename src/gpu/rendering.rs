@@ -1,14 +1,14 @@
-//! Dynamic rendering: which images are drawn into, and what they hold before and after.
+//! Dynamic rendering: attachments, and their contents before and after.
 
 use super::{Access, Image, ImageAccess};
 use ash::vk;
 
-/// What an attachment holds when rendering begins.
+/// The contents of an attachment when rendering begins.
 #[derive(Clone, Copy)]
 pub enum Load {
-    /// What it held before.
+    /// The previous contents.
     Keep,
-    /// Anything: every pixel that matters will be written.
+    /// Undefined: every pixel that matters will be written.
     Discard,
     /// This colour, per channel.
     ColourF32([f32; 4]),
@@ -18,7 +18,7 @@ pub enum Load {
     Depth(f32),
 }
 
-/// An image drawn into. Its contents are stored afterwards.
+/// An image that is drawn into. Its contents are stored afterwards.
 #[derive(Clone, Copy)]
 pub struct Attachment<'a> {
     /// In the layout of [`Access::COLOUR_WRITE`] or [`Access::DEPTH_WRITE`].
@@ -28,7 +28,7 @@ pub struct Attachment<'a> {
 }
 
 impl Attachment<'_> {
-    /// The same, with what is there.
+    /// The same attachment with its contents loaded.
     pub fn again(&self) -> Self {
         Self { load: Load::Keep, ..*self }
     }

@@ -1,4 +1,4 @@
-//! What a Vulkan device must offer, for a host that brings its own.
+//! The requirements on a Vulkan device, for a host with its own device.
 //!
 //! ```no_run
 //! # use ash::vk; use selvedge::gpu::Requirements;
@@ -19,7 +19,7 @@
 use ash::vk;
 use std::ffi::CStr;
 
-/// The engine's demands on a device. One table below is their only home.
+/// The engine's requirements on a device, stated only in the table below.
 pub struct Requirements;
 
 /// Writes the query and the merge from one list of features per Vulkan version.
@@ -74,7 +74,7 @@ impl Requirements {
         v13 maintenance4,
     }
 
-    /// Names of what `physical` lacks; empty when the engine runs on it.
+    /// Names of the features that `physical` lacks; empty if the engine runs on it.
     ///
     /// # Safety
     /// `physical` belongs to `instance`, and `instance` was made for Vulkan 1.1 or later.

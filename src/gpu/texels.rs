@@ -1,14 +1,13 @@
 //! A buffer that shaders read through a format: `samplerBuffer`.
 //!
-//! One fetch returns a whole texel. llvmpipe loads a storage buffer word by word and lane by lane;
-//! reading control points as texels makes its pixel shading several times faster, and costs real
-//! GPUs nothing.
+//! One fetch returns a whole texel. llvmpipe loads a storage buffer word by word and lane by lane; reading control
+//! points as texels makes its pixel shading several times faster, and costs hardware GPUs nothing.
 
 use super::{Buffer, Device, GpuError, Named};
 use ash::vk;
 use std::ops::Deref;
 
-/// What a fetch returns.
+/// The value of a fetch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Texel {
     /// `usamplerBuffer`, words, four in a texel: `word_at` of `glsl/include/words.glsl`.
@@ -47,11 +46,12 @@ impl Texel {
 }
 
 /// A buffer of usage `UNIFORM_TEXEL_BUFFER` with a view of all of it; frees the view on drop. Passes that write it, or
-/// read it as structs, take it as the buffer that it is.
+/// read it as structs, bind its buffer.
 #[derive(Debug)]
 pub struct TexelBuffer {
     view: vk::BufferView,
-    // Declared after the view that shows it.
+    texel: Texel,
+    // declared after the view of it
     buffer: Buffer,
     device: Device,
 }
@@ -59,9 +59,7 @@ pub struct TexelBuffer {
 impl TexelBuffer {
     /// Views `buffer`.
     ///
-    /// # Errors
-    /// [`GpuError::TooLarge`] when the buffer has more texels than the device can address,
-    /// [`GpuError::Vulkan`].
+    /// # Errors [`GpuError::TooLarge`] if the buffer has more texels than the device can address, [`GpuError::Vulkan`].
     pub fn new(device: &Device, buffer: Buffer, texel: Texel) -> Result<Self, GpuError> {
         let (format, bytes) = (texel.format(), texel.bytes());
         let limit = u64::from(device.limits().max_texel_buffer_elements) * bytes;
@@ -72,7 +70,12 @@ impl TexelBuffer {
         // SAFETY: the buffer belongs to this device.
         let view =
             unsafe { device.raw().create_buffer_view(&create, None) }.named("vkCreateBufferView", buffer.name())?;
-        Ok(Self { view, buffer, device: device.clone() })
+        Ok(Self { view, texel, buffer, device: device.clone() })
+    }
+
+    /// See [`Buffer::of_size`].
+    pub(crate) fn of_size(&self, bytes: u64) -> Result<Self, GpuError> {
+        Self::new(&self.device, self.buffer.of_size(bytes)?, self.texel)
     }
 
     /// See [`Buffer::write`].

@@ -1,4 +1,4 @@
-//! GPU time of named scopes, and what the pipeline counted in them, per frame slot.
+//! GPU time and pipeline statistics of named scopes, for each frame slot.
 //!
 //! ```text
 //!   slot s:  queries  2i ─ begin of scope i      statistics query i ─ scope i, when it draws
@@ -9,31 +9,31 @@ use super::{Commands, Device, GpuError, Named};
 use ash::vk;
 use vk::QueryPipelineStatisticFlags as Counted;
 
-/// What the pipeline counted while drawing.
+/// Pipeline statistics of a scope.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
     /// Primitives that reached the clipper: the triangles that the tessellator made.
     pub triangles: u64,
     /// Invocations of fragment shaders.
     pub fragments: u64,
-    /// Patches that the tessellation control shader saw.
+    /// Patches of the tessellation control shader.
     pub patches: u64,
     /// Invocations of tessellation evaluation shaders.
     pub tessellated_vertices: u64,
 }
 
-/// What one scope cost.
+/// The cost of one scope.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScopeTime {
     /// Its name.
     pub name: String,
-    /// Milliseconds between the first and the last command; 0 where the queue has no timestamps.
+    /// Milliseconds between the first and the last command; 0 if the queue has no timestamps.
     pub gpu_ms: f64,
     /// For a scope that draws, on a device with `pipelineStatisticsQuery`.
     pub statistics: Option<Statistics>,
 }
 
-/// Counters in the order in which Vulkan returns them: by bit.
+/// Counters in the order in which Vulkan returns them, by bit.
 const COUNTED: Counted = Counted::from_raw(
     Counted::CLIPPING_INVOCATIONS.as_raw()
         | Counted::FRAGMENT_SHADER_INVOCATIONS.as_raw()
@@ -71,7 +71,7 @@ impl Timestamps {
         Ok(this)
     }
 
-    /// Forgets the scopes of the frame before; the first command of a frame.
+    /// Clears the scopes of the previous frame; the first command of a frame.
     pub fn reset(&mut self, cmd: &Commands<'_>) {
         self.scopes.clear();
         for (pool, count) in [(Some(self.times), 2 * self.capacity), (self.statistics, self.capacity)] {
@@ -82,18 +82,16 @@ impl Timestamps {
         }
     }
 
-    /// Times what `record` records, and labels it.
+    /// Times and labels the commands of `record`.
     ///
-    /// # Panics
-    /// When the frame has more scopes than [`new`](Self::new) made room for.
+    /// # Panics If the frame has more scopes than [`new`](Self::new) allows.
     pub fn scope<R>(&mut self, cmd: &Commands<'_>, name: &str, record: impl FnOnce() -> R) -> R {
         self.measure(cmd, name, false, record)
     }
 
-    /// As [`scope`](Self::scope), for a scope that draws: counts too. Not within `rendering`.
+    /// As [`scope`](Self::scope), with statistics, for a scope that draws. Not within `rendering`.
     ///
-    /// # Panics
-    /// When the frame has more scopes than [`new`](Self::new) made room for.
+    /// # Panics If the frame has more scopes than [`new`](Self::new) allows.
     pub fn drawing<R>(&mut self, cmd: &Commands<'_>, name: &str, record: impl FnOnce() -> R) -> R {
         self.measure(cmd, name, true, record)
     }
@@ -126,8 +124,8 @@ impl Timestamps {
         result
     }
 
-    /// What the scopes cost, in order; call it after the frame's fence. A scope that never ran on
-    /// the GPU has no time yet: `VK_NOT_READY`.
+    /// The cost of the scopes, in order; call it after the frame's fence. A scope that never ran on the GPU has no time
+    /// yet: `VK_NOT_READY`.
     ///
     /// # Errors
     /// [`GpuError::Vulkan`].

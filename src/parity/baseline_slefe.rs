@@ -1,5 +1,5 @@
-//! Parity of the pass `baseline_slefe` with `Way::Ipass`, in double precision: the same factor, or its neighbour where
-//! what was rounded up is as near to a whole number as single precision can tell.
+//! Parity of the pass `baseline_slefe` with `Way::Ipass`, in double precision: the same factor, or its neighbour if the
+//! value before rounding up is a whole number within single precision.
 
 use super::harness::{Gpu, Mismatch, SceneBuffers, same};
 use super::shapes::{model_and_cameras, model_with_sieve};
@@ -17,7 +17,7 @@ use glam::{DAffine3, DVec3, DVec4};
 /// Single precision, relative to the factor.
 const ROUNDING: f64 = 1e-4;
 
-/// What each item of a model asks for; 0 where it is not seen, infinite where there is no answer.
+/// The factor of each item of a model; 0 if it is not visible, infinite if there is no factor.
 fn asked(model: &Model, camera: &Camera, tolerance_px: f64, segments: usize) -> Vec<f64> {
     let trials = Trial::of_model(model, camera, tolerance_px);
     trials.iter().map(|trial| if trial.tau == [0; 2] { 0.0 } else { ipass(trial, segments) }).collect()
@@ -78,7 +78,7 @@ fn parity() {
             for segments in [1, USUAL_SEGMENTS, MOST_SEGMENTS] {
                 let asked = asked(model, camera, tolerance_px, segments);
                 let clamps = compare(&gpu, &case, &asked, segments).unwrap().clamps;
-                // those that reach the near plane, that ask for too much, of degree 10
+                // patches at the near plane, patches with large factors, patches of degree 10
                 let clamped = camera.eye == cameras[1].eye || tolerance_px < 1e-3 || std::ptr::eq(model, &degrees);
                 assert_eq!(clamps > 0, clamped, "{clamps} clamps of {asked:?}");
             }

@@ -1,4 +1,4 @@
-//! Parity of the pass `bound`: exact; where the GPU rounds otherwise, a factor may differ by one.
+//! Parity of the pass `bound`: exact; if the GPU rounds differently, a factor may differ by one.
 
 use super::chain::UNTOUCHED;
 use super::harness::{Gpu, Mismatch, SceneBuffers, halves, same};
@@ -30,7 +30,7 @@ fn parity() {
     for gpu in Gpu::all() {
         for case in cases() {
             compare(&gpu, &case, &case).unwrap();
-            // so tight that some factors exceed what can be split
+            // so tight that some factors exceed the largest split
             let mut fine = case.clone();
             fine.frame.deviation_px *= 1e-6;
             let mut counters = Counters::default();
@@ -42,7 +42,7 @@ fn parity() {
     }
 }
 
-/// A closed part without trims, as it is and mirrored, from around it, every third view parallel.
+/// A closed part without trims, unchanged and mirrored, from all sides; every third view is parallel.
 fn seamless() -> Vec<(Camera, Case)> {
     let mut model = cages::a_box().model;
     let mut other = model.instances[0].clone();
@@ -60,7 +60,8 @@ fn seamless() -> Vec<(Camera, Case)> {
     (0..12).map(case).collect()
 }
 
-/// Every outward normal of an item's patch points away from the viewer: in double precision, at 13 by 13 points.
+/// Whether every outward normal of an item's patch points away from the viewer: in double precision, at 13 by 13
+/// points.
 fn faces_away(case: &Case, camera: &Camera, item: usize) -> bool {
     let data = &case.data;
     let placed = data.face_instances[data.items[item] as usize];
@@ -80,7 +81,7 @@ fn faces_away(case: &Case, camera: &Camera, item: usize) -> bool {
     })
 }
 
-/// What looks away is left out; and what is left out looks away, all of it.
+/// Patches turned away are left out, and patches that are left out are turned away as a whole.
 #[test]
 fn parity_of_what_looks_away() {
     let gpu = Gpu::new();
@@ -106,7 +107,8 @@ fn parity_of_what_looks_away() {
     gpu.finish();
 }
 
-/// Of a polynomial patch the control points themselves are asked, and fewer segments may do than its bend alone asks for.
+/// For a polynomial patch the control points themselves are projected, and fewer segments may suffice than for its bend
+/// alone.
 #[test]
 fn parity_of_what_moves_no_pixel() {
     let gpu = Gpu::new();

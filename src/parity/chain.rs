@@ -7,7 +7,7 @@ use crate::twin::density::Density;
 use crate::twin::emit::Draw;
 use crate::twin::split::Split;
 
-/// What a buffer holds where no pass has written.
+/// The contents of a buffer that no pass has written.
 pub(super) const UNTOUCHED: u32 = 0xA5A5_A5A5;
 /// [`UNTOUCHED`] as an entry of the draw list.
 pub(super) const UNTOUCHED_SUB_PATCH: SubPatch = SubPatch { item: UNTOUCHED, place: UNTOUCHED };
@@ -29,15 +29,15 @@ pub(super) struct Chain {
     pub dispatches: [[u32; 3]; 3],
     pub strips: Vec<StripRows>,
     pub row_counts: Vec<u32>,
-    /// As `cross` leaves them, and as `carry` does.
+    /// After `cross`, and after `carry`.
     pub rows_add_up: Vec<i32>,
     pub row_windings: Vec<i32>,
     pub border_cells: Vec<[u32; 4]>,
     pub row_starts: Vec<u32>,
     pub row_total: u32,
-    /// As `cross` leaves them; the order within a row is not part of the contract.
+    /// After `cross`; the order within a row is unspecified.
     pub intercepts: Vec<u32>,
-    /// As `sort` leaves them: the first `flip_counts[row] >> 1` words of a row are float bits.
+    /// After `sort`: the first `flip_counts[row] >> 1` words of a row are float bits.
     pub flips: Vec<u32>,
     pub flip_counts: Vec<u32>,
     pub counters: Counters,
@@ -48,7 +48,7 @@ impl Chain {
         Self::with_table_of(case, case)
     }
 
-    /// The trim table is of what another view of the same scene sees.
+    /// With a trim table made for another view of the same scene.
     pub(super) fn with_table_of(case: &Case, table: &Case) -> Self {
         let (frame, scene) = (&case.frame, &case.scene());
         let mut c = Self::default();
@@ -83,7 +83,7 @@ impl Chain {
     }
 }
 
-/// Prefix sums with the total behind them.
+/// Prefix sums, followed by the total.
 fn starts(counts: &[u32]) -> Vec<u32> {
     let (mut starts, total) = twin::scan::scan(counts);
     starts.push(total);

@@ -14,7 +14,7 @@ use crate::trim::{ExactTrim, LoopIndex};
 use crate::twin::coverage::{Along, Cover, MOST_CELLS};
 use glam::{DMat2, DVec2};
 
-/// Points to a pixel's side, of which the reference counts those inside.
+/// Points along a pixel's side in the reference, which counts those inside.
 const FINE: u32 = 48;
 
 fn data(faces: &[Vec<TrimLoop>]) -> ExactData {
@@ -33,7 +33,7 @@ struct Pixel {
 }
 
 impl Pixel {
-    /// Around `uv`, some `size` of the domain wide: turned, skewed, and seen from either side.
+    /// A pixel around `uv`, about `size` of the domain wide: turned, skewed, from either side.
     fn random(random: &mut Random, uv: DVec2, size: f64) -> Self {
         let first = DVec2::from_angle(random.range(0.0, std::f64::consts::TAU));
         let turn = random.range(0.3, 2.8) * if random.integer(0, 1) == 0 { 1.0 } else { -1.0 };
@@ -57,7 +57,7 @@ fn cover(data: &ExactData, face: usize, pixel: &Pixel) -> Cover {
     twin(data).cover(face, pixel.uv, pixel.along)
 }
 
-/// Winding numbers of points of the pixel, evenly spread.
+/// Winding numbers of evenly spread points of the pixel.
 fn windings(index: &LoopIndex, pixel: &Pixel) -> Vec<i32> {
     let to_domain = pixel.to_domain();
     let at = |i: u32| (f64::from(i) + 0.5) / f64::from(FINE) - 0.5;
@@ -65,7 +65,7 @@ fn windings(index: &LoopIndex, pixel: &Pixel) -> Vec<i32> {
     points.map(|p| index.winding(to_domain(p))).collect()
 }
 
-/// Of the unit square around the origin, what lies within `offset` along the unit vector `normal`.
+/// Area of the part of the unit square around the origin within `offset` along the unit vector `normal`.
 fn half_plane(normal: DVec2, offset: f64) -> f64 {
     let (small, large) = (normal.abs().min_element(), normal.abs().max_element());
     let from_corner = 0.5 * (small + large) - offset.abs();
@@ -77,8 +77,8 @@ fn half_plane(normal: DVec2, offset: f64) -> f64 {
     if offset < 0.0 { cut } else { 1.0 - cut }
 }
 
-/// A square whose one side runs through the pixel: the closed form of a half plane, within the rounding of `f32`:
-/// pixels are some 1e-3 of the domain, so 2⁻²⁴ of the domain is 6e-5 of a pixel, met by the border's length.
+/// A square with one side through the pixel: the closed form of a half plane, within the rounding of `f32`. Pixels are
+/// some 1e-3 of the domain, so 2⁻²⁴ of the domain is 6e-5 of a pixel; this is multiplied by the border's length.
 #[test]
 fn a_straight_border_covers_what_its_half_plane_does() {
     let mut random = Random::new(21);
@@ -115,9 +115,9 @@ fn a_straight_border_covers_what_its_half_plane_does() {
     assert!(cut > 2000 && worst > 0.0);
 }
 
-/// Discs and stars from half a pixel to many, holes, corners and slits, borders that waver by roundings: against 48 x 48 points. Those count a border
-/// along a row of them by half a row, 0.010, and are off by less elsewhere; arcs of half a pixel's radius bulge over their
-/// chords by an area of 0.007.
+/// Discs and stars from half a pixel to many, holes, corners and slits, and borders that waver by roundings, against 48
+/// x 48 points. Points count a border along a row of them with an error of half a row, 0.010, and other borders with
+/// less; arcs of half a pixel's radius bulge over their chords by an area of 0.007.
 #[test]
 fn shapes_cover_what_points_in_them_say() {
     let mut random = Random::new(22);
@@ -168,8 +168,8 @@ fn shapes_cover_what_points_in_them_say() {
     assert!(cut > 1000 && (sum / f64::from(cut)).sqrt() < 0.003);
 }
 
-/// Every hard case of trimming, loops that turn back, touch, or run along scan lines, at pixels beside its rows
-/// and in its focus; where no point of a pixel is within two loops.
+/// Every hard case of trimming (loops that turn back, touch, or run along scan lines), at pixels beside its rows and in
+/// its focus, unless a point of the pixel is within two loops.
 #[test]
 fn hard_cases() {
     let mut random = Random::new(23);
@@ -204,14 +204,14 @@ fn hard_cases() {
     assert!(cut > 100 && asked > 2 * hard::all().len());
 }
 
-/// Of `tests/gpu/glsl/coverage.comp`, which wraps the include.
+/// `tests/gpu/glsl/coverage.comp` wraps the include.
 #[cfg(feature = "headless")]
 mod parity {
     use super::super::harness::{Gpu, Mismatch, same};
     use super::*;
     use crate::twin::coverage::Bound;
 
-    /// Pixels of each face on the GPU, with the data of `given`, against the twin with `expected`; bits of numbers.
+    /// Pixels of each face on the GPU, with the data of `given`, against the twin with `expected`; compares bits.
     fn compare(gpu: &Gpu, given: &ExactData, expected: &ExactData, pixels: &[Vec<Pixel>]) -> Result<(), Mismatch> {
         let words = |pixels: &Vec<Pixel>| pixels.iter().map(|p| [p.uv, p.along[0], p.along[1]]).collect();
         let asked: Vec<Vec<[[f32; 2]; 3]>> = pixels.iter().map(words).collect();
@@ -235,13 +235,13 @@ mod parity {
         Ok(())
     }
 
-    /// Within the error that quotients and roots may cause: `twin::coverage`.
+    /// Whether the difference is within the error of quotients and roots: `twin::coverage`.
     fn is_near(gpu: [u32; 4], twin: [u32; 4], pixel: &Pixel) -> bool {
         let bound = Bound::of(pixel.along);
         let number = |words: [u32; 4], i: usize| f32::from_bits(words[i]);
         let off = |i: usize| if gpu[i] == twin[i] { 0.0 } else { (number(gpu, i) - number(twin, i)).abs() };
         let long = |words: [u32; 4]| number(words, 1).abs().max(number(words, 2).abs());
-        // a border of no length cuts the pixel or not
+        // a border of length 0 may or may not count as crossing the pixel
         let same_cut = gpu[3] == twin[3] || long(gpu).max(long(twin)) <= bound.outward;
         off(0) <= bound.share && off(1).max(off(2)) <= bound.outward && same_cut
     }
@@ -299,7 +299,7 @@ mod parity {
         }
     }
 
-    /// A pixel is moved so that its share changes by little more than the bound.
+    /// A change of the share by little more than the bound is reported.
     #[test]
     fn a_little_more_than_the_bound_is_seen() {
         let random = &mut Random::new(25);

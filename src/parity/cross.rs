@@ -1,5 +1,5 @@
-//! Parity of the pass `cross`, both roles, and so of `curve.glsl`: exact, the rows as sets. If the GPU rounds quotients
-//! otherwise: within the bound of `twin::cross`, plus the lowest bit, which holds the direction.
+//! Parity of the pass `cross`, in both steps, and so of `curve.glsl`: exact, with rows compared as sets. If the GPU
+//! rounds quotients differently: within the bound of `twin::cross`, plus the lowest bit, which is the direction.
 
 use super::Case;
 use super::chain::{Chain, UNTOUCHED};
@@ -10,7 +10,7 @@ use crate::gpu::Texel;
 use crate::twin;
 use crate::twin::sort::from_ordered;
 
-/// What the pass leaves.
+/// The results of the pass.
 struct Left {
     row_counts: Vec<u32>,
     intercepts: Vec<u32>,
@@ -18,7 +18,7 @@ struct Left {
     row_windings: Vec<i32>,
 }
 
-/// One role of the pass on the GPU.
+/// One step of the pass on the GPU.
 fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> Left {
     let s = SceneBuffers::new(gpu, case);
     let before = if insert { chain.row_counts.clone() } else { vec![0; chain.row_counts.len()] };
@@ -79,7 +79,7 @@ fn u_of(intercept: u32) -> f32 {
     from_ordered(intercept & !1)
 }
 
-/// How far each intercept of the sorted rows may be off: as far as any of its row.
+/// Allowed difference of each intercept of the sorted rows: the largest bound in its row.
 fn bounds(chain: &Chain, used: usize, case: &Case) -> Vec<f32> {
     let (frame, scene) = (&case.frame, &case.scene());
     let mut of_row = vec![0.0f32; chain.row_counts.len()];
@@ -93,8 +93,8 @@ fn bounds(chain: &Chain, used: usize, case: &Case) -> Vec<f32> {
     all.take(used).collect()
 }
 
-/// `u` is within its bound. Directions are equal in order, except of intercepts that may change places within their
-/// bounds.
+/// Whether `u` is within its bound. Directions are compared in order, except for intercepts that may be interchanged
+/// within their bounds.
 fn near(gpu: &[u32], twin: &[u32], bounds: &[f32]) -> Result<(), Mismatch> {
     assert_eq!((gpu.len(), bounds.len()), (twin.len(), twin.len()), "intercepts");
     let off = |i: usize| (u_of(gpu[i]) - u_of(twin[i])).abs();
@@ -112,7 +112,7 @@ fn near(gpu: &[u32], twin: &[u32], bounds: &[f32]) -> Result<(), Mismatch> {
     }
 }
 
-/// The rows that have room, each in order, and nothing else.
+/// The rows within the capacity, each sorted.
 fn rows_sorted(chain: &Chain, mut intercepts: Vec<u32>) -> Vec<u32> {
     let room = intercepts.len();
     let ends = chain.row_starts.iter().skip(1).chain([&chain.row_total]).map(|&end| end as usize);
@@ -125,8 +125,8 @@ fn rows_sorted(chain: &Chain, mut intercepts: Vec<u32>) -> Vec<u32> {
     intercepts
 }
 
-/// Moves the loops up a little, by no simple share of their domains. Then no scan line touches a flat border, or a loop
-/// where it turns back. There another arithmetic may count two crossings more or less, and both pictures are right.
+/// Moves the loops up a little, by an irregular share of their domains. Then no scan line touches a flat border or a
+/// turning point of a loop, where another arithmetic may count two crossings more or less, and both are correct.
 fn nudged(mut case: Case) -> Case {
     const BY: f32 = 3.77e-4;
     for curve in &mut case.data.curves {
@@ -153,7 +153,7 @@ fn parity() {
     gpu.finish();
 }
 
-/// A control point moved so that some intercept leaves its bound, and one so that other lines are crossed.
+/// One control point is moved so that some intercept leaves its bound, another so that different lines are crossed.
 #[test]
 fn a_difference_is_seen() {
     let case = &nudged(cases().remove(0));
@@ -166,7 +166,7 @@ fn a_difference_is_seen() {
         moved.data.curve_points[cubic.first as usize + 3] += by;
         moved
     };
-    // the least of these steps that takes the twin's own intercepts beyond their bounds
+    // the smallest of these steps that moves the twin's own intercepts beyond their bounds
     let is_beyond = |by: &f32| {
         let chain = Chain::new(&second(*by));
         near(&rows_sorted(&chain, chain.intercepts.clone()), &twin, &bounds).is_err()
@@ -182,16 +182,15 @@ fn a_difference_is_seen() {
     }
 }
 
-/// Imitations change intercepts, by no more than the bounds, and most bounds are small. An imitation changes all
-/// quotients at once, so an intercept next to a border of bins may be counted in another row: only intercepts are
-/// compared.
+/// Imitations change intercepts within the bounds, and most bounds are small. An imitation changes all quotients at
+/// once, so an intercept near a border of bins may be counted in another row; therefore only intercepts are compared.
 #[test]
 fn other_arithmetic_makes_other_intercepts() {
     let case = &nudged(cases().remove(0));
     let chain = Chain::new(case);
     let twin = rows_sorted(&chain, chain.intercepts.clone());
     let bounds = bounds(&chain, twin.len(), case);
-    // the others are of rows at ends of chords, and along flat chords
+    // the others are in rows at ends of chords, and along flat chords
     let narrow = bounds.iter().filter(|bound| **bound < 1e-4).count();
     assert!(10 * narrow > 9 * bounds.len(), "{narrow} of {} bounds are small", bounds.len());
     for gpu in Gpu::all().into_iter().filter(|gpu| !gpu.is_exact()) {

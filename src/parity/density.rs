@@ -1,4 +1,4 @@
-//! Parity of the pass `density`: exact; where the GPU rounds otherwise, within 24 units in the last place.
+//! Parity of the pass `density`: exact; if the GPU rounds differently, within 24 units in the last place.
 
 use super::Case;
 use super::harness::{Gpu, Mismatch, SceneBuffers, floats, same};
@@ -48,7 +48,7 @@ fn parity() {
     }
 }
 
-/// The same density everywhere, whatever is seen; and it is more than any of these views asks for.
+/// The same density everywhere, visible or not, at least that of each of these views.
 #[test]
 fn a_table_for_many_views_holds_each() {
     let mut more = 0;

@@ -15,7 +15,7 @@ use std::path::Path;
 const MARGIN_PX: f32 = 3.0;
 const ROOM: u32 = 1 << 16;
 
-/// A model's edges as a camera sees them.
+/// A model's edges and a camera.
 struct View {
     data: SceneData,
     views: Vec<abi::View>,
@@ -51,7 +51,7 @@ fn bracket() -> Model {
     selvedge_io::import::open(&path).unwrap().model
 }
 
-/// The whole of it, a part of it that reaches behind the eye, and a parallel view from near.
+/// Three views: the whole model, a part of it that extends behind the eye, and a close parallel view.
 fn views() -> Vec<View> {
     let model = bracket();
     let whole = Camera::around(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, (320, 240));
@@ -95,7 +95,7 @@ fn compare(gpu: &Gpu, given: &View, expected: &View) -> Result<(), Mismatch> {
     gpu.run(|cmd| pass.emit(cmd, &bindings, params, ROOM));
     counts("edge chord counts", &gpu.read(&chord_counts, n), &twin_counts, gpu.slack())?;
     if gpu.slack().count > 0 {
-        return Ok(()); // another number of chords moves all that follow
+        return Ok(()); // a different number of chords shifts all later ones
     }
     let flat: Vec<Chord> = twin.into_iter().flatten().collect();
     same("edge chords", &gpu.read(&chords, flat.len()), &flat)?;
@@ -153,7 +153,7 @@ fn chords_are_as_near_as_those_in_double_precision() {
                     let Some((pixel, _)) = view.camera.project(point) else { continue };
                     let beside = |size: f64, x: f64| x < -3.0 || x > size + 3.0;
                     if beside(320.0, pixel.x) || beside(240.0, pixel.y) {
-                        continue; // the bound is of what the picture shows
+                        continue; // the bound holds within the picture
                     }
                     let along = (b - a).normalize_or_zero();
                     let nearest = a + along * (pixel - a).dot(along).clamp(0.0, (b - a).length());

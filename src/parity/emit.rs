@@ -65,7 +65,7 @@ fn a_difference_is_seen() {
     other.split.factors[slot % frame.items_in_sight as usize].splits += 1;
     assert_eq!(compare(&gpu, frame, &other, &chain).unwrap_err().buffer, "sub-patches");
     let mut other = chain.clone();
-    // all that follows comes a draw later
+    // all later items come one draw later
     other.vertex_starts[slot + 1..].iter_mut().for_each(|start| *start += frame.draw_vertices);
     assert_eq!(compare(&gpu, frame, &other, &chain).unwrap_err().buffer, "draws");
     gpu.finish();

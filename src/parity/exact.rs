@@ -10,9 +10,9 @@ use crate::trim::{ExactTrim, LoopIndex};
 use crate::twin::exact::Exact;
 use glam::{DVec2, DVec3};
 
-/// Largest distance in the unit domain at which an answer may differ from that in `f64`, for loops within it:
-/// four roundings of a coordinate below 1 (of a joint, and of the difference to a point, in u and in v).
-/// That of the curve's own evaluation is far smaller: it is relative to the arc, and met near its ends only.
+/// Largest distance, in the unit domain, at which the result may differ from that in `f64`: four roundings of a
+/// coordinate below 1 (of a joint, and of its difference from a point, in u and in v). The error of the curve's
+/// evaluation is far smaller: it is relative to the arc, and matters only near its ends.
 const TOLERANCE: f64 = 4.0 / 16_777_216.0;
 
 pub(super) fn twin(data: &ExactData) -> Exact<'_> {
@@ -27,8 +27,8 @@ fn data(faces: &[Vec<TrimLoop>]) -> ExactData {
     data
 }
 
-/// A closed chain of one to five curves of degree 1 to 9; some control points repeat, some joints share
-/// a coordinate, so that degenerate forms come up.
+/// A closed chain of one to five curves of degree 1 to 9. Some control points repeat and some joints share a
+/// coordinate, which gives degenerate forms.
 pub(super) fn random_loop(random: &mut Random) -> TrimLoop {
     let grid = random.integer(0, 3) == 0;
     let coordinate = |random: &mut Random| {
@@ -57,8 +57,7 @@ pub(super) fn random_loop(random: &mut Random) -> TrimLoop {
     TrimLoop::new(curves, DVec2::splat(1e-14)).expect("closed by construction")
 }
 
-/// Largest distance from a loop at which the twin differs from the exact loops, and how many points
-/// were asked.
+/// Largest distance from a loop at which the twin differs from the exact loops, and the number of tested points.
 fn worst_difference(seed: u64, faces: usize, points: usize) -> (f64, usize) {
     let mut random = Random::new(seed);
     let mut worst = 0.0f64;
@@ -67,7 +66,7 @@ fn worst_difference(seed: u64, faces: usize, points: usize) -> (f64, usize) {
         let (index, data) = (LoopIndex::new(&loops), data(std::slice::from_ref(&loops)));
         let curves: Vec<_> = loops.iter().flat_map(TrimLoop::curves).collect();
         for k in 0..points {
-            // half of them within a few 1e-6 of a curve, where answers are at stake
+            // half of them within a few 1e-6 of a curve, where results may differ
             let p = if k % 2 == 0 {
                 DVec2::new(random.range(-0.05, 1.05), random.range(-0.05, 1.05))
             } else {
@@ -93,8 +92,8 @@ fn the_twin_decides_as_the_exact_loops_do() {
     assert!(asked == 24_000 && worst > 0.0, "points next to a curve must show the rounding of single precision");
 }
 
-/// Arcs whose corner is next to one of their ends, where the sides of the triangle differ by up to 2^20: points beside
-/// them are told as closely as others.
+/// Arcs with a corner next to one of their ends, where the sides of the triangle differ by up to 2^20: points beside
+/// them are as accurate as others.
 #[test]
 fn uneven_corners_cost_no_accuracy() {
     let mut random = Random::new(12);
@@ -104,7 +103,7 @@ fn uneven_corners_cost_no_accuracy() {
         let (a, b, third) = (point(&mut random), point(&mut random), point(&mut random));
         let share = 2f64.powf(-random.range(1.0, 20.0));
         let share = if k % 2 == 0 { share } else { 1.0 - share };
-        // within the box of both ends, so that the arc is one monotone piece
+        // within the box of both ends, so the arc is one monotone piece
         let turn = if random.integer(0, 1) == 0 { DVec2::new(a.x, b.y) } else { DVec2::new(b.x, a.y) };
         let corner = a.lerp(b, share).lerp(turn, 2f64.powf(-random.range(0.0, 10.0)));
         let weight = 2f64.powf(random.range(-3.0, 3.0));
@@ -126,9 +125,9 @@ fn uneven_corners_cost_no_accuracy() {
     assert!(asked > 60_000, "{asked} points are at stake");
 }
 
-/// A list holds for every point of its box: it tells what the list of the point's own cell does, and what the exact loops
-/// do; but next to a curve, where each may round as the test itself does. A third of the points are told by lists of another
-/// cell, and a tenth by lists that have arcs, else little is asked here; most faces have split cells.
+/// A list is valid for every point of its box: it gives the same result as the list of the point's own cell, and as the
+/// exact loops, except next to a curve, where each may round. At least a third of the points use lists of another cell,
+/// and a tenth use lists with arcs; otherwise the test covers little. Most faces have split cells.
 #[test]
 fn lists_hold_within_their_boxes() {
     let mut random = Random::new(11);
@@ -169,7 +168,7 @@ fn lists_hold_within_their_boxes() {
     );
 }
 
-/// `tools/soak a_hundred_thousand_loops` tells the figures.
+/// `tools/soak a_hundred_thousand_loops` prints the figures.
 #[test]
 #[ignore = "minutes: tools/soak"]
 fn a_hundred_thousand_loops() {
@@ -189,7 +188,7 @@ fn hard_cases() {
             let mut judged = 0;
             for &(u, v, winding) in &case.rows {
                 let uv = [u as f32, v as f32];
-                // a row on or next to a curve holds where the curve is as stated
+                // a row on or next to a curve is compared only where the curve is as stated
                 let far = index.distance(DVec2::new(u, v), 1.0) > 1e-6;
                 if (du, dv) == (0, 0) || far {
                     assert_eq!(twin(&data).winding(0, uv), winding, "{} moved {du} {dv} at ({u:e}, {v:e})", case.name);
@@ -201,7 +200,7 @@ fn hard_cases() {
     }
 }
 
-/// Lists stay linear in the arcs, also where all of them cross each other; and 10^4 holes are cheap.
+/// Lists are linear in the number of arcs, even if all arcs cross each other; and 10^4 holes take little memory.
 #[test]
 fn memory_is_linear_in_arcs() {
     let bytes = |loops: &[TrimLoop]| {
@@ -222,7 +221,7 @@ fn memory_is_linear_in_arcs() {
     assert!(each < 250.0, "{each} bytes a quarter circle");
 }
 
-/// Of `tests/gpu/glsl/exact.comp`, which wraps the include.
+/// `tests/gpu/glsl/exact.comp` wraps the include.
 #[cfg(feature = "headless")]
 mod parity {
     use super::super::harness::{Gpu, Mismatch, same};
@@ -247,7 +246,7 @@ mod parity {
         [twin.winding(face, p), if list.holds_for(q) { twin.winding_in(&list, q) } else { 99 }]
     }
 
-    /// Rows of the hard cases, points beside the curves, and points that are none.
+    /// Rows of the hard cases, points beside the curves, and NaN.
     fn faces() -> (Vec<Vec<TrimLoop>>, Vec<Vec<[f32; 2]>>) {
         let mut random = Random::new(3);
         let mut faces: Vec<Vec<TrimLoop>> = Vec::new();

@@ -1,5 +1,5 @@
-//! Whole frames by the renderer, with its barriers and its own constants, against the chain of twins:
-//! what the counters say is the same.
+//! Whole frames by the renderer, with its barriers and its own constants, against the chain of twins: the counters are
+//! equal.
 
 use super::Case;
 use super::chain::Chain;
@@ -22,7 +22,7 @@ fn a_frame_counts_what_the_twins_count() {
     let narrow = Camera { projection: Projection::Perspective { fov_y: 0.1 }, ..cameras[0] };
     cameras.push(narrow);
     renderer.upload(&model).unwrap();
-    let mut tables = [0; 3]; // of one view, of many, of those near by
+    let mut tables = [0; 3]; // for one view, for many views, for a view cell
     for camera in &cameras {
         for tolerance_px in [0.5, 3.0] {
             let mut case = Case::cut(&model, camera, tolerance_px);
@@ -38,7 +38,7 @@ fn a_frame_counts_what_the_twins_count() {
             let stats = renderer.render(camera, &settings, Outputs::default()).unwrap().stats;
             let on_gpu = [stats.sub_patches, stats.trim_rows, stats.trim_intercepts, stats.clamps];
             let twin = [chain.plain + chain.trimmed, chain.rows, chain.intercepts, chain.clamps].map(u64::from);
-            // where a count may differ by one, a hundred rows may differ by a few
+            // if a count may differ by one, a hundred rows may differ by a few
             let near = |(g, t): (&u64, &u64)| g.abs_diff(*t) <= u64::from(slack.count) * (t / 50 + 1);
             assert!(on_gpu.iter().zip(&twin).all(near), "GPU {on_gpu:?}, twins {twin:?}");
         }

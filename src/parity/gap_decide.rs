@@ -1,5 +1,5 @@
-//! Parity of the decision about gap candidates, through `tests/gpu/glsl/gap_decide.comp`: the same choice in every random
-//! situation. Depths are multiples of 2⁻⁶ and slopes of 2⁻⁸, so that whatever is compared is equal or far apart.
+//! Parity of the decision about gap candidates, by `tests/gpu/glsl/gap_decide.comp`: the same choice in every random
+//! situation. Depths are multiples of 2⁻⁶ and slopes of 2⁻⁸, so that compared values are equal or far apart.
 
 use super::Random;
 use super::harness::{Gpu, Mismatch, same, words};
@@ -73,7 +73,7 @@ fn frame() -> Frame {
     Frame { gap_radius_px: 0.25, deviation_px: 0.125, focal: 512.0, perspective: 1, ..Frame::default() }
 }
 
-/// `word` tells candidates apart.
+/// `word` identifies the candidate.
 fn random_candidate(random: &mut Random, word: u32) -> Candidate {
     let mut flag = || random.integer(0, 1) == 1;
     let (inside, away, ends) = (flag(), flag(), flag());
@@ -142,7 +142,7 @@ fn parity() {
     for gpu in Gpu::all() {
         let situations = situations();
         let answers = compare(&gpu, &situations, &situations).unwrap();
-        // every kind of choice, often: nothing, what was seen, the own face, a candidate
+        // every kind of choice occurs often: nothing, the visible face, the own face, a candidate
         let own = MOST_CANDIDATES as u32 + 1;
         let count = |kind: fn(u32, u32) -> bool| answers.iter().filter(|word| kind(word[0], own)).count();
         let kinds =
@@ -152,7 +152,7 @@ fn parity() {
     }
 }
 
-/// The candidate that one situation chooses, gone.
+/// One situation without the candidate that it chooses.
 #[test]
 fn a_difference_is_seen() {
     let gpu = Gpu::new();

@@ -1,5 +1,4 @@
-//! The hard cases of trimming, shared with the tests of whole frames; and loops moved by one unit of
-//! single precision.
+//! The hard cases of trimming, shared with the tests of whole frames; and loops moved by one unit of single precision.
 
 use crate::model::TrimLoop;
 use crate::spline::{Bezier, Control};
@@ -10,7 +9,7 @@ mod trims;
 
 pub(super) use trims::{all, loops};
 
-/// Every control point moved by so many units in the last place of single precision.
+/// Moves every control point by a number of units in the last place of single precision.
 pub(super) fn moved(trim_loop: &TrimLoop, (du, dv): (i32, i32)) -> TrimLoop {
     let step = |x: f64, by: i32| {
         let rounded = x as f32;
@@ -50,7 +49,7 @@ mod table {
         Face { id: 1, kind: SurfaceKind::Plane, surface, loops, same_sense: true, colour: None }
     }
 
-    /// The twins' buffers, in as much room as the rows want: through hundreds of holes they want 2^24 intercepts, else few.
+    /// The twins' buffers, as large as the rows need: rows through hundreds of holes need 2^24 intercepts, others few.
     fn chain_of(case: &mut Case) -> Chain {
         for capacity in [1 << 14, 1 << 19] {
             case.frame.intercept_capacity = capacity;
@@ -63,7 +62,7 @@ mod table {
         Chain::new(case)
     }
 
-    /// Points judged, all of them right.
+    /// Number of judged points; asserts that all are right.
     fn judged(case: &TrimCase, loops: Vec<TrimLoop>, zoom: f64) -> usize {
         let centre = if zoom == 1.0 { DVec2::splat(0.5) } else { DVec2::from(case.focus) };
         let target = centre.extend(0.0);
@@ -78,7 +77,7 @@ mod table {
         let index = LoopIndex::new(&loops);
         let mut case_ = Case::new(&placed(vec![square(loops)], DAffine3::IDENTITY), &camera, TOLERANCE_PX);
         if !case_.data.has_trimmed {
-            return 0; // every patch is in or out whole
+            return 0; // every patch is inside or outside as a whole
         }
         let chain = chain_of(&mut case_);
         assert_eq!((chain.counters.failed, chain.counters.clamps), (0, 0), "{}", case.name);

@@ -1,4 +1,4 @@
-//! A watched device, the way to and from it, and comparisons that name the place.
+//! A watched device, transfers to and from it, and comparisons that name the place of a difference.
 
 use super::Case;
 use super::arithmetic::Imitation;
@@ -21,10 +21,10 @@ pub(super) struct Gpu {
     is_exact: bool,
 }
 
-/// How far a result may be from the twin's.
+/// Allowed difference from the twin's result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Slack {
-    /// Of a whole number that a `ceil` made.
+    /// Of a whole number from a `ceil`.
     pub count: u32,
     /// Of a float, relative.
     pub relative: f32,
@@ -46,7 +46,7 @@ impl Gpu {
         Self { watched, is_exact }
     }
 
-    /// The device as it is; if its arithmetic is exact, also imitations of other GPUs on it.
+    /// The device; if its arithmetic is exact, also imitations of other GPUs on it.
     pub(super) fn all() -> Vec<Self> {
         let mut all = vec![Self::new()];
         if all[0].is_exact {
@@ -71,8 +71,8 @@ impl Gpu {
         self.is_exact
     }
 
-    /// None where quotients and roots are rounded correctly. Elsewhere Vulkan grants 2.5 and 3 units in
-    /// the last place an operation; no pass chains more than eight of them.
+    /// 0 if quotients and roots are rounded correctly. Otherwise Vulkan allows 2.5 and 3 units in the last place for an
+    /// operation; no pass chains more than eight of them.
     pub(super) fn slack(&self) -> Slack {
         if self.is_exact {
             Slack { count: 0, relative: 0.0 }
@@ -81,7 +81,7 @@ impl Gpu {
         }
     }
 
-    /// A buffer of `data` for shaders, as constants too, and indirect commands.
+    /// A buffer of `data` for storage, constants and indirect commands.
     pub(super) fn upload<T: Pod>(&self, name: &str, data: &[T]) -> Buffer {
         let record = |cmd: &Commands<'_>| {
             let mut uploads = Uploads::new();
@@ -93,7 +93,7 @@ impl Gpu {
         self.watched.submit(record).unwrap().0
     }
 
-    /// The same, for shaders that fetch texels, too.
+    /// The same, also for texel fetches.
     pub(super) fn upload_texels<T: Pod>(&self, name: &str, data: &[T], texel: Texel) -> TexelBuffer {
         let record = |cmd: &Commands<'_>| {
             let mut uploads = Uploads::new();
@@ -105,7 +105,7 @@ impl Gpu {
         self.watched.submit(record).unwrap().0
     }
 
-    /// What the exact trim test reads, in its order.
+    /// The buffers of the exact trim test, in its order.
     pub(super) fn upload_exact(&self, data: &ExactData) -> [TexelBuffer; 3] {
         [
             self.upload_texels("faces", &data.faces, Texel::U32x4),
@@ -114,9 +114,9 @@ impl Gpu {
         ]
     }
 
-    /// The answers of a wrapper of `tests/gpu/glsl` to questions about each face that is trimmed exactly. Its bindings are
-    /// those of [`upload_exact`](Self::upload_exact), the questions and the answers, which are `blank` before; its push
-    /// constants the face and the number of questions.
+    /// The results of a wrapper in `tests/gpu/glsl` for points of each face that is trimmed exactly. Its bindings are
+    /// those of [`upload_exact`](Self::upload_exact), the points and the results, which are `blank` before; its push
+    /// constants are the face and the number of points.
     pub(super) fn answers<Q: Pod, A: Pod>(
         &self,
         name: &str,
@@ -148,7 +148,7 @@ impl Gpu {
         self.watched.submit(record).unwrap();
     }
 
-    /// The first `count` values of a buffer that a pass wrote.
+    /// The first `count` values of a buffer written by a pass.
     pub(super) fn read<T: Pod>(&self, buffer: &Buffer, count: usize) -> Vec<T> {
         let bytes = (count * size_of::<T>()) as u64;
         let back = ReadBack::new(self.device(), "read back", bytes).unwrap();
@@ -159,7 +159,7 @@ impl Gpu {
         back.values(count)
     }
 
-    /// Anything that the validation layers said fails the test.
+    /// Fails the test if the validation layers reported anything.
     pub(super) fn finish(self) {
         let messages: Vec<_> = self.watched.shutdown().iter().map(ToString::to_string).collect();
         assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
@@ -257,7 +257,7 @@ impl SceneBuffers {
     }
 }
 
-/// Equal, or the first place where `near` does not hold.
+/// Compares by `near`; returns the first place where it does not hold.
 fn all_near<T: Debug>(
     buffer: &'static str,
     gpu: &[T],
@@ -284,7 +284,7 @@ pub(super) fn counts(buffer: &'static str, gpu: &[u32], twin: &[u32], slack: Sla
     all_near(buffer, gpu, twin, |&g, &t| g.abs_diff(t) <= slack.count)
 }
 
-/// Two whole numbers a word, each within the slack; a 0 word only where the twin has one.
+/// Two whole numbers in a word, each within the slack; a word is 0 only if the twin's is.
 pub(super) fn halves(buffer: &'static str, gpu: &[u32], twin: &[u32], slack: Slack) -> Result<(), Mismatch> {
     let half = |g: u32, t: u32| g.abs_diff(t) <= slack.count;
     all_near(buffer, gpu, twin, |&g, &t| (g == 0) == (t == 0) && half(g & 0xffff, t & 0xffff) && half(g >> 16, t >> 16))

@@ -45,7 +45,7 @@ fn masked<T: Copy>(case: &Case, all: &[T], untouched: T) -> Vec<T> {
     left
 }
 
-/// The GPU gets `given`, the twins get `case`, which also says which items are in sight.
+/// The GPU gets `given`; the twins get `case`, which also decides which items are in sight.
 fn compare(gpu: &Gpu, given: &Case, case: &Case) -> Result<(), Mismatch> {
     let all = Chain::new(&Case {
         frame: Frame { items_in_sight: case.data.items.len() as u32, ..case.frame },

@@ -1,4 +1,4 @@
-//! Parity of the pass `lines`: exact; where the GPU rounds otherwise, a count may differ by one.
+//! Parity of the pass `lines`: exact; if the GPU rounds differently, a count may differ by one.
 
 use super::chain::{Chain, UNTOUCHED};
 use super::harness::{Gpu, Mismatch, counts, same};
@@ -35,8 +35,8 @@ fn parity() {
             let density = Chain::new(&case).density;
             let (mut heights, seen) = (density.strip_heights, density.seen_bins);
             compare(&gpu, &case.frame, &seen, &heights, &heights).unwrap();
-            heights[0] = 1e6; // more than a strip can have
-            // as many as it can have; a wrong quotient may make them one too many
+            heights[0] = 1e6; // more than a strip may have
+            // the most that it may have; a wrong quotient may give one too many
             heights[1] = if gpu.is_exact() { 65536.0 } else { 65534.5 } * case.frame.row_px;
             compare(&gpu, &case.frame, &seen, &heights, &heights).unwrap();
         }

@@ -7,9 +7,9 @@
 //!              upload ────────────────────────▶ the pass on the GPU ──▶ compare: exact, or within Slack
 //! ```
 //!
-//! Each pass gets its inputs from the twins before it, so a difference names the pass that made it;
-//! [`frame`] then holds whole frames against the chain. Every file also feeds the GPU one changed
-//! number and asks that the comparison names the place.
+//! Each pass gets its inputs from the twins before it, so a difference names the pass that caused it; [`frame`] then
+//! compares whole frames with the chain. Every file also gives the GPU one changed number and asserts that the
+//! comparison names its place.
 
 #[path = "../../tests/shapes/cages.rs"]
 pub(crate) mod cages;

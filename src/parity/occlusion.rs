@@ -1,5 +1,5 @@
-//! Parity of the passes `cull_early` and `depth_pyramid`: exact; of `cull_late`: what the twin says in double precision with some slack,
-//! and without as much.
+//! Parity of the passes `cull_early` and `depth_pyramid`: exact. Parity of `cull_late`: with the twin's result in
+//! double precision, with slack of either sign.
 
 use super::harness::{Gpu, Mismatch, SceneBuffers, same};
 use super::shapes::model_and_cameras;
@@ -14,7 +14,7 @@ use crate::twin;
 use crate::twin::occlusion::{Farthest, TAU_HIDDEN, is_drawn, lies_behind};
 use glam::{DAffine3, DVec3};
 
-/// Of a pixel, and a thousandth of it of depths: some roundings of single precision in pixels of pictures this large.
+/// In pixels, and a thousandth of it for depths: some roundings of single precision in pictures of this size.
 const SLACK: f64 = 0.02;
 
 /// The model of the other parities six times, one behind the other, and its cameras.
@@ -69,7 +69,7 @@ fn parity_of_hide_is_exact_and_sees_a_difference() {
     gpu.finish();
 }
 
-/// The pass over triangles that are drawn; `change`: of what the twin gets.
+/// The pass over drawn triangles; `change` modifies the twin's input.
 fn compare_farthest(gpu: &Gpu, case: &Case, change: impl FnOnce(&mut [f32])) -> Result<Farthest, Mismatch> {
     let size = (case.frame.size[0] as u32, case.frame.size[1] as u32);
     assert!(!(size.0.is_multiple_of(SQUARE) && size.1.is_multiple_of(SQUARE)), "some squares are cut off: {size:?}");
@@ -86,7 +86,7 @@ fn compare_farthest(gpu: &Gpu, case: &Case, change: impl FnOnce(&mut [f32])) -> 
     Ok(twin)
 }
 
-/// A picture whose last squares, tiles and blocks are cut off by its end.
+/// A picture that ends within its last squares, tiles and blocks.
 fn cut_off(case: &Case) -> Case {
     let mut case = case.clone();
     case.frame.size = [477.0, 359.0];
@@ -104,7 +104,7 @@ fn parity_of_farthest_is_exact_and_sees_a_difference() {
     gpu.finish();
 }
 
-/// The pass, against the twin with and without slack; how many items lie behind, and how many of those that are seen do not.
+/// The pass, against the twin with and without slack; returns the numbers of hidden items and of visible ones.
 fn compare_cull_late(
     gpu: &Gpu,
     case: &Case,
@@ -114,7 +114,7 @@ fn compare_cull_late(
     let n = case.data.items.len();
     let s = SceneBuffers::new(gpu, case);
     let mut old = taus(case);
-    // every third was left out before
+    // every third was not drawn before
     old.iter_mut().step_by(3).filter(|tau| **tau != 0).for_each(|tau| *tau |= TAU_HIDDEN);
     let farthest = gpu.upload("farthest", &given.depths);
     let (taus, hidden) = (gpu.upload("taus", &old), gpu.upload("hidden", &vec![7u32; n]));
@@ -156,7 +156,7 @@ fn compare_cull_late(
     Ok((behind, old.iter().filter(|tau| is_drawn(**tau & !TAU_HIDDEN)).count() - behind))
 }
 
-/// Depths of a picture of the case's size that sees a wall, with a hole in it.
+/// Depths of a picture of the case's size that shows a wall with a hole.
 fn wall(case: &Case, depth: f32) -> Farthest {
     let size = case.frame.size.map(|x| x as u32);
     let hole = |i: u32| (i % size[0]).abs_diff(size[0] / 2) < 20 && (i / size[0]).abs_diff(size[1] / 2) < 9;

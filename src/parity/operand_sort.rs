@@ -1,4 +1,4 @@
-//! Parity of the pass `operand_sort`: exact, of clean and of torn rays; and what its rules promise.
+//! Parity of the pass `operand_sort`: exact, for complete and for damaged rays; and tests of its rules.
 
 use super::Random;
 use super::harness::{Gpu, Mismatch, same};
@@ -7,11 +7,11 @@ use crate::frame::solids::operand_sort::{Bindings, OperandSort};
 use crate::twin::operand_sort::{Shells, operand_sort};
 
 const WIDTH: u32 = 70;
-/// Of the band, which is not the first one: three rows of tiles.
+/// Height of the band, which is not the first one: three rows of tiles.
 const HEIGHT: u32 = 37;
 const TOP: u32 = 48;
 
-/// Shells 0 and 1 are meshes, 2 and 3 have faces; 1 and 3 lie across the near plane, 3 across the far one.
+/// Shells 0 and 1 are meshes, 2 and 3 have faces; the near plane cuts 1 and 3, the far plane 3.
 struct Case {
     frame: Frame,
     leaves: Vec<Leaf>,
@@ -57,7 +57,7 @@ fn case(random: &mut Random, most: u32) -> Case {
     Case { frame, leaves, centres, shell_leaves: vec![0, 1, 2, 3], starts, fragments }
 }
 
-/// What is kept, pixel by pixel.
+/// The fragments that stay, pixel by pixel.
 fn kept(starts: &[u32], counts: &[u32], fragments: &[Fragment]) -> Vec<Fragment> {
     let pixel = |(s, c): (&u32, &u32)| fragments[*s as usize..(*s + *c) as usize].to_vec();
     starts.iter().zip(counts).filter(|(_, c)| **c > 0).flat_map(pixel).collect()
@@ -106,7 +106,7 @@ fn parity() {
                 Case { frame: Frame { fragment_capacity: case.frame.fragment_capacity / 2, ..case.frame }, ..case };
             compare(&gpu, &less, &less).unwrap();
         }
-        // more than 32 bits count: half of the pixels are marked, and the band
+        // the count exceeds 32 bits: half of the pixels are marked, and the band
         let whole = case(&mut random, 3);
         let wraps = |(i, start): (usize, u32)| {
             if i >= whole.starts.len() / 2 { start.wrapping_sub(900) } else { start | 1 << 31 }
@@ -114,7 +114,7 @@ fn parity() {
         let starts = whole.starts.iter().copied().enumerate().map(wraps).collect();
         let wrapped = Case { starts, ..whole };
         compare(&gpu, &wrapped, &wrapped).unwrap();
-        // one depth off is seen
+        // a difference in one depth is reported
         let given = case(&mut Random::new(4), 6);
         let mut other = case(&mut Random::new(4), 6);
         other.fragments.iter_mut().for_each(|f| f.depth += if f.what == 3 { 7.0 } else { 0.0 });
@@ -127,12 +127,12 @@ fn fragment(bits: u32, depth: f32) -> Fragment {
     Fragment { shell: 2 | FRAGMENT_PATCH | bits, depth, ..Fragment::default() }
 }
 
-/// Depths kept of one ray through shell 2, and the counters.
+/// Depths that stay of one ray through shell 2, and the counters.
 fn one(fragments: &[Fragment]) -> (Vec<f32>, u32, u32) {
     one_from(-99.0, fragments)
 }
 
-/// The same with the near plane somewhere: its box is from 20 to 60.
+/// The same with a near plane; the shell's box is from 20 to 60.
 fn one_from(near: f32, fragments: &[Fragment]) -> (Vec<f32>, u32, u32) {
     let c = case(&mut Random::new(1), 1);
     let shells = Shells { leaves: &c.leaves, centres: &c.centres, shell_leaves: &c.shell_leaves };
@@ -142,25 +142,25 @@ fn one_from(near: f32, fragments: &[Fragment]) -> (Vec<f32>, u32, u32) {
     (all[..count as usize].iter().map(|f| f.depth).collect(), counters.mended, counters.unpaired)
 }
 
-/// The rules for rays that slip between two faces.
+/// The rules for rays that pass between two faces.
 #[test]
-fn gaps_are_mended_by_rings_alone() {
+fn gaps_are_closed_by_skirts_alone() {
     let (enter, leave) = (|t| fragment(0, t), |t| fragment(FRAGMENT_LEAVES, t));
-    let (ring_in, ring_out) = (|t| fragment(FRAGMENT_SKIRT, t), |t| fragment(FRAGMENT_SKIRT | FRAGMENT_LEAVES, t));
-    // skirts beside a clean ray are not asked
-    assert_eq!(one(&[ring_in(1.0), enter(2.0), leave(5.0), ring_out(6.0)]), (vec![2.0, 5.0], 0, 0));
-    assert_eq!(one(&[leave(5.0), ring_in(2.0)]), (vec![2.0, 5.0], 1, 0));
-    assert_eq!(one(&[enter(2.0), ring_out(4.0)]), (vec![2.0, 4.0], 1, 0));
-    assert_eq!(one(&[enter(1.0), ring_out(2.0), enter(3.0), leave(4.0)]), (vec![1.0, 2.0, 3.0, 4.0], 1, 0));
-    // without one: what was entered stays, what is left is left out
+    let (skirt_in, skirt_out) = (|t| fragment(FRAGMENT_SKIRT, t), |t| fragment(FRAGMENT_SKIRT | FRAGMENT_LEAVES, t));
+    // skirts beside a complete ray are ignored
+    assert_eq!(one(&[skirt_in(1.0), enter(2.0), leave(5.0), skirt_out(6.0)]), (vec![2.0, 5.0], 0, 0));
+    assert_eq!(one(&[leave(5.0), skirt_in(2.0)]), (vec![2.0, 5.0], 1, 0));
+    assert_eq!(one(&[enter(2.0), skirt_out(4.0)]), (vec![2.0, 4.0], 1, 0));
+    assert_eq!(one(&[enter(1.0), skirt_out(2.0), enter(3.0), leave(4.0)]), (vec![1.0, 2.0, 3.0, 4.0], 1, 0));
+    // without a skirt: an entry stays, an exit is removed
     assert_eq!(one(&[enter(2.0)]), (vec![2.0], 0, 1));
     assert_eq!(one(&[leave(2.0), enter(3.0), leave(4.0)]), (vec![3.0, 4.0], 0, 1));
     // two faces that overlap at their border
     assert_eq!(one(&[enter(2.0), enter(2.1), leave(4.0)]), (vec![2.0, 4.0], 0, 0));
-    assert_eq!(one(&[ring_in(2.0), ring_out(3.0)]), (vec![], 0, 0));
-    // near a silhouette, two changed places
+    assert_eq!(one(&[skirt_in(2.0), skirt_out(3.0)]), (vec![], 0, 0));
+    // near a silhouette, two are interchanged
     assert_eq!(one(&[leave(1.0), enter(1.01), enter(3.0), leave(4.0)]), (vec![1.0, 1.01, 3.0, 4.0], 0, 0));
-    // also where the ray may begin within: it is left as often as entered, so it does not
+    // also if the ray may begin within: with as many exits as entries, it does not
     let cut = one_from(30.0, &[leave(31.0), enter(31.1), enter(33.0), leave(34.0)]);
     assert_eq!(cut, (vec![31.0, 31.1, 33.0, 34.0], 0, 0));
     assert_eq!(one_from(30.0, &[leave(31.0), enter(33.0), leave(34.0)]), (vec![31.0, 33.0, 34.0], 0, 0));

@@ -1,4 +1,4 @@
-//! Parity of the pass `segments`: exact; where the GPU rounds otherwise, a count may differ by one.
+//! Parity of the pass `segments`: exact; if the GPU rounds differently, a count may differ by one.
 
 use super::Case;
 use super::chain::{Chain, UNTOUCHED};
@@ -39,7 +39,7 @@ fn parity() {
     for gpu in Gpu::all() {
         for case in cases() {
             compare(&gpu, &case, &case, &Chain::new(&case)).unwrap();
-            let mut fine = case.clone(); // more segments than a curve can have
+            let mut fine = case.clone(); // more segments than a curve may have
             fine.frame.chord_px *= 1e-12;
             compare(&gpu, &fine, &fine, &Chain::new(&case)).unwrap();
         }

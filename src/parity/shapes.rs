@@ -1,11 +1,11 @@
-//! A small model with everything that the passes tell apart, and views of it.
+//! A small model with everything that passes treat differently, and views of it.
 //!
 //! ```text
 //!   ball     8 rational patches, closed in u, poles         drawn plain
 //!   drop     1 cubic patch whose sides u = 0, 1 coincide    drawn plain, its own neighbour
 //!   sheet    3 x 2 bicubic patches, 3 loops: a rational     plain, trimmed and absent patches
 //!            hole, and a cubic hole that overlaps it
-//!   sieve    in another model in place of the sheet: 600 holes, so that its strips have several bins
+//!   sieve    replaces the sheet in another model: 600 holes, so that its strips have several bins
 //!   plate    1 bilinear patch, a square with a round hole   trimmed
 //!
 //!   placed as they are, and once mirrored, stretched and aside
@@ -17,7 +17,7 @@ use crate::spline::{Bezier, Control, Surface};
 use glam::{DAffine3, DVec2, DVec3, DVec4};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
-/// A quarter circle after the other from the positive x axis: `(x, y, weight)`.
+/// A circle as quarter arcs from the positive x axis: `(x, y, weight)`.
 const CIRCLE: [(f64, f64, f64); 9] = [
     (1.0, 0.0, 1.0),
     (1.0, 1.0, FRAC_1_SQRT_2),
@@ -30,7 +30,7 @@ const CIRCLE: [(f64, f64, f64); 9] = [
     (1.0, 0.0, 1.0),
 ];
 
-/// Knots of quadratic pieces, a unit each, that meet with double knots.
+/// Knots of quadratic pieces of length 1 that meet with double knots.
 fn arcs(pieces: usize) -> Vec<f64> {
     let inner = (0..=pieces).flat_map(|k| [k as f64 * FRAC_PI_2; 2]);
     std::iter::once(0.0).chain(inner).chain([pieces as f64 * FRAC_PI_2]).collect()
@@ -44,7 +44,7 @@ fn ball(radius: f64) -> Surface {
     Surface::new((2, 2), arcs(4), arcs(2), points.collect()).unwrap()
 }
 
-/// A cubic that returns to where it started, drawn out along z.
+/// A cubic that returns to its start, extruded along z.
 fn drop() -> Surface {
     let section = [(0.0, 0.0), (4.0, 1.0), (1.0, 4.0), (0.0, 0.0)];
     let points = [-1.0, 2.0].iter().flat_map(|&z| section.map(|(x, y)| DVec4::new(x - 9.0, y, z, 1.0)));
@@ -102,7 +102,7 @@ pub(super) fn sheet_loops() -> Vec<TrimLoop> {
     ]
 }
 
-/// In place of those of the sheet.
+/// Loops that replace those of the sheet.
 pub(super) fn sieve_loops() -> Vec<TrimLoop> {
     let holes = (0..600).map(|k| {
         let at = DVec2::new(0.12 + 0.071 * f64::from(k % 40), 0.1 + 0.125 * f64::from(k / 40));
@@ -151,7 +151,7 @@ fn everything() -> Model {
     model
 }
 
-/// The model, and cameras: all of it; from between ball and sheet, across the near plane; parallel.
+/// The model, and cameras: all of it; between ball and sheet, across the near plane; parallel.
 pub(super) fn model_and_cameras() -> (Model, Vec<Camera>) {
     let model = everything();
     let bounds = model.bounds();
@@ -163,15 +163,15 @@ pub(super) fn model_and_cameras() -> (Model, Vec<Camera>) {
     (model, vec![all, close, parallel])
 }
 
-/// The model with the sieve in place of the sheet.
+/// The model with the sieve instead of the sheet.
 pub(super) fn model_with_sieve() -> Model {
     let (mut model, _) = model_and_cameras();
     model.parts[0].faces[2].loops = sieve_loops();
     model
 }
 
-/// The model seen by each camera; then a loose tolerance; then too little room for anything; then the one with the sieve:
-/// all of it, a part of its bins, and with too few rows; at last the model with its patches cut.
+/// The model with each camera; then a loose tolerance; then no room in any list; then the model with the sieve: all of
+/// it, a part of its bins, and with too few rows; finally the model with split patches.
 pub(super) fn cases() -> Vec<Case> {
     let (model, cameras) = model_and_cameras();
     let mut cases: Vec<Case> = cameras.iter().map(|camera| Case::new(&model, camera, 0.5)).collect();
@@ -187,7 +187,7 @@ pub(super) fn cases() -> Vec<Case> {
     let mut tight = cases[6].clone();
     tight.frame.row_capacity = 500;
     cases.push(tight);
-    // open shells stay whole
+    // patches of open shells are not split
     let mut solid = model;
     solid.parts.iter_mut().for_each(|part| part.closed = true);
     let cut = Case::cut(&solid, &cameras[0], 0.5);
@@ -202,7 +202,7 @@ mod tests {
     use super::*;
     use crate::abi::{self, Side};
 
-    /// What the figure above promises, and that each view asks the passes something different.
+    /// The model is as in the figure, and each view tests something different in the passes.
     #[test]
     fn the_cases_hold_what_the_passes_tell_apart() {
         let cases = cases();

@@ -9,7 +9,7 @@ use crate::twin;
 use crate::twin::sizes::MOST_SEGMENTS;
 
 fn compare(gpu: &Gpu, frame: &Frame, seen: &[u32], given: [&[u32]; 2], expected: [&[u32]; 2]) -> Result<(), Mismatch> {
-    // as the passes before may leave them
+    // as earlier passes may leave them
     let before = Counters { clamps: 3, failed: 1, plain: 9, ..Default::default() };
     let frame_buffer = gpu.upload("frame", &[*frame]);
     let strip_starts = gpu.upload("strip starts", given[0]);
@@ -44,7 +44,7 @@ fn parity() {
             let chain = Chain::new(&case);
             let starts = [chain.strip_starts.as_slice(), chain.segment_starts.as_slice()];
             compare(&gpu, &case.frame, &chain.density.seen_bins, starts, starts).unwrap();
-            // more segments than one row of a dispatch holds, and more than 32 bits number
+            // more segments than fit in one row of a dispatch, and more than 32 bits number
             for segments in [9_000_000, MOST_SEGMENTS + 1] {
                 let mut many = chain.segment_starts.clone();
                 *many.last_mut().unwrap() = segments;

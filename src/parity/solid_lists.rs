@@ -1,4 +1,4 @@
-//! Parity of the passes `solid_blocks` and `solid_tiles`: exact, and of those that run out of room.
+//! Parity of the passes `solid_blocks` and `solid_tiles`: exact, also with lists that are too short.
 
 use super::Random;
 use super::harness::{Gpu, Mismatch, same};
@@ -23,7 +23,7 @@ fn random_rects(random: &mut Random, tiles: [u32; 2], count: u32) -> Vec<Rect> {
     all
 }
 
-/// Whether the GPU makes of `given` what the twin makes of `expected`; `room` for as many entries.
+/// Whether the GPU's result for `given` is the twin's for `expected`.
 fn compare(gpu: &Gpu, frame: &Frame, given: &[Rect], expected: &[Rect]) -> Result<(), Mismatch> {
     let frames = gpu.upload("frame", &[*frame]);
     let rects = gpu.upload("rects", given);
@@ -60,7 +60,7 @@ fn compare(gpu: &Gpu, frame: &Frame, given: &[Rect], expected: &[Rect]) -> Resul
     let listed = gpu.upload("leaves", &vec![empty; tile_leaves.len() + 1]);
     let counters = gpu.upload("counters", &[Counters::default()]);
     let pass = solid_tiles::SolidTiles::new(gpu.device()).unwrap();
-    // all of the blocks' lists, so that what the tiles lack is theirs alone
+    // all lists of the blocks fit, so that only the tiles' lists are too short
     let roomy = gpu.upload("frame", &[Frame { block_leaf_capacity: wanted, ..*frame }]);
     let bindings = solid_tiles::Bindings {
         frame: &roomy,
@@ -95,7 +95,7 @@ fn compare(gpu: &Gpu, frame: &Frame, given: &[Rect], expected: &[Rect]) -> Resul
 fn parity() {
     for gpu in Gpu::all() {
         let mut random = Random::new(17);
-        // the last are more than one run, and more than drivers let a loop have steps
+        // the last have more than one run, and more leaves than drivers allow steps in a loop
         for (size, count) in [([333.0, 211.0], 300), ([16.0, 16.0], 3), ([700.0, 40.0], 1200), ([260.0, 40.0], 70_000)]
         {
             let frame = Frame { size, band_height: 4096, ..Frame::default() };
@@ -103,20 +103,21 @@ fn parity() {
             let frame = Frame { leaf_count: rects.len() as u32, ..frame };
             let room = Frame { block_leaf_capacity: 1 << 20, tile_leaf_capacity: 1 << 20, ..frame };
             compare(&gpu, &room, &rects, &rects).unwrap();
-            // of a band of one row of tiles, and of those that are left
+            // a band of one row of tiles, and the remaining rows
             for (band_top, band_height) in [(16, 16), (32, 512)] {
                 if (band_top as f32) < size[1] {
                     compare(&gpu, &Frame { band_top, band_height, ..room }, &rects, &rects).unwrap();
                 }
             }
-            // too little room: the lists hold what fits, and the counters report the rest
+            // too little room: the lists contain what fits, and the counters report the rest
             let tight = Frame { block_leaf_capacity: 3, tile_leaf_capacity: 2, ..frame };
             compare(&gpu, &tight, &rects, &rects).unwrap();
             let mut other = rects.clone();
             other[0] = twin::solid_rects::NOWHERE;
             assert_eq!(compare(&gpu, &room, &other, &rects).unwrap_err().buffer, "block counts");
         }
-        // so many in one block that a driver may end the loop over them: the lists are right, or the counters report it
+        // so many leaves in one block that a driver may end the loop over them: the lists are complete, or the counters
+        // report it
         let frame = Frame { size: [32.0, 16.0], band_height: 4096, leaf_count: 300_000, ..Frame::default() };
         let room = Frame { block_leaf_capacity: 1 << 20, tile_leaf_capacity: 1 << 20, ..frame };
         let rect = |n: u32| {

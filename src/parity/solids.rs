@@ -1,5 +1,5 @@
-//! Parity of the passes `solid_rects` and `solid_fold`, both exact, and the fold against the trees that
-//! say what a solid is.
+//! Parity of the passes `solid_rects` and `solid_fold`, both exact; and the fold compared with evaluation of the
+//! solids' trees.
 
 use super::Random;
 use super::harness::{Gpu, Mismatch, same};
@@ -14,14 +14,14 @@ use crate::scene::{SceneData, seen_by};
 use crate::twin;
 use glam::{DAffine3, DVec2, DVec3};
 
-/// A tree of `count` leaves over as many primitives, of all operations.
+/// A tree of `count` leaves over `count` primitives, with all operations.
 fn random_tree(random: &mut Random, count: u32) -> Tree {
     let mut b = Builder::new();
     let mut open: Vec<u32> = (0..count).map(|p| b.leaf(p)).collect();
     let all = [Op::Union, Op::Intersection, Op::Difference, Op::Union, Op::Intersection, Op::SymmetricDifference];
     while open.len() > 1 {
         let i = random.integer(0, open.len() as u32 - 2) as usize;
-        // a symmetric difference doubles what is below it
+        // a symmetric difference doubles the part below it
         let ops = if open.len() + 4 > count as usize { &all[..] } else { &all[..5] };
         let op = random.pick(ops);
         let right = open.remove(i + 1);
@@ -33,7 +33,7 @@ fn random_tree(random: &mut Random, count: u32) -> Tree {
     b.finish(open[0]).unwrap()
 }
 
-/// Balls, some of them unbounded halves of space.
+/// Balls, some of them unbounded half-spaces.
 fn random_solid(random: &mut Random, count: u32) -> Solid {
     let mut place = || DVec3::from_array(std::array::from_fn(|_| random.range(-10.0, 10.0)));
     let places: Vec<DVec3> = (0..count).map(|_| place()).collect();
@@ -54,7 +54,7 @@ fn leaves_of(solid: &Solid) -> SceneData {
     SceneData::new(&Model { solids: vec![solid.clone()], ..Model::default() }, SceneSettings::default()).unwrap()
 }
 
-/// Random tiles: each sees each leaf with a chance of its own.
+/// Random tiles: each has a probability of its own for showing a leaf.
 fn random_tiles(random: &mut Random, leaves: u32, tiles: u32) -> (Vec<u32>, Vec<TileLeaf>) {
     let (mut starts, mut all) = (vec![0], Vec::new());
     for _ in 0..tiles {
@@ -66,7 +66,7 @@ fn random_tiles(random: &mut Random, leaves: u32, tiles: u32) -> (Vec<u32>, Vec<
     (starts, all)
 }
 
-/// Where a walk through one tile ends, for the primitives that a point is in, and how many gates it came through.
+/// The end of a walk through one tile for a point in some primitives, and the number of gates on the way.
 fn walk(tile_leaves: &[TileLeaf], entry: u32, inside: impl Fn(u32) -> bool) -> (bool, usize) {
     let (mut at, mut gates) = (entry, 0);
     while let Some(here) = tile_leaves.get(at as usize) {
@@ -76,7 +76,7 @@ fn walk(tile_leaves: &[TileLeaf], entry: u32, inside: impl Fn(u32) -> bool) -> (
     (at == EXIT_TRUE, gates)
 }
 
-/// A tile's list decides as the tree does in which the absent primitives are constants of nothing.
+/// A tile's list gives the same result as the tree in which the absent primitives are empty.
 #[test]
 fn a_folded_list_is_the_folded_tree() {
     let mut random = Random::new(11);
@@ -86,7 +86,7 @@ fn a_folded_list_is_the_folded_tree() {
         let solid = random_solid(&mut random, count);
         let leaves = leaves_of(&solid).solids.leaves;
         let primitive = |leaf: u32| leaves[leaf as usize].id - 1;
-        // a tile sees a primitive or not, and so all of its leaves
+        // a tile shows all leaves of a primitive or none
         let absent: Vec<bool> = (0..count).map(|_| random.integer(0, 2) == 0).collect();
         let present = (0..leaves.len() as u32).filter(|leaf| !absent[primitive(*leaf) as usize]);
         let mut tile_leaves: Vec<TileLeaf> = present.map(|leaf| TileLeaf { leaf, ..TileLeaf::default() }).collect();
@@ -160,7 +160,7 @@ fn fold_parity() {
         let (starts, tile_leaves) = random_tiles(&mut random, leaves.len() as u32, 150);
         let none = [u32::MAX; 2];
         fold_on_gpu(&gpu, &leaves, &leaves, none, &starts, &tile_leaves).unwrap();
-        // one exit off is seen
+        // one wrong exit is reported
         if count == 40 {
             let mut other = leaves.clone();
             other[0].in_exit = EXIT_TRUE - (EXIT_TRUE - other[0].in_exit).min(1);
@@ -169,7 +169,7 @@ fn fold_parity() {
             assert_eq!(mismatch.buffer, "tile leaves");
         }
     }
-    // a union and items behind it, of which each tile marks the beginnings
+    // a union, followed by items; each tile marks their starts
     let opaque = random_solid(&mut random, 7);
     let clear = [3, 12].map(|count| {
         let solid = random_solid(&mut random, count);
@@ -188,8 +188,8 @@ fn fold_parity() {
     gpu.finish();
 }
 
-/// 600 balls with a hole in each, and a cut through all of them: of a tile that sees no hole, one that sees no cut either,
-/// and one that sees everything. Looked for from one end alone, exits would take a driver's whole loop.
+/// 600 balls with a hole in each, and a cut through all of them: a tile without holes, a tile without the cut either,
+/// and a tile with everything. A search from one end alone would use up a driver's whole loop.
 #[test]
 fn long_lists_are_folded() {
     const BALLS: u32 = 600;
@@ -226,7 +226,7 @@ fn long_lists_are_folded() {
     gpu.finish();
 }
 
-/// A list so long that a driver may end the loop over it is either right or told of.
+/// A list so long that a driver may end the loop over it is either right or counted as a clamp.
 #[test]
 fn a_list_of_too_many_is_told_of() {
     let count = 70_000;
@@ -293,7 +293,7 @@ fn rects_on_gpu(gpu: &Gpu, frame: &Frame, leaves: &[Leaf], centres: &[[f32; 3]],
     same("rects", &gpu.read(&rects, leaves.len()), &twin)
 }
 
-/// A frame and what it shows: eyes without and within, both projections.
+/// Frames of a solid: eyes outside and inside, both projections.
 fn frames(solid: &Solid) -> Vec<(Frame, Vec<[f32; 3]>)> {
     let data = leaves_of(solid);
     let mut all = Vec::new();
@@ -334,7 +334,7 @@ fn rects_parity() {
     gpu.finish();
 }
 
-/// Every point of a ball that the camera sees is in one of the ball's tiles.
+/// Every visible point of a ball is in one of the ball's tiles.
 #[test]
 fn rects_hold_what_they_are_around() {
     let solid = random_solid(&mut Random::new(3), 100);

@@ -10,7 +10,7 @@ use crate::gpu::{Buffer, Texel};
 use crate::twin;
 use crate::twin::cross::ordered_bits;
 
-/// Rows as `cross` leaves them.
+/// Rows after `cross`.
 #[derive(Clone)]
 struct Rows {
     starts: Vec<u32>,
@@ -34,7 +34,7 @@ impl Rows {
         }
     }
 
-    /// Each row in another order.
+    /// Each row in a different order.
     fn shuffled(mut self, random: &mut Random) -> Self {
         let room = self.intercepts.len();
         let ends = self.starts.iter().skip(1).copied().chain([self.total]).map(|end| end as usize);
@@ -46,7 +46,7 @@ impl Rows {
     }
 }
 
-/// What the pass leaves.
+/// The results of the pass.
 struct Run {
     rows: Buffer,
     intercepts: Buffer,
@@ -96,7 +96,7 @@ fn compare(gpu: &Gpu, frame: &Frame, given: &Rows, expected: &Rows) -> Result<()
     Run::new(gpu, frame, given).compare(gpu, frame, expected)
 }
 
-/// Those of all rows, one after another: what a row holds behind them is nobody's.
+/// The flips of all rows, one row after another; words behind them are unused.
 fn flips_of(rows: &Rows, counts: &[u32], words: &[u32]) -> Vec<u32> {
     let of_row = |(&start, &count): (&u32, &u32)| &words[start as usize..][..(count >> 1) as usize];
     rows.starts.iter().zip(counts).filter(|&(_, &count)| count > 1).flat_map(of_row).copied().collect()
@@ -114,7 +114,7 @@ fn parity() {
     }
 }
 
-/// Rows far longer than a drawing has, with equal entries, negative `u` and windings of any sign.
+/// Rows far longer than in a drawing, with equal entries, negative `u` and windings of any sign.
 #[test]
 fn parity_of_long_rows() {
     let gpu = Gpu::new();
@@ -138,7 +138,7 @@ fn parity_of_long_rows() {
     gpu.finish();
 }
 
-/// A row so long that a driver may end the loops that sort it is either right or told of.
+/// A row so long that a driver may end the loops that sort it is either right or counted as a clamp.
 #[test]
 fn a_row_of_too_many_is_told_of() {
     let gpu = Gpu::new();
@@ -163,13 +163,13 @@ fn a_difference_is_seen() {
     let case = &cases()[0];
     let rows = Rows::of(&Chain::new(case));
     let mut other = rows.clone();
-    other.intercepts[6] ^= 2; // one unit in the last place that is kept of u
+    other.intercepts[6] ^= 2; // the last stored bit of u
     assert_eq!(compare(&gpu, &case.frame, &other, &rows).unwrap_err().buffer, "flips");
     let mut other = rows.clone();
     other.intercepts[6] ^= 1; // the direction
     assert!(compare(&gpu, &case.frame, &other, &rows).is_err());
     let mut other = rows.clone();
-    other.windings[0] ^= 1; // what the row begins with
+    other.windings[0] ^= 1; // the winding at the row's start
     assert_eq!(compare(&gpu, &case.frame, &other, &rows).unwrap_err().buffer, "rows");
     gpu.finish();
 }

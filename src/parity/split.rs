@@ -1,4 +1,4 @@
-//! Parity of the pass `split`: exact, it is all integers.
+//! Parity of the pass `split`: exact, since it uses only integers.
 
 use super::chain::{Chain, UNTOUCHED};
 use super::harness::{Gpu, Mismatch, SceneBuffers, same};
@@ -34,7 +34,7 @@ fn parity() {
             let taus = Chain::new(&case).taus;
             compare(&gpu, &case, &taus, &taus).unwrap();
         }
-        // the same grids with factors of every size, and patches that nobody sees
+        // the same grids with factors of every size, and patches out of sight
         let (case, mut random) = (&cases()[0], Random::new(1));
         for _ in 0..20 {
             let mut tau = || (1 << random.integer(0, 12)).max(random.integer(1, 4096)).min(random.integer(1, 4096));
@@ -62,7 +62,7 @@ fn parity_of_shared_sides() {
         let mut taus: Vec<u32> = case.data.items.iter().map(|_| tau() | tau() << 16).collect();
         taus.iter_mut().step_by(5).for_each(|t| *t = 0);
         compare(&gpu, &case, &taus, &taus).unwrap();
-        // whoever is changed, others at its sides see it
+        // a changed patch changes the other patches at its sides
         let mut other = taus.clone();
         let at = case.data.links.iter().position(|link| link.halvings() > 0).unwrap() / 4;
         other[at] = 4096 | 4096 << 16;

@@ -1,4 +1,4 @@
-//! Parity of the pass `seen_squares`: exact. What is seen is drawn by pass `mesh`, and read back for the twin.
+//! Parity of the pass `seen_squares`: exact. Pass `mesh` draws the input, which is read back for the twin.
 
 use super::harness::{Gpu, Mismatch, same};
 use super::shapes::cases;
@@ -22,7 +22,7 @@ fn visibility(gpu: &Gpu, name: &str, size: (u32, u32)) -> Image {
     image(gpu, name, VISIBILITY_FORMAT, usage, size)
 }
 
-/// An image that sees the same everywhere.
+/// An image with the same word everywhere.
 fn filled(gpu: &Gpu, word: u32, size: (u32, u32)) -> Image {
     let image = visibility(gpu, "filled", size);
     gpu.run(|cmd| {
@@ -33,7 +33,7 @@ fn filled(gpu: &Gpu, word: u32, size: (u32, u32)) -> Image {
     image
 }
 
-/// What is seen of triangles, and its first words; reversed depths.
+/// The visibility image of triangles, its first words, and reversed depths.
 pub(super) struct Drawn {
     pub seen: Image,
     pub words: Vec<u32>,
@@ -103,7 +103,7 @@ pub(super) fn drawn(gpu: &Gpu, case: &Case, random: &mut Random, count: u32, siz
     Drawn { seen, words, depth, depths: depths.values(pixels) }
 }
 
-/// The pass over two images, against the twin of what is said to be seen.
+/// The pass over two images, against the twin of the expected input.
 fn compare(
     gpu: &Gpu,
     case: &Case,
@@ -139,7 +139,8 @@ fn parity_is_exact_and_sees_a_difference() {
     let squares = compare(&gpu, case, (&few.seen, &many.seen), |n| few.words[n] != 0 || many.words[n] != 0).unwrap();
     assert!(squares.iter().any(|side| *side > 1), "nothing but single tiles");
     compare(&gpu, case, (&few.seen, &many.seen), |n| few.words[n] != 0).unwrap_err();
-    // a patch, a mesh, both candidates or not; what is neither; and the other image behind nothing, though it is in doubt
+    // patches and meshes count, solids and operands do not; an empty word, candidate or not, leaves it to the other
+    // image
     for (word, is_seen) in [(7, true), (SEEN_MESH | 7, true), (GAP_CANDIDATE | 7, true)] {
         compare(&gpu, case, (&filled(&gpu, word, size), &few.seen), |_| is_seen).unwrap();
     }

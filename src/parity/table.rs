@@ -13,7 +13,7 @@ use glam::DVec2;
 /// The face instance of the sheet and its strips, in the first instance of the model.
 const SHEET: usize = 2;
 
-/// The table that a chain ends with; `flips` are its intercepts after sorting, as floats.
+/// The table at the end of a chain; `flips` are its intercepts after sorting, as floats.
 fn table<'a>(case: &Case, chain: &'a Chain, flips: &'a [f32]) -> Table<'a> {
     Table {
         strips: &chain.strips,
@@ -25,7 +25,7 @@ fn table<'a>(case: &Case, chain: &'a Chain, flips: &'a [f32]) -> Table<'a> {
     }
 }
 
-/// Half the sides of the boxes that are asked about.
+/// Half the sides of the tested boxes.
 const AROUND: [f32; 2] = [0.004, 0.002];
 
 /// The box around a point.
@@ -41,14 +41,14 @@ fn points(count: usize) -> Vec<[f32; 2]> {
     border.into_iter().chain(inner).collect()
 }
 
-/// The rows of the strip that a point is in; `None` where nobody sees its bin.
+/// The rows of the strip that contains a point; `None` if its bin is not visible.
 fn rows_at(chain: &Chain, first_bin: u32, face: &Face, [u, v]: [f32; 2]) -> Option<StripRows> {
     let strip = first_bin + (v * face.strip_count() as f32) as u32 * face.bin_count();
     let (rows, bin) = (chain.strips[strip as usize], bin_of(u, face.bin_count()));
     (rows.lines > 0 && bin >= rows.first_bin && bin <= rows.last_bin()).then_some(rows)
 }
 
-/// A point is decided as by the exact loops unless it is nearer to one than half a row and a chord.
+/// A point has the result of the exact loops, unless it is nearer to a loop than half a row and a chord.
 #[test]
 fn the_table_decides_as_the_exact_loops_do() {
     let (model, cameras) = model_and_cameras();
@@ -67,7 +67,7 @@ fn the_table_decides_as_the_exact_loops_do() {
         let speed = chain.density.face_speeds[SHEET].map(f64::from);
         for [u, v] in points(20_000).into_iter().filter(|p| p[1] > 0.0 && p[1] < 1.0) {
             let Some(rows) = rows_at(&chain, placed.first_bin, face, [u, v]) else { continue };
-            // the nearest row, and a chord that is off by chord_px where a unit covers the most pixels
+            // the nearest row, and a chord that deviates by chord_px where a unit covers the most pixels
             let row = 0.5 / f64::from(strips * rows.lines);
             let chord = f64::from(case.frame.chord_px) / speed[0].min(speed[1]);
             let uv = DVec2::new(u.into(), v.into());
@@ -83,12 +83,12 @@ fn the_table_decides_as_the_exact_loops_do() {
     assert!(decided.iter().all(|&n| n > 3000), "outside, inside: {decided:?}");
 }
 
-/// Where a box is said to be all inside or all outside, so are points all over it; and most boxes are.
+/// If a box counts as inside or outside as a whole, points all over it do; and most boxes do.
 #[test]
 fn boxes_that_no_border_meets_are_all_the_same() {
     let (model, cameras) = model_and_cameras();
     let sieve = model_with_sieve();
-    let mut all_said = [[0, 0, 0]; 2]; // not, outside, inside; of the sheet and of the sieve
+    let mut all_said = [[0, 0, 0]; 2]; // undecided, outside, inside; of the sheet and of the sieve
     for (k, model, camera) in cameras.iter().flat_map(|camera| [(0, &model, camera), (1, &sieve, camera)]) {
         let said = &mut all_said[k];
         let case = Case::new(model, camera, 0.5);
@@ -122,7 +122,7 @@ fn boxes_that_no_border_meets_are_all_the_same() {
     assert!(sieve[1] > 100 && sieve[2] > 100, "not told, outside, inside: {sieve:?}"); // most of it is near a hole
 }
 
-/// Where no border is told along a line, all of it is as its point is; where one is told, some of it is not.
+/// If a line is reported without a border, all of it is like its point; if with a border, some of it is not.
 #[test]
 fn lines_without_borders_are_all_the_same() {
     let (model, cameras) = model_and_cameras();
@@ -154,7 +154,7 @@ fn lines_without_borders_are_all_the_same() {
     assert!(unseen * 50 < sheet[1] + sieve[1], "{unseen} of the borders that are told were not found: {lines:?}");
 }
 
-/// Of `tests/gpu/glsl/table.comp`, which wraps the include.
+/// `tests/gpu/glsl/table.comp` wraps the include.
 #[cfg(feature = "headless")]
 mod parity {
     use super::super::harness::{Gpu, Mismatch, same, words};

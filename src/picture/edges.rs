@@ -1,33 +1,33 @@
-//! Which lines are drawn along edges, and how.
+//! Settings of lines along edges.
 
 use crate::model::{Colour, EdgeKind};
 
 /// Lines along the edges of parts and meshes: [`SceneSettings::edges`](super::SceneSettings::edges).
 ///
-/// Widths are those of a picture 1080 pixels high, and grow and shrink with its height. A point of an edge is drawn where
-/// what the pixel sees is a face of the edge or lies behind it. Images other than the colour do not change.
+/// Widths are for a picture 1080 pixels high, and scale with its height. A point of an edge is drawn if the visible
+/// surface is one of the edge's faces or lies behind the point. Images other than the colour do not change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeSettings {
-    /// Which edges.
+    /// The edges along which lines are drawn.
     pub which: EdgeChoice,
-    /// Edges across which the surface goes on without a visible angle.
+    /// Lines along edges across which the surface continues without a visible angle.
     pub tangent: TangentEdges,
-    /// Outlines of curved faces, where they fold away from the eye.
+    /// Outlines of curved faces, where they turn away from the eye.
     pub silhouettes: bool,
-    /// Lines behind faces, too: dashed, in [`hidden_colour`](Self::hidden_colour).
+    /// Also draw lines behind faces: dashed, in [`hidden_colour`](Self::hidden_colour).
     pub hidden: bool,
     /// Pixels at a height of 1080; from 0 to [`MOST_WIDTH`](Self::MOST_WIDTH).
     pub width: f64,
-    /// The same of thin lines.
+    /// Width of thin lines, likewise.
     pub thin_width: f64,
-    /// Linear light, and opacity.
+    /// Linear colour and opacity.
     pub colour: Colour,
-    /// The same of hidden lines.
+    /// Linear colour and opacity of hidden lines.
     pub hidden_colour: Colour,
 }
 
 impl Default for EdgeSettings {
-    /// All edges, 1.25 pixels wide and nearly black, tangent ones thin, hidden ones and silhouettes not at all.
+    /// All edges, 1.25 pixels wide and nearly black; thin lines along tangent edges; no hidden lines, no silhouettes.
     fn default() -> Self {
         Self {
             which: EdgeChoice::All,
@@ -42,10 +42,10 @@ impl Default for EdgeSettings {
     }
 }
 
-/// What lines are drawn along.
+/// The edges along which lines are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum EdgeChoice {
-    /// Every edge but seams, which are where the parameters of a closed surface begin.
+    /// Every edge except seams, where the parameters of a closed surface begin.
     #[default]
     All,
     /// Edges at which faces meet at an angle or end.
@@ -54,7 +54,7 @@ pub enum EdgeChoice {
     None,
 }
 
-/// How edges are drawn across which the surface goes on without a visible angle.
+/// Lines along edges across which the surface continues without a visible angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TangentEdges {
     /// Not at all.
@@ -62,18 +62,18 @@ pub enum TangentEdges {
     /// Thinner than others.
     #[default]
     Thin,
-    /// As the others.
+    /// Like the others.
     Full,
 }
 
-/// How wide a line is.
+/// The width of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LineStyle {
     Full,
     Thin,
 }
 
-/// Settings that draw nothing sensible.
+/// Settings out of range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BadEdges {
@@ -91,10 +91,9 @@ impl EdgeSettings {
     /// Height of the picture for which widths are stated.
     pub const HEIGHT: f64 = 1080.0;
 
-    /// Whether they can be drawn.
+    /// Checks that the settings can be drawn.
     ///
-    /// # Errors
-    /// [`BadEdges`].
+    /// # Errors [`BadEdges`].
     pub fn check(&self) -> Result<(), BadEdges> {
         for width in [self.width, self.thin_width] {
             if !(0.0..=Self::MOST_WIDTH).contains(&width) {
@@ -105,7 +104,7 @@ impl EdgeSettings {
         bad.map_or(Ok(()), |colour| Err(BadEdges::Colour(colour)))
     }
 
-    /// How an edge of this kind is drawn, if at all.
+    /// The line along an edge of this kind, if any.
     pub(crate) fn style(&self, kind: EdgeKind) -> Option<LineStyle> {
         match (self.which, kind, self.tangent) {
             (EdgeChoice::None, _, _) | (_, EdgeKind::Seam, _) => None,
@@ -121,7 +120,7 @@ impl EdgeChoice {
     /// Every choice.
     pub const ALL: &'static [Self] = &[Self::All, Self::Sharp, Self::None];
 
-    /// As in command lines and tables.
+    /// The name in command lines and tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::All => "all",
@@ -144,7 +143,7 @@ impl TangentEdges {
     /// Every way.
     pub const ALL: &'static [Self] = &[Self::None, Self::Thin, Self::Full];
 
-    /// As in command lines and tables.
+    /// The name in command lines and tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -163,7 +162,7 @@ impl std::str::FromStr for TangentEdges {
     }
 }
 
-/// No choice of edges is called so.
+/// A name that no choice of edges has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no choice of edges is called `{0}`; there are: {1}")]
 pub struct UnknownEdges(String, &'static str);

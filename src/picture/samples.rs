@@ -1,9 +1,9 @@
-//! How pixels with borders are made: several samples, or borders that are mixed.
+//! Smooth edges: several samples a pixel, or mixed pixels at borders.
 
 /// The number of samples whose mean a pixel's colour is.
 ///
-/// The mean is of linear colours, each clamped to the target's range. The images beside the colour, and the host's
-/// depth, are those of the pixel's centre, whatever the number.
+/// The mean is that of linear colours, each clamped to the target's range. The images beside the colour, and the host's
+/// depth, are always those of the pixel's centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
@@ -18,7 +18,7 @@ pub enum Samples {
 }
 
 impl Samples {
-    /// How many.
+    /// Number of samples.
     pub fn count(self) -> u32 {
         match self {
             Self::One => 1,
@@ -27,7 +27,7 @@ impl Samples {
         }
     }
 
-    /// Where they lie, pixels from the centre, y down; none for [`One`](Self::One). Source: Vulkan 1.3, section 25.3
+    /// Positions in pixels from the centre, y down; empty for [`One`](Self::One). Source: Vulkan 1.3, section 25.3
     /// (standard sample locations).
     pub(crate) fn offsets(self) -> &'static [[f64; 2]] {
         const FOUR: [[f64; 2]; 4] = [[-0.125, -0.375], [0.375, -0.125], [-0.375, 0.125], [0.125, 0.375]];
@@ -58,30 +58,30 @@ impl std::str::FromStr for Samples {
     }
 }
 
-/// No picture has so many samples a pixel.
+/// A name that no number of samples has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` samples a pixel: there may be 1, 4 or 8")]
 pub struct UnknownSamples(String);
 
-/// Which borders are smooth in pictures of one sample a pixel. Pixels there are mixtures, in linear colour, of what they
-/// see. All images but the colour stay those of the pixels' centres, bit for bit, and so do pixels away from borders, but
-/// that colours above 1 are cut off there, too.
+/// The borders that are smooth in pictures of one sample a pixel. A pixel at a border is a mixture, in linear colour,
+/// of the surfaces in it. All images but the colour stay those of the pixels' centres, bit for bit. So do pixels away
+/// from borders, except that colours above 1 are cut off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Smooth {
-    /// None: a pixel shows what its centre sees.
+    /// None: a pixel shows the surface at its centre.
     #[default]
     None,
-    /// Those of trimmed faces, by the area that the exact trim curves cut from each pixel; silhouettes of curved faces,
-    /// meshes and Boolean solids stay as they are. [`TrimWay::Auto`](super::TrimWay::Auto) is
-    /// [`TrimWay::Exact`](super::TrimWay::Exact) then. What does not go with it is
+    /// Borders of trimmed faces, by the area that the exact trim curves cut from each pixel. Silhouettes of curved
+    /// faces, meshes and Boolean solids stay as they are. [`TrimWay::Auto`](super::TrimWay::Auto) then is
+    /// [`TrimWay::Exact`](super::TrimWay::Exact). Other settings that exclude it give
     /// [`RenderError::SmoothTrims`](crate::renderer::RenderError::SmoothTrims).
     Trims,
-    /// Those of faces, silhouettes and folds among them, by sixteen points of each pixel at a border: the surfaces that
-    /// the pixels around see are asked for, exactly. A mesh or Boolean solid is smooth where a face ends before it, and
-    /// rough by itself. Pictures of several samples, and those with something to see through or to mark, stay as they
-    /// are.
+    /// Borders of faces, including silhouettes and folds, by sixteen points of each pixel at a border. At each point,
+    /// the surfaces visible in the surrounding pixels are evaluated exactly. A mesh or Boolean solid is smooth where a
+    /// face in front of it ends, not along its own borders. Pictures with several samples, transparency or highlights
+    /// stay as they are.
     Borders,
 }
 
@@ -89,7 +89,7 @@ impl Smooth {
     /// All.
     pub const ALL: [Self; 3] = [Self::None, Self::Trims, Self::Borders];
 
-    /// What the command line calls it.
+    /// The name in command lines.
     pub fn name(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -107,7 +107,7 @@ impl std::str::FromStr for Smooth {
     }
 }
 
-/// No borders are called so.
+/// A name that no choice of borders has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("smooth are none, trims or borders, and not `{0}`")]
 pub struct UnknownSmooth(String);

@@ -74,6 +74,7 @@ pub(super) fn constants(
         spread_px: spread_px(counts) as f32,
         samples: counts.samples.count(),
         style: input.settings.style as u32,
+        curvature: input.settings.curvature_range.recip() as f32,
         most_groups: device.limits().max_compute_work_group_count[0],
         ..abi::Frame::default()
     };

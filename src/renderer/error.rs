@@ -28,6 +28,9 @@ pub enum RenderError {
     /// The model cannot be drawn.
     #[error("model: {0}")]
     Model(#[from] ModelError),
+    /// An added model has [`Model::trim`](crate::model::Model::trim).
+    #[error("a model with a volume that trims it cannot be added: the volume would trim the whole scene")]
+    AddedVolume,
     /// The model, or what this view needs of it.
     #[error(transparent)]
     TooMany(#[from] TooMany),
@@ -40,6 +43,12 @@ pub enum RenderError {
     /// [`Smooth::Trims`](crate::picture::Smooth::Trims) beside something that it does not go with.
     #[error("smooth trims do not go with {0}")]
     SmoothTrims(&'static str),
+    /// [`curvature_range`](FrameSettings::curvature_range) is no end of a scale.
+    #[error("the largest curvature on the scale must be finite and above 0, not {0}")]
+    CurvatureRange(f64),
+    /// A style of curvature without [`SceneSettings::curvature`](crate::picture::SceneSettings::curvature).
+    #[error("the model is not uploaded with SceneSettings::curvature")]
+    NoCurvature,
     /// [`ambient`](crate::picture::SceneSettings::ambient) is not a radius.
     #[error("the radius of ambient occlusion must be finite and above 0, not {0}")]
     AmbientRadius(f64),

@@ -17,7 +17,7 @@ use crate::frame::counts::Counts;
 use crate::gpu::Device;
 use crate::model::{Camera, Model};
 use crate::picture::{SceneSettings, Smooth, TakenWay, TrimWay};
-use crate::scene::{Cut, DeepZoomUpload, SceneData, SceneRequest, Told};
+use crate::scene::{Cut, DeepZoomUpload, Joinable, SceneData, SceneRequest, Told};
 use std::sync::Arc;
 
 impl Renderer {
@@ -170,6 +170,7 @@ impl Loaded {
             data_of = data(request.exact())?;
         }
         let mut data = data_of;
+        let is_cut = cut.is_some();
         data.has_numbers = formats.outputs.has_numbers();
         if let Some(edges) = request.edges {
             match &cut {
@@ -182,6 +183,7 @@ impl Loaded {
             Some(cut) => data.picking(&cut.model, |part, face| cut.face_of(part, face)),
         };
         data.show(&whole.instances, &source.shown);
+        let joinable = if is_cut { None } else { Joinable::of(&data, whole, request) };
         let counts = Counts::of(&data);
         counts.check(Ranges::of(device).quads)?;
         let passes = Passes::new(device, &data, formats.of_passes())?;
@@ -194,6 +196,10 @@ impl Loaded {
             picking: Arc::new(picking),
             scene: None,
             stages: None,
+            room: counts,
+            joinable,
+            gone: 0,
+            is_cut,
             edits: Vec::new(),
             changes: Default::default(),
             moved: false,

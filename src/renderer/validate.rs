@@ -1,7 +1,7 @@
 //! Checks of a scene's settings.
 
 use super::RenderError;
-use crate::picture::{Samples, SceneSettings, TrimWay};
+use crate::picture::{FrameSettings, Samples, SceneSettings, TrimWay};
 use crate::scene::{SceneData, SceneRequest};
 
 /// Smooth trims exclude some other settings.
@@ -22,6 +22,16 @@ pub(super) fn check_ambient(settings: SceneSettings) -> Result<(), RenderError> 
     match settings.ambient {
         Some(radius) if !(radius.is_finite() && radius > 0.0) => Err(RenderError::AmbientRadius(radius)),
         Some(_) if settings.samples != Samples::One => Err(RenderError::AmbientSamples),
+        _ => Ok(()),
+    }
+}
+
+/// The scale of a style of curvature has an end, and the scene has what the style needs.
+pub(super) fn check_curvature(frame: FrameSettings, scene: bool) -> Result<(), RenderError> {
+    match frame.curvature_range {
+        _ if !frame.style.is_curvature() => Ok(()),
+        range if !(range.is_finite() && range > 0.0) => Err(RenderError::CurvatureRange(range)),
+        _ if !scene => Err(RenderError::NoCurvature),
         _ => Ok(()),
     }
 }

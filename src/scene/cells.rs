@@ -1,8 +1,8 @@
-//! The trim table's strips and bins of a face, and the cells that tell how dense its scan lines must be.
+//! The trim table's strips and bins of a face, and the cells from which the distance of its scan lines is computed.
 //!
 //! ```text
 //!    v ▲  strip   ├────┬────┤
-//!      │          │cell│cell│ bins        of each: a box, and how fast the surface runs there
+//!      │          │cell│cell│ bins        each cell: a box, and the surface's speed in it
 //!      │          ├────┼────┤
 //!      └─────────────────────▶ u
 //! ```
@@ -15,20 +15,22 @@ use crate::picture::TakenWay;
 use crate::spline::{Bezier, Control, Patch, SurfacePatch};
 use glam::{DVec2, DVec3};
 
-/// v-strips of a face with few rows of patches. More strips follow a changing density more closely
-/// and leave out more rows beyond the picture; each costs a cell of 48 bytes a bin.
+/// The fewest v-strips of a face. More strips follow a changing density more closely and leave out more rows beyond the
+/// picture; each costs a cell of 48 bytes a bin.
 const LEAST_STRIPS: usize = 8;
-/// The paper's benchmark used 128 strips for every surface; nothing asked for more.
+/// The benchmark of the paper used 128 strips for every surface. No scene tried has gained from more.
 const MOST_STRIPS: usize = 128;
-/// Intercepts of a scan line, on average, for each bin: fewer than pass `sort` holds in registers. Bins that nobody sees
-/// cost nothing in a view, so many are better than few; each costs a cell a strip.
+/// Intercepts of a scan line, on average, for each bin: fewer than pass `sort` holds in registers. Bins outside the
+/// picture cost nothing, so there may be many; each costs a cell a strip.
 const BIN_INTERCEPTS: f64 = 8.0;
-/// A word has a bit for each.
+/// A word has a bit for each bin.
 const MOST_BINS: f64 = 32.0;
-/// The root of the number of curves, for each strip: four rows of holes that are as many across, of four curves each.
+/// The square root of the number of curves for each strip. At this value a strip has four rows of holes, if the holes
+/// form a square grid and have four curves each.
 const STRIP_CURVES: f64 = 8.0;
 
-/// [`abi::Face::strips`] of a face with so many rows of patches. Strips depend on what edits do not change, since they decide where scan lines are.
+/// [`abi::Face::strips`] of a face with this number of rows of patches. Strips decide where scan lines are, so they
+/// must depend only on what edits leave unchanged.
 pub(super) fn strips(face: &Face, rows: usize, way: TakenWay) -> u32 {
     let curves = || face.loops.iter().flat_map(TrimLoop::curves);
     let for_curves = (curves().count() as f64).sqrt() / STRIP_CURVES;
@@ -45,17 +47,19 @@ pub(super) fn strips(face: &Face, rows: usize, way: TakenWay) -> u32 {
     abi::Face::pack_strips(strips, (intercepts / BIN_INTERCEPTS).clamp(1.0, MOST_BINS) as u32)
 }
 
-/// Which of `n` equal parts of 0 to 1 an interval reaches, and the share of the interval, 0 to 1 within it, that is in each.
+/// The parts, of `n` equal parts of 0 to 1, that an interval meets. With each comes the range of the interval, 0 to 1
+/// within it, that lies in the part.
 fn shares(start: f64, length: f64, n: u32) -> impl Iterator<Item = (u32, (f64, f64))> {
     let parts = f64::from(n);
     let first = (start * parts).floor().clamp(0.0, parts - 1.0) as u32;
     let last = (((start + length) * parts).ceil() - 1.0).clamp(f64::from(first), parts - 1.0) as u32;
     let local = move |k: u32| ((f64::from(k) / parts - start) / length).clamp(0.0, 1.0);
-    // what single precision does not tell from nothing: where ends meet up to rounding, derivatives there are roundings, too
+    // shorter ranges come from rounding at the ends; derivatives over them would be roundings, too
     (first..=last).map(move |k| (k, (local(k), local(k + 1)))).filter(|(_, (from, to))| to - from > 1e-7)
 }
 
-/// The slab that a patch lies in, across its diagonals: its normal, and where along that it lies.
+/// The slab around a patch, parallel to both of its diagonals: the normal, and the smallest and largest distance along
+/// it.
 fn slab(piece: &Patch, origin: DVec3) -> (u32, f32, f32) {
     let (n, k) = (piece.degree_u, piece.degree_v);
     let at = |i: usize, j: usize| piece.points[j * (n + 1) + i].point() - origin;
@@ -67,7 +71,7 @@ fn slab(piece: &Patch, origin: DVec3) -> (u32, f32, f32) {
     (word, (low as f32).next_down(), round_up(high))
 }
 
-/// One for each bin of each v-strip that a patch of the face reaches.
+/// One cell for each bin of each v-strip that a patch of the face meets.
 pub(super) fn cells(face: &abi::Face, p: &SurfacePatch, origin: DVec3, domain: &Domain) -> Vec<abi::Cell> {
     let (strips, bins) = (face.strip_count(), face.bin_count());
     let corner = domain.unit(DVec2::new(p.u.0, p.v.0));
@@ -99,7 +103,7 @@ mod tests {
     use glam::DVec4;
     use std::f64::consts::PI;
 
-    /// Patches of a half turn, whose ends have no exact numbers.
+    /// Patches of a half turn: their ends are not exact in floating point.
     #[test]
     fn shares_add_up_and_none_is_but_a_rounding() {
         let ends = |k: u32, n: u32| PI + PI * f64::from(k) / f64::from(n);
@@ -117,7 +121,7 @@ mod tests {
         }
     }
 
-    /// Eighths of a half turn in sixteen strips: two each, as fast as they are long.
+    /// Eighths of a half turn in sixteen strips: each patch meets two strips and runs through both at the same speed.
     #[test]
     fn a_patch_has_no_cell_in_a_strip_that_it_meets_by_a_rounding() {
         let point = |i: usize| DVec4::new((i % 2) as f64, (i / 2) as f64, 0.0, 1.0);

@@ -1,37 +1,39 @@
-//! Cones of the outward normals of patches, of parts that hide whatever looks away ([`twin::cone`](crate::twin::cone)).
+//! Cones of the outward normals of patches, for parts whose far side is hidden ([`twin::cone`](crate::twin::cone)).
 //!
-//! That a part says of itself that it is closed does not do: files err, and a face that is inside out would be missing
-//! from the picture. So what is taken for closed is
+//! A file's statement that a part is closed is not enough. It may be wrong, and a face turned inside out would be
+//! missing from the picture. A part is taken as closed only if it passes these tests:
 //!
 //! ```text
-//!   without trims     whose sides are all drawn with the vertices of others' (link.rs)        no gap to look through
-//!   turned alike      along each shared curve as long one way as the other  ──▶│◀──          inside out all or none
-//!   outwards          of a volume above 0, each connected piece by itself
+//!   no gaps       no face is trimmed, and every side is linked to another side (link.rs)
+//!   one sense     the two faces at a shared curve run along it in opposite directions ──▶│◀──
+//!   outwards      each connected piece has a volume above 0
 //! ```
 
 use crate::abi::{self, Link};
 use crate::spline::{NormalCone, PatchGrid, SurfacePatch};
 use glam::DVec3;
 
-/// Triangles of a patch may be turned from its normals by about this, where sides with other numbers of segments meet.
+/// Sine of the angle by which a triangle may be turned from its patch's normals, where two sides with different numbers
+/// of segments meet.
 const TURNED: f64 = 0.02;
-/// A volume less than this share of what its parts add up to without their signs may be any.
+/// A volume smaller than this share of the sum of its terms' magnitudes has no certain sign.
 const THIN: f64 = 0.01;
-/// Of Gauss's rule of three points over 0 to 1.
+/// Points and weights of Gauss's rule of three points over 0 to 1.
 const POINTS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
-/// What a patch of a closed part without trims knows of its normals.
+/// The normals of one patch of a closed part without trims.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Normals {
-    /// Of the outward ones.
+    /// The cone of the outward normals.
     cone: Option<NormalCone>,
-    /// Of the pyramid from the part's origin to the patch, by its outward normals; by quadrature.
+    /// The signed volume of the pyramid from the part's origin to the patch, positive for outward normals, by
+    /// quadrature.
     volume: f64,
 }
 
 impl Normals {
-    /// Of every patch of a face.
+    /// The normals of every patch of a face.
     pub(super) fn of(grid: &PatchGrid, same_sense: bool, origin: DVec3) -> Vec<Self> {
         let outward = if same_sense { 1.0 } else { -1.0 };
         let normals = |p: &SurfacePatch| {
@@ -48,14 +50,14 @@ impl Normals {
         grid.patches.iter().map(normals).collect()
     }
 
-    /// As `twin::cone` wants it, of a part that reaches `radius` far from its origin.
+    /// The four numbers that `twin::cone` reads, for a part within `radius` of its origin.
     fn packed(&self, radius: f64) -> [f32; 4] {
         let cone = self.cone.filter(|cone| cone.sine + TURNED < 1.0);
         cone.map_or([0.0; 4], |cone| (cone.axis * radius).extend(cone.sine + TURNED).to_array().map(|x| x as f32))
     }
 }
 
-/// The cones of a part's patches, whose sides are all linked; `normals` begins with its first patch.
+/// The cones of a part's patches. All sides must be linked; `normals` begins with the part's first patch.
 pub(super) fn cones(faces: &[abi::Face], links: &[Link], normals: &[Normals], radius: f64) -> Vec<[f32; 4]> {
     let Some(first) = faces.first().map(|f| f.first_patch) else { return Vec::new() };
     let patches =
@@ -97,18 +99,18 @@ pub(super) fn cones(faces: &[abi::Face], links: &[Link], normals: &[Normals], ra
     packed
 }
 
-/// 1 where the border of a patch, with its outward normal on the left of whoever walks it seen from outside, runs along
-/// the link's curve; else -1.
+/// Direction of a patch's border along the link's curve, walked with the outward normal up and the patch on the left: 1
+/// if it is the curve's own direction, else -1.
 fn forwards(side: u32, flags: u32, link: &Link) -> f64 {
-    let rises = matches!(side, 1 | 2); // v = 0 and u = 1 are walked towards larger parameters where S_u x S_v is outward
+    let rises = matches!(side, 1 | 2); // counter-clockwise about S_u x S_v
     let outward = flags & abi::FACE_SAME_SENSE != 0;
     if (rises == outward) != link.is_reversed() { 1.0 } else { -1.0 }
 }
 
-/// Which faces are connected: a forest of them.
+/// A union-find forest of connected faces.
 struct Pieces {
     parents: Vec<usize>,
-    /// Of roots.
+    /// Whether a piece fails one of the tests; valid for roots.
     spoilt: Vec<bool>,
 }
 
@@ -117,7 +119,7 @@ impl Pieces {
         Self { parents: (0..faces).collect(), spoilt: vec![false; faces] }
     }
 
-    /// The face that stands for the piece.
+    /// The root of the face's piece.
     fn of(&mut self, mut face: usize) -> usize {
         while self.parents[face] != face {
             self.parents[face] = self.parents[self.parents[face]];

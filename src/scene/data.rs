@@ -25,16 +25,16 @@ use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Patches below which it is not worth while to ask which of them lie behind others.
+/// Scenes with fewer patches have no occlusion culling: it costs more than it saves.
 const FEWEST_HIDDEN: usize = 64;
 
-/// What says how finely patches are divided.
+/// The measure by which patches are divided.
 #[derive(Clone, Debug, Default)]
 pub(crate) enum Division {
-    /// Bounds on their derivatives.
+    /// Bounds on the patches' derivatives.
     #[default]
     Bound,
-    /// Slefes, and the table that the pass reads: `baselines::slefe::words`.
+    /// Slefes, with the table that the pass reads: `baselines::slefe::words`.
     #[cfg(feature = "baselines")]
     Slefe(Vec<u32>),
 }
@@ -43,21 +43,21 @@ pub(crate) enum Division {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SceneData {
     pub patches: Vec<abi::Patch>,
-    /// Of each patch: where nothing of its face is. In scenes whose patches may lie behind others.
+    /// The cells of each patch that no part of the face covers; for scenes with occlusion culling.
     pub outside: Vec<[u32; 2]>,
-    /// Of each patch's normals (`twin::cone`); none where no part is closed without trims.
+    /// The cone of each patch's normals (`twin::cone`); empty if no part is closed and without trims.
     pub cones: Vec<[f32; 4]>,
     pub points: Vec<[f32; 4]>,
-    /// Four a patch; none where no faces without trims share a side.
+    /// Four links a patch; empty if no two untrimmed faces share a side.
     pub links: Vec<abi::Link>,
     pub faces: Vec<abi::Face>,
     pub face_instances: Vec<abi::FaceInstance>,
     pub instances: Vec<abi::Instance>,
-    /// Face instance of each item, cell item and curve item.
+    /// Face instance of each patch instance, cell item and curve item.
     pub items: Vec<u32>,
     pub cell_items: Vec<u32>,
     pub curve_items: Vec<u32>,
-    /// Of all strips of all placed faces.
+    /// Number of bins in all strips of all placed faces.
     pub bin_count: u32,
     /// Bin items of strips with several bins.
     pub wide_strips: Vec<u32>,
@@ -68,7 +68,7 @@ pub(crate) struct SceneData {
     pub meshes: Meshes,
     /// Some patch has unequal weights.
     pub has_rational: bool,
-    /// Some surface is of several patches, and none of those that are one equation everywhere.
+    /// Some face has several patches, which do not all follow one equation as those of a plane or cylinder do.
     pub has_pieces: bool,
     /// Some patch has a fine net.
     pub has_fine: bool,
@@ -76,64 +76,66 @@ pub(crate) struct SceneData {
     pub has_plain: bool,
     /// Some patch needs a trim test.
     pub has_trimmed: bool,
-    /// What edits of loops need, where they may come.
+    /// The data that edits of loops need, in editable scenes.
     pub edit: Option<EditScene>,
-    /// Of the scene's faces, where they are bisected.
+    /// The scene's faces, if the trim test bisects them.
     #[cfg(feature = "baselines")]
     pub bisect: crate::baselines::bisect::Bisect,
     pub division: Division,
     /// Patches are also drawn without a trim test.
     #[cfg(feature = "baselines")]
     pub untested: bool,
-    /// How faces would be trimmed.
-    way: Option<TakenWay>,
-    /// Of each pixel.
+    /// The way to trim that the request names or the model's size suggests.
+    pub(super) way: Option<TakenWay>,
+    /// Samples of each pixel.
     pub samples: Samples,
-    /// Which borders are wanted smooth.
+    /// The borders that are smoothed.
     pub(super) smooth: Smooth,
-    /// Radius of ambient occlusion, where it is wanted.
+    /// Radius of ambient occlusion; `None` without it.
     pub ambient: Option<f64>,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
-    /// Of each placement: the box of its patches.
+    /// The box of each placement's patches.
     pub(super) boxes: Vec<PlacedBox>,
-    /// Of each placement: nobody sees it; empty where all are seen.
+    /// Whether each placement is hidden; empty if none is.
     pub(super) hidden: Vec<bool>,
-    /// Of each instance of the model, where it is drawn as faces alone; empty in what was cut out of it.
+    /// Each instance of the model that is drawn as faces alone; empty in a cut of a model.
     pub(super) live: Vec<Option<LivePart>>,
-    /// Placed parts cast shadows, which were made with the scene.
+    /// Placed parts cast shadows. Their shadow triangles are fixed when the scene is made.
     pub(super) casts_shadows: bool,
-    /// Where what the table trims is; `None` where there is no table, too.
+    /// Boxes around all that the table trims; `None` without a table.
     pub trimmed: Option<Trimmed>,
     /// Boolean solids.
     pub solids: SolidData,
-    /// The volume that trims faces and meshes, but for one that is everywhere.
+    /// The volume that trims faces and meshes; `None` without one, or if it is all of space.
     pub volume: Option<SolidData>,
-    /// Some patch is seen itself.
+    /// Some patch is drawn as a surface of its own, not as part of an operand.
     pub has_patches: bool,
-    /// Some patch bounds an operand of theirs.
+    /// Some patch bounds an operand of the Boolean solids.
     pub has_operands: bool,
-    /// Something is seen through, or marked.
+    /// Something is transparent or highlighted.
     pub is_layered: bool,
-    /// Lengths within solids are wanted.
+    /// Styles may show curvature.
+    pub curvature: bool,
+    /// The scene measures lengths within solids.
     pub thickness: bool,
     pub highlight: Option<Highlight>,
-    /// Most bytes of the lists of events.
+    /// Largest size of the event lists, in bytes.
     pub solid_budget: Option<u64>,
-    /// Instances that are not closed and would be seen through: drawn opaque.
+    /// Instances that are drawn opaque although their colour is transparent, because they are not closed.
     pub open: usize,
     pub sun: Option<SunData>,
-    /// Of a scene with a sun: what casts no shadow.
+    /// Number of things that cast no shadow, in a scene with a sun.
     pub shadowless: usize,
-    /// Of each instance: the model's part and instance, from 1 on; 0 of what is neither.
+    /// The model's part and instance of each instance, from 1 on; 0 if it is neither.
     pub sources: Vec<[u32; 2]>,
-    /// Where its parts are: of each, its origin and its first face.
+    /// The origin and the first face of each part.
     pub(super) parts: Vec<(DVec3, usize)>,
-    /// Lines along edges, where they are wanted.
+    /// Lines along edges; `None` without them.
     pub edges: Option<EdgeData>,
-    /// Boolean solids that are drawn as meshes, the last ones of `meshes`.
+    /// Boolean solids that are drawn as meshes; they come last in `meshes`.
     pub(super) isolated: Vec<Mesh>,
-    /// Images have the numbers of edges, parts and instances.
+    /// The host's images include the numbers of edges, parts and instances.
     pub has_numbers: bool,
 }
 
@@ -143,29 +145,43 @@ impl SceneData {
         Self::telling(model, request.into(), &|_| ())
     }
 
-    /// Of a model; `told` of its faces as they are made.
+    /// The arrays of a model. Calls `told` with the number of faces made since the last call.
     pub(crate) fn telling(model: &Model, request: SceneRequest, told: Told<'_>) -> Result<Self, UndrawnSolid> {
-        // edits would change where cuts pay
+        // an edit would change where cuts save tests
         let extent = if request.editable { f64::INFINITY } else { model.control_bounds().diagonal() };
-        Self::of(model, model, (request, told), |_, scale| extent / scale)
+        Ok(Self::of(model, model, (request, told), |_, scale| extent / scale)?.complete())
     }
 
-    /// Of what close views see of a model, cut out of it: shadows are those of the whole.
+    /// Of a model that joins a scene of this extent, which may have occlusion culling ([`join`](Self::join)).
+    pub(super) fn joining(model: &Model, request: SceneRequest, extent: f64) -> Result<Self, UndrawnSolid> {
+        Self::of(model, model, (request, &|_| ()), |_, scale| extent / scale)
+    }
+
+    /// With nothing that a scene of these parts alone does not read.
+    fn complete(mut self) -> Self {
+        if !self.hides() {
+            self.outside = Vec::new();
+        }
+        self
+    }
+
+    /// The arrays of a cut for a close view. The shadows are those of the whole model.
     pub(crate) fn cut_from(whole: &Model, cut: &Cut, request: impl Into<SceneRequest>) -> Result<Self, UndrawnSolid> {
-        let mut data = Self::of(whole, &cut.model, (request.into(), &|_| ()), |part, _| cut.extents[part])?;
+        let data = Self::of(whole, &cut.model, (request.into(), &|_| ()), |part, _| cut.extents[part])?;
+        let mut data = data.complete();
         for source in data.sources.iter_mut().filter(|source| source[1] > 0) {
             *source = cut.source_of(source[1] as usize - 1, whole);
         }
         Ok(data)
     }
 
-    /// All patches as they are.
+    /// The arrays of a model whose patches are not split.
     #[cfg(any(test, feature = "baselines"))]
     pub(crate) fn uncut(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
-        Self::of(model, model, (settings.into(), &|_| ()), |_, _| f64::INFINITY)
+        Ok(Self::of(model, model, (settings.into(), &|_| ()), |_, _| f64::INFINITY)?.complete())
     }
 
-    /// `extent`: of a part, whose largest copy is so many times as large; see [`Trimming`].
+    /// `extent` gets a part and the scale of its largest copy, and returns the extent of [`Trimming`].
     fn of(
         whole: &Model,
         model: &Model,
@@ -190,13 +206,13 @@ impl SceneData {
         let open = items.as_ref().map_or(0, |items| items.open);
         let clear = items.as_ref().is_some_and(|items| !items.clear.is_empty());
         let seen_through = items.as_ref().map_or(0, |items| items.clear.len());
-        // whatever asks for more than the nearest face asks for all of the solids
+        // Only the nearest face can be drawn without the solids; everything else needs all of them.
         let nearest = items.is_none() && settings.sun.is_none() && model.trim.is_none();
         let isolated = nearest.then(|| Isolated::of(&model.solids, model.coincidence())).transpose()?.flatten();
         let union = isolated.as_ref().map_or(&model.solids, |isolated| &isolated.rest);
         let lists = items.map_or_else(|| Lists::union(union), |items| Lists::of(items, all));
         let solids = SolidData::new(&lists, model.coincidence(), settings.solids)?;
-        // what a volume cuts open casts no shadow: it would be that of all of it
+        // a part that a volume cuts open casts no shadow: the shadow would be that of the uncut part
         let is_cut = model.trim.is_some();
         let sun = settings.sun.map(|towards| match is_whole {
             _ if is_cut => Ok(SunData::new(towards, &solids, None)),
@@ -217,6 +233,7 @@ impl SceneData {
             .flatten();
         let mut data = Self {
             is_layered: (clear || settings.highlight.is_some()) && solids.is_followed(),
+            curvature: settings.curvature,
             thickness: settings.thickness,
             highlight: settings.highlight,
             solid_budget: settings.solid_budget,
@@ -239,9 +256,9 @@ impl SceneData {
                 data.division = Division::Slefe(crate::baselines::slefe::words(segments));
             }
         }
-        // cut open, a part has no inside
+        // a part that is cut open shows its back faces
         let open = data.volume.is_some();
-        // of each part that is placed: the largest of its copies
+        // the largest scale of each placed part's copies
         let mut scales: Vec<Option<f64>> = vec![None; model.parts.len()];
         for i in &model.instances {
             let largest = scales[i.part].unwrap_or(0.0);
@@ -260,8 +277,8 @@ impl SceneData {
                 true if part.faces.iter().all(|f| f.loops.is_empty()) => Body::Seamless,
                 true => Body::Closed,
             };
-            // an open shell's border hides what bends away behind it by less than triangles may be off: pieces, divided
-            // otherwise, may show it
+            // The border of an open shell hides a surface behind it that bends away by less than the triangles'
+            // deviation. Sub-patches have other triangles and may show that surface.
             let extent = if body == Body::Open { f64::INFINITY } else { extent(nth, scale) };
             let trim = Trimming { extent, ..trim };
             placed.push(PlacedPart { number: nth, part, origin, body, trim, cuts: Cuts::of(&part.faces) });
@@ -312,21 +329,19 @@ impl SceneData {
         } else {
             data.cones.resize(data.patches.len(), [0.0; 4]);
         }
-        if !data.hides() {
-            data.outside = Vec::new();
-        }
         data.sources.resize(data.instances.len(), [0; 2]);
         data.trimmed = Trimmed::by_table(&data);
         data.boxes = boxes(&data);
         Ok(data)
     }
 
-    /// The faces from this one on meet along sides, where they do; whether all sides of those without trims do.
+    /// Links the sides at which the faces from `first_face` on meet. Returns whether all sides of untrimmed faces are
+    /// linked.
     fn link(&mut self, first_face: usize) -> bool {
         link(&self.faces, first_face..self.faces.len(), &self.patches, &mut self.points, &mut self.links)
     }
 
-    /// Of the faces from this one on, a part that reaches `radius` far from its origin.
+    /// Adds the cones of the faces from `first_face` on, a part within `radius` of its origin.
     fn push_cones(&mut self, first_face: usize, normals: &[Normals], radius: f64) {
         if !normals.is_empty() {
             let cones = cones(&self.faces[first_face..], &self.links, normals, radius);
@@ -340,10 +355,15 @@ impl SceneData {
         self.way.filter(|_| self.has_trimmed)
     }
 
-    /// Patches may lie behind others, and enough of them to ask. Those of operands are crossed whatever lies before them,
-    /// and each sample sees others.
+    /// The scene has occlusion culling: enough patches, one sample a pixel, and patches other than those of operands,
+    /// which rays cross whether or not they are hidden.
     pub(crate) fn hides(&self) -> bool {
-        self.items.len() >= FEWEST_HIDDEN && !self.has_operands && self.samples == Samples::One
+        self.hides_with(0)
+    }
+
+    /// The same with so many more items.
+    pub(super) fn hides_with(&self, more: usize) -> bool {
+        self.items.len() + more >= FEWEST_HIDDEN && !self.has_operands && self.samples == Samples::One
     }
 
     /// Some mesh is placed.
@@ -351,37 +371,12 @@ impl SceneData {
         !self.meshes.draws.is_empty()
     }
 
-    /// Patches or meshes are seen themselves.
+    /// Patches or meshes are drawn as surfaces of their own.
     pub(crate) fn has_surfaces(&self) -> bool {
         self.has_patches || self.has_meshes()
     }
 
-    /// Frees the arrays that the GPU has; the placements and centres stay.
-    pub(crate) fn drop_uploaded(&mut self) {
-        let (placements, boxes) = (std::mem::take(&mut self.placements), std::mem::take(&mut self.boxes));
-        let solids = std::mem::take(&mut self.solids).centres_only();
-        let volume = self.volume.take().map(SolidData::centres_only);
-        let edit = self.edit.take();
-        let sun = self.sun.take().map(SunData::directions_only);
-        let trimmed = self.trimmed.take();
-        let (hidden, live) = (std::mem::take(&mut self.hidden), std::mem::take(&mut self.live));
-        let casts_shadows = self.casts_shadows;
-        *self = Self {
-            placements,
-            boxes,
-            hidden,
-            live,
-            casts_shadows,
-            trimmed,
-            solids,
-            volume,
-            edit,
-            sun,
-            ..Self::default()
-        };
-    }
-
-    /// Operands of Boolean solids without equations are placed as parts are, after them.
+    /// Places the operands of Boolean solids without equations like parts, after the parts.
     fn push_operands(&mut self, trim: Trimming) {
         let operands = std::mem::take(&mut self.solids.operands);
         for operand in &operands {
@@ -440,7 +435,7 @@ impl SceneData {
                     l.first_curve += f.face.first_curve;
                     l.first_point += curve_point;
                 }
-                // an edit may take every loop off a patch
+                // an edit may remove every loop from a patch
                 self.has_plain = true;
             }
             scene.faces.push(f.edit.take());

@@ -1,4 +1,4 @@
-//! Lines along edges as arrays: control points relative to the part's centre, as those of patches are.
+//! Lines along edges as arrays. Control points are relative to the part's centre, like those of patches.
 //!
 //! ```text
 //!   Part::edges ─▶ EdgeLine, one an edge that is drawn ─▶ own faces: numbers of the scene's, or triangles
@@ -6,7 +6,8 @@
 //!   placed parts ─▶ EdgeItem: a piece, its view, its instance
 //! ```
 //!
-//! A pixel tells an edge's own faces by their keys, here their numbers in the scene, and by the model's instance.
+//! A pixel belongs to an edge's own face if it has the face's key, here its number in the scene, and the same instance
+//! of the model.
 
 use super::data::SceneData;
 use super::deep_zoom::KnownEdges;
@@ -16,7 +17,7 @@ use crate::picture::{EdgeSettings, LineStyle};
 use glam::{DAffine3, DVec3, DVec4};
 use rayon::prelude::*;
 
-/// Everything that lines are drawn from.
+/// The arrays from which lines are drawn.
 #[derive(Clone, Debug)]
 pub(crate) struct EdgeData {
     pub settings: EdgeSettings,
@@ -26,27 +27,27 @@ pub(crate) struct EdgeData {
     pub lines: Vec<abi::EdgeLine>,
     pub own_faces: Vec<u32>,
     pub items: Vec<abi::EdgeItem>,
-    /// Of each face of the scene.
+    /// A key for each face of the scene.
     pub face_keys: Vec<u32>,
     /// The edges of each part of the model.
     pub(super) found: KnownEdges,
 }
 
-/// Where the scene has what a model has.
+/// The places of a model's parts, instances and meshes in the scene's arrays.
 pub(crate) struct Placing<'a> {
     pub model: &'a Model,
-    /// Of each part: its origin, and the scene's number of its first face.
+    /// The origin of each part, and the scene's number of its first face.
     pub parts: &'a [(DVec3, usize)],
-    /// Of each instance of the model: the scene's, where it is drawn as faces.
+    /// The scene's instance for each instance of the model; `None` if it is not drawn as faces.
     pub placed: &'a [Option<u32>],
-    /// Of each part, of each mesh: its first triangle in the scene.
+    /// The first triangle, in the scene, of each mesh of each part.
     pub first_triangles: &'a [Vec<u32>],
-    /// Faces of the scene.
+    /// Number of faces in the scene.
     pub faces: usize,
 }
 
 impl SceneData {
-    /// Finds the edges of the model that the scene is made of.
+    /// Finds the edges of the scene's model.
     pub(crate) fn find_edges(&mut self, model: &Model, settings: EdgeSettings) -> Result<(), UndrawnEdges> {
         let edges = KnownEdges::found(edges_of(model)?);
         let mut placed = vec![None; model.instances.len()];
@@ -64,18 +65,18 @@ impl SceneData {
         Ok(())
     }
 
-    /// Some line is drawn along an edge, or around a curved face.
+    /// Some line is drawn along an edge or a silhouette.
     pub(crate) fn has_lines(&self) -> bool {
         let has = |edges: &EdgeData| !edges.items.is_empty() || edges.settings.silhouettes && self.has_patches;
         self.edges.as_ref().is_some_and(has)
     }
 }
 
-/// Pieces of one part.
+/// The pieces of one part.
 type Drawn = std::ops::Range<usize>;
 
 impl EdgeData {
-    /// No lines yet, in a scene of so many faces, whose keys are their numbers.
+    /// No lines, in a scene of `faces` faces, whose keys are their numbers.
     pub(super) fn new(settings: EdgeSettings, faces: usize, found: KnownEdges) -> Self {
         Self {
             settings,
@@ -89,8 +90,8 @@ impl EdgeData {
         }
     }
 
-    /// Lines of all parts that are placed. Instances that the scene does not draw as faces get a placement of their own, behind
-    /// those of `placements`. `found`: of each part of the model.
+    /// The lines of all placed parts. Instances that the scene does not draw as faces get placements of their own, at
+    /// the end of `placements`. `found` has the edges of each part of the model.
     pub(super) fn of(
         settings: EdgeSettings,
         of: &Placing<'_>,
@@ -120,7 +121,7 @@ impl EdgeData {
         data
     }
 
-    /// The edges of a part, of which the first one has this number.
+    /// Adds the edges of a part; the first has number `number`.
     fn push_part(&mut self, of: &Placing<'_>, part: usize, edges: &Edges, number: u32) {
         let (origin, first_face) = of.parts[part];
         for (edge, number) in edges.edges.iter().zip(number..) {
@@ -141,7 +142,8 @@ impl EdgeData {
         }
     }
 
-    /// An edge with its own faces: keys, or triangles. It lies `off` them at most, in units of the part.
+    /// Adds an edge with its own faces, as keys or triangles. It lies at most `off` from these faces, in units of the
+    /// part.
     pub(super) fn push_line(&mut self, number: u32, style: LineStyle, own: Vec<u32>, off: f64) {
         let style = match style {
             LineStyle::Full => abi::EDGE_FULL,
@@ -152,7 +154,7 @@ impl EdgeData {
         self.own_faces.extend(own);
     }
 
-    /// A piece of the line pushed last; its number.
+    /// Adds a piece to the last line; returns the piece's number.
     pub(super) fn push_piece(&mut self, points: &[DVec4], origin: DVec3) -> u32 {
         let (first, edge) = (self.points.len() as u32, self.lines.len() as u32 - 1);
         self.pieces.push(abi::EdgePiece { first, degree: points.len() as u32 - 1, edge });
@@ -161,7 +163,7 @@ impl EdgeData {
     }
 }
 
-/// A part whose edges are no curves.
+/// A part whose edges are not curves.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("part {part}: {source}")]
 pub struct UndrawnEdges {

@@ -1,19 +1,19 @@
-//! Trim loops that change while the scene is drawn.
+//! Edits trim loops between frames.
 //!
 //! ```text
-//!   edit_loop(at, new loop) ──▶ its curves and control points    trimmed by table
-//!                           ──▶ what differs of its face's arcs  trimmed exactly
-//!                           ──▶ words of patches and cells       those that its old or new box meets, and
-//!                                                                whose side has changed
+//!   edit_loop(at, new loop) ──▶ its curves and control points       trimmed by table
+//!                           ──▶ the face's arcs that differ         trimmed exactly
+//!                           ──▶ words of patches and cells          of patches that meet the old or the new box and
+//!                                                                   lie differently to the loops now
 //!                    └──────▶ Writes ──record──▶ copies at the beginning of the next frame
 //! ```
 //!
-//! A scene made for it keeps what an edit may need: curves along scan lines, control points of patches
-//! that are trimmed away, and cells of patches that no loop meets, which the sign of their speed tells
-//! pass `density` to skip; and for each face's cells and lists of arcs more room than they take, since their number
-//! changes with a loop's shape. So every edit overwrites in place, and what is drawn is what a fresh scene of
-//! the edited model would draw. What an edit costs depends on its face alone; winding numbers add up, so
-//! each loop has an index of its own, and only the edited one's is made anew.
+//! An editable scene has arrays for all that an edit may change: curves along scan lines, control points of patches
+//! outside the loops, and cells of patches that no loop meets. Pass `density` skips such cells by the sign of their
+//! speed. Each face's cells and lists of arcs have spare room, since their number changes with a loop's shape. So every
+//! edit overwrites in place, and the picture is that of a new scene of the edited model. The cost of an edit depends on
+//! its face alone. Winding numbers add up, so each loop has an index of its own, and an edit makes only the edited
+//! loop's index again.
 
 use super::SceneData;
 use super::exact::{ExactData, ExactPlace, exact_trim};
@@ -24,7 +24,7 @@ use crate::trim::{LoopIndex, RectSide};
 use bytemuck::Pod;
 use glam::DVec2;
 
-/// Why a loop was not replaced; the scene is as it was.
+/// Why a loop was not replaced. The scene has not changed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EditError {
@@ -41,15 +41,15 @@ pub enum EditError {
     #[error("the new loop has other curves than the old one: their number and degrees must stay")]
     OtherCurves,
     /// The face is trimmed exactly, and its loops turn back more than twice as often as when the model was uploaded:
-    /// there is no room for their arcs. Upload the edited model.
+    /// their arcs do not fit. Upload the edited model.
     #[error("no room for the arcs of face {} of part {}: upload the edited model", .0.face, .0.part)]
     NoRoom(LoopAt),
-    /// There is no such control point, or the loop would not be one.
+    /// There is no such control point, or the loop would not be valid.
     #[error(transparent)]
     Loop(#[from] FaceError),
 }
 
-/// What the edits of a scene need; on the host only.
+/// The host's data for edits of a scene.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EditScene {
     /// First face of each part.
@@ -62,29 +62,29 @@ pub(crate) struct EditScene {
 #[derive(Clone, Debug)]
 pub(crate) struct EditFace {
     pub domain: Domain,
-    /// Pass `coverage` measures its borders.
+    /// Trims are smoothed: pass `coverage` measures the face's borders.
     pub smooth: bool,
     pub loops: Vec<EditLoop>,
     pub patches: Vec<EditPatch>,
     pub first_patch: u32,
     pub first_cell: u32,
-    /// Patch of the face, and speed in `v`, of each cell.
+    /// The face's patch, and the speed along `v`, of each cell.
     pub cells: Vec<(u32, f32)>,
-    /// Where its arcs are, and what they are now; `None` where it is trimmed by table.
+    /// The place of its arcs and their present values; `None` if it is trimmed by table.
     pub exact: Option<(ExactPlace, ExactData)>,
 }
 
-/// A loop, and where its curves are in the scene's arrays.
+/// A loop, and the place of its curves in the scene's arrays.
 #[derive(Clone, Debug)]
 pub(crate) struct EditLoop {
     pub shape: TrimLoop,
-    /// Made at the first edit of the face.
+    /// Made at the face's first edit.
     index: Option<LoopIndex>,
     pub first_curve: u32,
     pub first_point: u32,
 }
 
-/// The rectangle of a patch, and its word.
+/// A patch's rectangle and its shape word.
 #[derive(Clone, Debug)]
 pub(crate) struct EditPatch {
     pub lo: DVec2,
@@ -93,16 +93,30 @@ pub(crate) struct EditPatch {
 }
 
 /// An array of the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum EditTarget {
     Patches,
+    Outside,
+    Cones,
+    Points,
+    Links,
+    Faces,
+    FaceInstances,
+    /// The instances of placed parts.
+    Instances,
+    Items,
+    /// The part and the instance of the model of each of them.
+    Sources,
     Cells,
+    CellItems,
     Curves,
     CurvePoints,
-    /// Of placed parts.
-    Instances,
-    /// Of [`ExactScene::all`](super::ExactScene::all), by number.
+    CurveItems,
+    WideStrips,
+    /// An array of [`ExactScene`](super::ExactScene): faces, cells, arcs.
     Exact(usize),
+    /// Of [`MeshBuffers`](super::MeshBuffers): meshes, instances, positions, triangles, normals.
+    Mesh(usize),
 }
 
 /// Bytes to overwrite.
@@ -118,7 +132,7 @@ impl EditLoop {
         Self { shape: shape.clone(), index: None, first_curve, first_point }
     }
 
-    /// Its curves and control points for the table.
+    /// The writes of the loop's curves and control points, for the table.
     fn curve_writes(&self, new: &TrimLoop, domain: &Domain) -> Vec<Write> {
         let (mut curves, points) = loop_curves(new, domain);
         curves.iter_mut().for_each(|c| c.first += self.first_point);
@@ -134,7 +148,7 @@ impl EditLoop {
 }
 
 impl EditScene {
-    /// The loop as it is now.
+    /// The present shape of a loop.
     pub(crate) fn shape(&self, at: LoopAt) -> Result<&TrimLoop, EditError> {
         let face = self.faces[self.find(at)?].as_ref().ok_or(EditError::NotTrimmed(at))?;
         face.loops.get(at.trim_loop).map(|l| &l.shape).ok_or(EditError::NoSuchLoop(at))
@@ -147,7 +161,7 @@ impl EditScene {
         if first + at.face < end { Ok(first + at.face) } else { Err(EditError::NoSuchLoop(at)) }
     }
 
-    /// Replaces a loop; what the GPU has to be told.
+    /// Replaces a loop; returns the writes to the GPU's arrays.
     pub(crate) fn replace(&mut self, at: LoopAt, new: &TrimLoop) -> Result<Vec<Write>, EditError> {
         let degrees = |l: &TrimLoop| l.curves().map(|c| c.degree()).collect::<Vec<_>>();
         if degrees(self.shape(at)?) != degrees(new) {
@@ -183,7 +197,7 @@ impl EditFace {
             l.index.get_or_insert_with(|| LoopIndex::new(std::slice::from_ref(&l.shape)));
         }
         for i in 0..self.patches.len() {
-            // beyond both boxes no winding number has changed
+            // outside both boxes no winding number has changed
             let p = &self.patches[i];
             let reached = p.lo.cmple(hi).all() && p.hi.cmpge(lo).all();
             if reached {
@@ -194,7 +208,7 @@ impl EditFace {
         Ok(writes)
     }
 
-    /// Of a patch against all loops.
+    /// How a patch lies to all loops.
     fn side(&self, p: &EditPatch) -> Side {
         let mut winding = 0;
         for l in &self.loops {
@@ -230,7 +244,7 @@ fn write<T: Pod>(to: EditTarget, first: u32, data: &[T]) -> Write {
 }
 
 impl SceneData {
-    /// Puts edits into arrays that the GPU does not have yet.
+    /// Applies edits to arrays that are not on the GPU yet.
     pub(crate) fn apply(&mut self, writes: &[Write]) {
         for w in writes {
             let bytes: &mut [u8] = match w.to {
@@ -240,6 +254,7 @@ impl SceneData {
                 EditTarget::CurvePoints => bytemuck::cast_slice_mut(&mut self.curve_points),
                 EditTarget::Instances => bytemuck::cast_slice_mut(&mut self.instances),
                 EditTarget::Exact(array) => self.exact.bytes_mut(array),
+                other => unreachable!("no edit of a loop changes {other:?}"),
             };
             bytes[w.offset as usize..][..w.bytes.len()].copy_from_slice(&w.bytes);
         }

@@ -1,4 +1,4 @@
-//! The exact way's arrays: those of every face behind each other.
+//! The arrays of the exact way: those of all faces, one face after another.
 
 use super::edit::{EditTarget, Write};
 use super::face::Domain;
@@ -7,34 +7,34 @@ use crate::model::TrimLoop;
 use crate::trim::{Cell, Entry, ExactTrim};
 use bytemuck::Pod;
 
-/// One face's loops; where trims are smoothed, with what pass `coverage` needs.
+/// One face's loops; if trims are smoothed, with the data of pass `coverage`.
 pub(super) fn exact_trim(loops: &[TrimLoop], domain: &Domain, smooth: bool) -> ExactTrim {
     let make = if smooth { ExactTrim::with_flats } else { ExactTrim::new };
     make(loops, domain.origin, domain.size)
 }
 
-/// See [`ExactTrim`]; numbers count from the beginning of the scene's arrays.
+/// See [`ExactTrim`]. Indices count from the beginning of the scene's arrays.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ExactData {
-    /// One a face of the scene; without cells where nothing is trimmed.
+    /// One for each face of the scene; a face without trims has no cells.
     pub faces: Vec<abi::ExactFace>,
     pub cells: Vec<abi::ExactCell>,
     /// Lists of arcs.
     pub arcs: Vec<abi::ExactArc>,
 }
 
-/// Where a face's arrays are.
+/// The place of a face's arrays.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ExactPlace {
     face: u32,
-    /// First cell, first arc.
+    /// Its first cell and first arc.
     first: [usize; 2],
-    /// Elements that each has room for.
+    /// Most cells and most arcs that fit.
     room: [usize; 2],
 }
 
 impl ExactData {
-    /// Adds the next face. One that may be edited gets room for more arcs than it has: see [`ExactPlace::writes`].
+    /// Adds the next face. An editable face gets room for more arcs than it has: see [`ExactPlace::writes`].
     pub(crate) fn push(&mut self, trim: &ExactTrim, editable: bool) -> ExactPlace {
         let mut place = ExactPlace { face: self.faces.len() as u32, first: self.lengths(), room: [0; 2] };
         let own = Self::of(trim, &place);
@@ -101,13 +101,12 @@ impl ExactData {
     }
 }
 
-/// Elements that an array may grow by beside twice its length: a loop that has been turned may be cut into
-/// twice as many arcs.
+/// Elements by which an array may grow beyond twice its length. A loop that an edit turns may split into twice as many
+/// arcs.
 const SPARE: usize = 4096;
 
 impl ExactPlace {
-    /// What has to be told to put `new` in the place of `old`: the elements that differ. `None` where there is no
-    /// room.
+    /// The writes that replace `old` by `new`: the elements that differ. `None` if `new` does not fit.
     pub(super) fn writes(&self, old: &ExactData, new: &ExactData) -> Option<Vec<Write>> {
         if new.lengths().iter().zip(self.room).any(|(length, room)| *length > room) {
             return None;

@@ -16,47 +16,47 @@ use crate::spline::{Bezier, Control, Patch, PatchGrid, SurfacePatch};
 use crate::trim::{ExactTrim, LoopIndex, RectSide, chord_bend};
 use glam::{DVec2, DVec3};
 
-/// A side whose control points are as near to each other, relative to the patch, is a point: some roundings of single
-/// precision.
+/// A side is a point if its control points are at most this far from each other, relative to the patch's size: some
+/// roundings of single precision.
 pub(super) const POINT: f64 = 1e-6;
 
-/// What one face contributes to the scene's arrays.
+/// One face's part of the scene's arrays.
 #[derive(Clone)]
 pub(super) struct FaceData {
     pub face: abi::Face,
     pub patches: Vec<abi::Patch>,
-    /// Of each patch: where nothing of the face is.
+    /// The cells of each patch that no part of the face covers.
     pub outside: Vec<[u32; 2]>,
-    /// Of each patch of a [`Body::Seamless`].
+    /// Normals of each patch of a [`Body::Seamless`].
     pub normals: Vec<Normals>,
     pub points: Vec<[f32; 4]>,
     pub cells: Vec<abi::Cell>,
     pub curves: Vec<abi::Curve>,
     pub curve_points: Vec<f32>,
-    /// Empty where another way trims.
+    /// The exact way's data; empty for other ways.
     pub exact: ExactTrim,
-    /// What edits need, where they may come.
+    /// The data that edits need, in editable scenes.
     pub edit: Option<EditFace>,
     pub rational: bool,
-    /// Of several patches, and not one equation everywhere.
+    /// The face has several patches, which do not all follow one equation.
     pub pieces: bool,
     /// Some patch has a fine net.
     pub fine: bool,
 }
 
-/// Each patch of such a surface goes on as the one beside it.
+/// Whether one equation holds for all patches of such a surface.
 fn is_elementary(kind: SurfaceKind) -> bool {
     use SurfaceKind::{Cone, Cylinder, Plane, Sphere, Torus};
     matches!(kind, Plane | Cylinder | Cone | Sphere | Torus)
 }
 
-/// What a face is a part of.
+/// The kind of part that a face belongs to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Body {
     Open,
-    /// Said to be closed.
+    /// Declared closed.
     Closed,
-    /// Said to be closed, and without trims.
+    /// Declared closed, and without trims.
     Seamless,
 }
 
@@ -77,12 +77,12 @@ impl Domain {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Trimming {
     pub way: TakenWay,
-    /// Pass `coverage` measures their borders.
+    /// Trims are smoothed: pass `coverage` measures the borders.
     pub smooth: bool,
-    /// They may be edited.
+    /// Loops may be edited.
     pub editable: bool,
-    /// How large the scene is that their patches are cut for ([`apart`](super::sub_patches)), in the units of the part;
-    /// infinite: they stay as they are.
+    /// Extent of the picture for which patches are split ([`sub_patches`](super::sub_patches)), in units of the part.
+    /// If it is infinite, no patch is split.
     pub extent: f64,
 }
 
@@ -112,7 +112,7 @@ impl FaceData {
                 ..Default::default()
             },
             patches: Vec::new(),
-            // edits would change it
+            // an edit would change these cells
             outside: if editable { vec![[0; 2]; sides.len()] } else { outside(&grid, &sides, index.as_ref()) },
             normals: if body == Body::Seamless { Normals::of(&grid, face.same_sense, origin) } else { Vec::new() },
             points: Vec::new(),
@@ -143,7 +143,7 @@ impl FaceData {
             edit.loops.extend(face.loops.iter().map(|l| EditLoop::new(l, 0, 0)));
         }
         if table {
-            // pieces would make more of them than rows that they save
+            // sub-patches would add more cells than they save rows
             let mut is_cut = vec![false; flat.patches.len()];
             for (p, _) in grid.patches.iter().zip(&sides).filter(|(_, side)| **side == Side::Boundary) {
                 is_cut[flat.index(0.5 * (p.u.0 + p.u.1), 0.5 * (p.v.0 + p.v.1))] = true;
@@ -169,7 +169,7 @@ impl FaceData {
         data
     }
 
-    /// Takes what tells a face from one that is like it: number and colour.
+    /// Sets the number and the colour, in which faces of like parts differ.
     pub(super) fn name(&mut self, face: &Face) {
         self.face.id = face.id;
         self.face.colour = face.colour.map_or(DEFAULT_COLOUR, pack_colour);
@@ -190,7 +190,7 @@ impl FaceData {
             | border(i + 1 == grid.count_u, abi::BORDER_U1)
             | border(j == 0, abi::BORDER_V0)
             | border(j + 1 == grid.count_v, abi::BORDER_V1);
-        // beyond a pole the surface turns over: a trimmed face is not continued there
+        // beyond a pole the surface folds over, so a trimmed face is not continued there
         let poles = if self.face.flags & abi::FACE_TRIMMED != 0 { poles(&p.patch) } else { 0 };
         let borders = borders & !poles;
         let bend = p.patch.derivative_bound();
@@ -207,7 +207,7 @@ impl FaceData {
             face: 0,
         });
         if side == Side::Outside && !editable {
-            return; // never drawn: its control points stay at home
+            return; // never drawn: its control points are not uploaded
         }
         // only the ratios of weights matter: one unit for the whole face keeps shared control points
         // the same bit for bit; those of a polynomial face become 1, exactly
@@ -229,7 +229,7 @@ impl FaceData {
         }
     }
 
-    /// What edits need to know of the patches.
+    /// The data about patches that edits need.
     fn edit_face(&self, grid: &PatchGrid, domain: Domain, smooth: bool) -> EditFace {
         let rect = |p: &SurfacePatch| (DVec2::new(p.u.0, p.v.0), DVec2::new(p.u.1, p.v.1));
         let patch = |(p, word): (&SurfacePatch, &abi::Patch)| {
@@ -260,8 +260,8 @@ impl FaceData {
         self.curve_points.extend(points);
     }
 
-    /// Where the first and last column (row) of control points are the same up to rounding, makes
-    /// them the same bit for bit and marks the face closed: its seam then has no crack.
+    /// If the first and last column (row) of control points are equal up to rounding, makes them equal bit for bit and
+    /// marks the face closed: its seam then has no crack.
     fn close_seams(&mut self, count_u: usize, count_v: usize) {
         if self.seam(count_u, count_v, true) {
             self.face.flags |= abi::FACE_CLOSED_U;
@@ -272,7 +272,7 @@ impl FaceData {
     }
 
     fn seam(&mut self, count_u: usize, count_v: usize, along_u: bool) -> bool {
-        /// Relative to the face's size: a few times the rounding of single precision.
+        /// Relative to the face's size: a few roundings of single precision.
         const SAME: f32 = 1e-6;
         let size = self.points.iter().flatten().fold(0.0f32, |m, x| m.max(x.abs()));
         let lines = if along_u { count_v } else { count_u };
@@ -300,8 +300,8 @@ impl FaceData {
     }
 }
 
-/// A loop's curves and their control points, with indices relative to them. Those along a scan line cross none, but
-/// mark where they are (`glsl/include/border_cells.glsl`).
+/// A loop's curves and control points, with indices relative to the first ones. Curves along a scan line have no
+/// crossings; they only mark cells at borders (`glsl/include/border_cells.glsl`).
 pub(super) fn loop_curves(l: &TrimLoop, domain: &Domain) -> (Vec<abi::Curve>, Vec<f32>) {
     // every joint is rounded once and used by both its curves, so the loop stays closed in f32
     let curves: Vec<Bezier<DVec3>> = l.curves().collect();
@@ -330,7 +330,7 @@ pub(super) fn loop_curves(l: &TrimLoop, domain: &Domain) -> (Vec<abi::Curve>, Ve
             degree,
             bend: [round_up(bend.x), round_up(bend.y)],
             range_v: [lowest, highest],
-            range_u: [leftmost, f32::NAN], // not known before all of them are
+            range_u: [leftmost, f32::NAN], // set when all curves are known
         });
         if degree > 1 {
             points.extend(unit.iter().flat_map(|p| [p.x as f32, p.y as f32, p.z as f32]));
@@ -348,19 +348,19 @@ pub(super) fn pack_colour(c: crate::model::Colour) -> u32 {
     u32::from_le_bytes(c.map(|x| (x.clamp(0.0, 1.0) * 255.0).round() as u8))
 }
 
-/// The way is made of curves and cells in every view.
+/// Whether the way needs curves and cells in every view.
 fn needs_curves(way: TakenWay) -> bool {
     way == TakenWay::Table || way.is_texture()
 }
 
-/// Of each patch at the loops, a bit for each of [`abi::OUTSIDE_CELLS`] cells along u and along v, rows of them from the
-/// lowest bit on: nothing of the face is in it.
+/// For each patch that a loop crosses: a bit for each of [`abi::OUTSIDE_CELLS`] x [`abi::OUTSIDE_CELLS`] cells, row by
+/// row from the lowest bit on. A bit is set if no part of the face covers the cell.
 fn outside(grid: &PatchGrid, sides: &[Side], loops: Option<&LoopIndex>) -> Vec<[u32; 2]> {
     let cells = |p: &SurfacePatch| {
         let Some(index) = loops else { return [0; 2] };
         let (corner, end) = (DVec2::new(p.u.0, p.v.0), DVec2::new(p.u.1, p.v.1));
         let mut bits = 0u64;
-        // squares of half the side within those that tell nothing, the last ones a cell each
+        // a square that a loop crosses is divided into four, down to single cells
         let mut left = vec![(0, 0, abi::OUTSIDE_CELLS)];
         while let Some((i, j, side)) = left.pop() {
             let at = |i: u32, j: u32| {
@@ -388,7 +388,7 @@ fn outside(grid: &PatchGrid, sides: &[Side], loops: Option<&LoopIndex>) -> Vec<[
     grid.patches.iter().zip(sides).map(of).collect()
 }
 
-/// Bits of the sides that are points, within [`POINT`] of the patch's size.
+/// Border bits of the sides that are points, within [`POINT`] of the patch's size.
 fn poles(patch: &Patch) -> u32 {
     let (lo, hi) = patch.bounds();
     let near = POINT * (hi - lo).length();
@@ -411,13 +411,13 @@ pub(super) fn outward_box(patch: &Patch, origin: DVec3) -> ([f32; 3], [f32; 3]) 
     (lo.to_array().map(down), hi.to_array().map(round_up))
 }
 
-/// Second derivatives rounded up; a patch whose derivatives vanish but for rounding is flat, exactly.
+/// Second derivatives, rounded up; exactly 0 if all of them vanish up to rounding.
 fn flat_is_zero(bend: [f64; 3], (lo, hi): (DVec3, DVec3)) -> [f64; 3] {
     let rounding = 1e-12 * (hi - lo).length();
     if bend.iter().all(|x| *x <= rounding) { [0.0; 3] } else { bend.map(|x| f64::from(round_up(x))) }
 }
 
-/// The next single-precision number above.
+/// A single-precision number above `x`.
 pub(super) fn round_up(x: f64) -> f32 {
     (x as f32).next_up()
 }

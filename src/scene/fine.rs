@@ -1,27 +1,29 @@
-//! Fine nets: the control points once more, of patches with sides so short that those no longer tell their directions.
+//! Fine nets: a second, more precise set of control points for patches whose single-precision points would turn a short
+//! side.
 //!
 //! ```text
 //!   points of a patch    first              first + count
 //!                        ▼                  ▼
-//!                        p₀ p₁ ⋯            C  p₀ − C  p₁ − C  ⋯        C: one of the two between which it may turn most
+//!                        p₀ p₁ ⋯            C  p₀ − C  p₁ − C  ⋯        C: an end of the side that turns most
 //! ```
 //!
-//! Single precision rounds what is `x` from the part's centre by up to `x` 2⁻²⁴ in each coordinate, so two control points
-//! `l` apart may turn by √3 `x` 2⁻²³ / `l`. The sides that a loft draws together over a nose, a thousandth of the patch
-//! long or less, are then off by more than the picture promises of its normals. Relative to `C` they are as good as single
-//! precision is near zero. Whether a patch needs one is asked of its own roundings, and of those of sums over all of it. What
-//! is drawn keeps to the control points, which neighbouring patches share bit for bit; the passes `resolve` and
-//! `solid_layers` read the fine net, where there is one.
+//! Single precision rounds a coordinate at distance `x` from the part's centre by up to `x` 2⁻²⁴. A side of length `l`
+//! between two control points may thus turn by √3 `x` 2⁻²³ / `l`. A loft over a nose has sides of a thousandth of the
+//! patch or less; they would turn by more than the promised accuracy of normals. Relative to `C`, rounding is that of
+//! numbers near zero. A patch gets a fine net if its own roundings, or those of sums over its whole size, turn a side
+//! too far. The drawn surface follows the ordinary control points, which adjacent patches share bit for bit. The passes
+//! `resolve` and `solid_layers` read the fine net of a patch that has one.
 
 use super::face::POINT;
 use crate::spline::{Control, Patch};
 use glam::{DVec3, DVec4};
 
-/// Radians that the direction from one control point to the next may be off by: half of 0.01 degrees, since a normal has
-/// two such directions.
+/// Most that the direction between two control points may turn, in radians: half of 0.01 degrees, since a normal
+/// depends on two such directions.
 const MOST_TURN: f64 = 8.7e-5;
 
-/// `C` and what follows it; `None` where the control points do. `unit`: the weight that counts as one.
+/// `C` and the points relative to it; `None` if the control points are precise enough. `unit` is the weight stored as
+/// 1.
 pub(super) fn fine_net(patch: &Patch, origin: DVec3, unit: f64) -> Option<Vec<[f32; 4]>> {
     let local: Vec<DVec3> = patch.points.iter().map(|q| q.point() - origin).collect();
     let (lo, hi) = patch.bounds();
@@ -30,7 +32,7 @@ pub(super) fn fine_net(patch: &Patch, origin: DVec3, unit: f64) -> Option<Vec<[f
     let along_v = (across..local.len()).map(|i| (i - across, i));
     let rest = |i: usize| local[i] - local[i].as_vec3().as_dvec3();
     let sums = (hi - lo).length() * f64::from(f32::EPSILON);
-    // how far it may turn
+    // the angle by which a side may turn
     let turn = |(a, b): (usize, usize)| {
         let length = local[a].distance(local[b]);
         (length > point).then(|| ((rest(a).distance(rest(b)) + sums) / length, a))
@@ -49,7 +51,7 @@ pub(super) fn fine_net(patch: &Patch, origin: DVec3, unit: f64) -> Option<Vec<[f
 mod tests {
     use super::*;
 
-    /// A bilinear patch 100 long, `narrow` wide at its end, whose first corner is at `x`.
+    /// A bilinear patch 100 long and `narrow` wide at its end, with its first corner at `x`.
     fn wedge(x: f64, narrow: f64, weight: f64) -> Patch {
         let points = [(0.0, 0.0), (100.0, 0.0), (0.0, 50.0), (100.0, narrow)];
         let points = points.map(|(a, b)| DVec4::from_point(DVec3::new(x + a, b, 1.0 / 3.0), weight)).to_vec();
@@ -69,7 +71,7 @@ mod tests {
             assert!(exact.distance(DVec3::new(fine[0].into(), fine[1].into(), fine[2].into())) < 5e-6, "{exact}");
             assert_eq!(fine[3], 1.0);
         }
-        // the two at the short side, by their own roundings
+        // the two points at the short side, with their own roundings
         let side = |a: [f32; 4], b: [f32; 4]| f64::from(b[1] - a[1]);
         assert!((side(net[2], net[4]) - 0.1).abs() < 1e-8);
     }

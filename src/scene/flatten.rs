@@ -1,10 +1,10 @@
-//! Surfaces cut into patches flat enough for their boxes to mean something, and even enough for equal segments.
+//! Splits surfaces into patches flat enough for tight boxes, and even enough for equal segments.
 //!
 //! ```text
 //!   quarter circle, one patch        three patches
 //!   ┌────────────╮                   ┌──╮ ╲
-//!   │            ╰─╮                 └──╯──┐ ╲     an eye beside the arc lies in the one box, so the
-//!   │    ·eye      ╰╮                ·eye  │__│    arc might touch it; the three are told apart
+//!   │            ╰─╮                 └──╯──┐ ╲     the eye lies in the box of the whole arc, which might be
+//!   │    ·eye      ╰╮                ·eye  │__│    arbitrarily near; the three boxes do not contain it
 //!   └───────────────┘
 //! ```
 
@@ -12,41 +12,41 @@ use crate::model::Face;
 use crate::spline::{Patch, PatchGrid, SurfacePatch};
 use glam::DVec4;
 
-/// A patch is cut where its border curves bulge by more than this share of their length: its box then
-/// hugs it, and tells what is seen, how near it comes, and whether a trim curve meets it. At 1/50 a
-/// quarter circle falls into three.
+/// A patch is split if its border curves bulge by more than this share of their length. Tight boxes decide better
+/// whether the patch is visible, how near it comes, and whether a trim curve meets it. At 1/50 a quarter circle falls
+/// into three.
 const MOST_BULGE: f64 = 0.02;
-/// Pieces along each parameter for that, at most: each costs a patch of 64 bytes and its control points.
+/// Most pieces along each parameter for flatness: each costs a patch of 64 bytes and its control points.
 const MOST_PIECES: usize = 4;
-/// Pieces within which weights differ by more than this factor along a parameter are halved. Where they do, a point
-/// runs through most of the patch within a small part of its parameters, and equal segments as fine as are wanted there
-/// are too many: weights of 1000:1 on a patch of 100 pixels would need 17,000. A turn by 120 degrees has 2:1.
+/// Pieces are halved along a parameter while their weights differ by more than this factor. Large ratios concentrate
+/// most of the patch in a small part of its parameters, and equal segments that suffice there are too many: a ratio of
+/// 1000:1 on a patch of 100 pixels would need 17,000. A turn by 120 degrees has 2:1.
 const MOST_WEIGHTS: f64 = 8.0;
-/// Halvings for that: weights of 2^20:1 are met by less.
+/// Most halvings for weights; a ratio of 2^20:1 needs fewer.
 const MOST_HALVINGS: u32 = 20;
 
-/// Into how many pieces patches may be cut.
+/// The numbers of pieces into which patches may be split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Cuts {
     /// Any number.
     Any,
-    /// One, two or four: those of faces that meet along a side meet in halves of it, as [`link`](super::link) wants.
+    /// One, two or four. Faces that meet along a side must be split at halves of it: see [`link`](super::link).
     Halves,
 }
 
 impl Cuts {
-    /// For faces that may meet along their sides: several without trims.
+    /// For faces that may meet along sides: two or more without trims.
     pub(crate) fn of<'a>(faces: impl IntoIterator<Item = &'a Face>) -> Self {
         if faces.into_iter().filter(|f| f.loops.is_empty()).nth(1).is_some() { Self::Halves } else { Self::Any }
     }
 
-    /// For one of them.
+    /// For one of these faces.
     pub(crate) fn in_face(self, face: &Face) -> Self {
         if face.loops.is_empty() { self } else { Self::Any }
     }
 }
 
-/// The grid with all its patches cut alike into flatter ones.
+/// The grid with every patch split alike into flatter ones.
 pub(crate) fn flattened(grid: PatchGrid, cuts: Cuts) -> PatchGrid {
     let pieces = |bend: f64, speed: f64| {
         let bulge = bend / 8.0 / speed.max(f64::MIN_POSITIVE);
@@ -71,7 +71,7 @@ pub(crate) fn flattened(grid: PatchGrid, cuts: Cuts) -> PatchGrid {
     divided(grid, &[across, up])
 }
 
-/// The grid with its patches cut at these places, 0 to 1 of each column along u and of each row along v.
+/// The grid split at these places, 0 to 1 of each column along u and of each row along v.
 pub(super) fn divided(grid: PatchGrid, [across, up]: &[Vec<Vec<f64>>; 2]) -> PatchGrid {
     let pieces = |ends: &[Vec<f64>]| -> Vec<(usize, (f64, f64))> {
         let of = |(i, ends): (usize, &Vec<f64>)| ends.windows(2).map(|w| (i, (w[0], w[1]))).collect::<Vec<_>>();
@@ -98,12 +98,12 @@ pub(super) fn divided(grid: PatchGrid, [across, up]: &[Vec<Vec<f64>>; 2]) -> Pat
     PatchGrid::new(count_u, patches)
 }
 
-/// Where the pieces along u of these patches, one knot span, begin and end: as many equal ones, halved where weights
-/// differ by too much.
+/// The ends, along u, of the pieces of these patches, which share one knot span: `equal` equal pieces, halved where
+/// weights differ by too much.
 fn ends(equal: usize, patches: &[Patch]) -> Vec<f64> {
     let mut ends = vec![0.0];
     for k in 0..equal {
-        // of each part: its end, and how often it was halved; the first on top
+        // a stack of the remaining parts: the end of each, and how often it was halved
         let mut parts = vec![((k + 1) as f64 / equal as f64, 0)];
         while let Some((end, halvings)) = parts.pop() {
             let start = ends[ends.len() - 1];
@@ -118,7 +118,7 @@ fn ends(equal: usize, patches: &[Patch]) -> Vec<f64> {
     ends
 }
 
-/// The largest weight of a row's control points over the smallest, of all rows the most.
+/// The largest ratio of weights within a row of control points.
 fn weights_along_u(patch: &Patch) -> f64 {
     let ratio = |row: &[DVec4]| {
         let (lo, hi) = row.iter().fold((f64::INFINITY, 0.0f64), |(lo, hi), p| (lo.min(p.w), hi.max(p.w)));
@@ -127,8 +127,8 @@ fn weights_along_u(patch: &Patch) -> f64 {
     (0..=patch.degree_v).map(|j| ratio(patch.row(j))).fold(1.0, f64::max)
 }
 
-/// Two pieces compute the side that they share from different ends, and round apart. Each takes the
-/// control points of the one before it, so that neighbours agree bit for bit.
+/// Two adjacent pieces compute their common side from different ends, with different roundings. Each takes the control
+/// points of the piece before it, so that neighbours agree bit for bit.
 fn weld(patches: &mut [SurfacePatch], count_u: usize, count_v: usize) {
     for j in 0..count_v {
         for i in 0..count_u {
@@ -152,7 +152,7 @@ mod tests {
     use super::*;
     use crate::spline::Surface;
 
-    /// Two quarter arcs with a wavy generator: both directions are cut.
+    /// Two quarter arcs with a wavy generator: the surface is split in both directions.
     fn bent() -> Surface {
         let w = std::f64::consts::FRAC_1_SQRT_2;
         let arcs = [(1.0, 0.0, 1.0), (1.0, 1.0, w), (0.0, 1.0, 1.0), (-1.0, 1.0, w), (-1.0, 0.0, 1.0)];
@@ -182,7 +182,7 @@ mod tests {
             if let Some(a) = above {
                 assert_eq!(p.patch.row(k), a.patch.row(0));
             }
-            // still the same surface: 1e-14 is some tens of roundings of coordinates below 2
+            // the surface has not changed: 1e-14 is some tens of roundings of coordinates below 2
             let middle = surface.jet((p.u.0 + p.u.1) / 2.0, (p.v.0 + p.v.1) / 2.0).point;
             assert!(p.patch.point(0.5, 0.5).distance(middle) < 1e-14);
         }

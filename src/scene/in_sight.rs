@@ -101,6 +101,11 @@ struct Range {
 }
 
 impl PlacedBox {
+    /// The same of a part that comes behind so many items.
+    pub(super) fn behind(self, items: u32) -> Self {
+        Self { first: self.first + items, ..self }
+    }
+
     fn range(&self, row: DVec4) -> Range {
         let (linear, size) = (row.truncate(), row.truncate().abs());
         let reach = size.dot(self.half);
@@ -108,7 +113,7 @@ impl PlacedBox {
         Range { middle: linear.dot(self.centre) + row.w, reach, terms }
     }
 
-    /// Whether pass `bound` may keep a patch of the box.
+    /// Whether pass `bound` may draw a patch of the box.
     fn is_in_sight(&self, pixels: DMat4, placement: DAffine3, camera: &Camera, reach: Reach) -> bool {
         let (margin, beyond) = (reach.beside_px + SPARE_PX, reach.beyond_px + ROUNDING_PX);
         let rows = (pixels * DMat4::from(placement)).transpose();

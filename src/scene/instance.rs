@@ -1,9 +1,9 @@
-//! Placed parts: what shaders read of each, and what changes of them while the scene is drawn.
+//! Placed parts: the record that shaders read of each, and the changes to it between frames.
 //!
 //! ```text
 //!   instance of the model ─▶ LivePart: its number in the scene, the centre of its part
 //!        ├─ transform, hidden ──▶ placements ─▶ views of the next frame
-//!        │                   ╰──▶ boxes of what the table trims
+//!        │                   ╰──▶ boxes of the trim table's cells
 //!        └─ transform, colour ──▶ abi::Instance, copied at the beginning of the next frame
 //! ```
 //!
@@ -18,14 +18,15 @@ use crate::abi;
 use crate::model::{Colour, Instance};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
-/// Where a view has what nobody sees: this many pixels left of it and above it, beyond every margin.
+/// The view of a hidden placement moves every point this many pixels left of the picture and above it, beyond every
+/// margin.
 const BEYOND_PX: f32 = 1e6;
 
-/// What a host chooses of an instance beside its placement and its colour.
+/// A host's choices for an instance, beside its placement and its colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shown {
     pub visible: bool,
-    /// Over its colour, with the opacity that this has.
+    /// A colour over the instance's own, blended by its opacity.
     pub highlight: Option<Colour>,
 }
 
@@ -36,7 +37,7 @@ impl Default for Shown {
 }
 
 impl Shown {
-    /// Colour of an instance, over those of its faces.
+    /// The colour of an instance, which replaces those of its faces.
     pub(super) fn over(self, colour: Option<Colour>) -> Option<Colour> {
         let Some(highlight) = self.highlight else { return colour.map(|c| [c[0], c[1], c[2], 1.0]) };
         let Some(under) = colour else { return Some(highlight) };
@@ -48,31 +49,31 @@ impl Shown {
 /// An instance of the model that is drawn as faces alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LivePart {
-    /// Of the scene's instances.
+    /// Its number in the scene.
     pub number: u32,
     /// The centre of its part.
     pub origin: DVec3,
 }
 
-/// Why an instance stays as it is.
+/// Why an instance was not changed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InstanceError {
     /// The model has no such instance.
     #[error("the model has no instance {0}")]
     NoSuchInstance(usize),
-    /// A transform or a colour that cannot be drawn.
+    /// The transform or the colour is not valid.
     #[error(transparent)]
     Model(#[from] crate::model::ModelError),
-    /// Rays are followed through it: it is seen through, or the scene has
+    /// Rays are followed through the instance: it is transparent, or the scene has
     /// [`thickness`](crate::picture::SceneSettings::thickness) or a
     /// [`highlight`](crate::picture::SceneSettings::highlight). Upload the changed model.
     #[error("rays are followed through instance {0}, which stays as it was uploaded: upload the changed model")]
     Followed(usize),
-    /// It would be seen through. Upload the changed model.
+    /// The new colour is transparent. Upload the changed model.
     #[error("instance {0} would be seen through: upload the changed model")]
     SeenThrough(usize),
-    /// The scene has a [`sun`](crate::picture::SceneSettings::sun), and its shadows were made when the model was uploaded.
+    /// The scene has a [`sun`](crate::picture::SceneSettings::sun), and the shadows are those of the uploaded model.
     /// Upload the changed model.
     #[error("the shadows of instance {0} stay as they were uploaded: upload the changed model")]
     Shadows(usize),
@@ -86,16 +87,16 @@ impl SceneData {
         self.placements.iter().enumerate().map(of).collect()
     }
 
-    /// Whether an instance of the model may change; `moves`: where it is seen.
+    /// Whether an instance of the model may change. `moves`: its placement or visibility changes.
     pub(crate) fn may_change(&self, instance: usize, moves: bool) -> Result<(), InstanceError> {
-        // what is cut out for a view is cut anew
-        if !self.live.is_empty() && self.live[instance].is_none() {
+        // a cut is made again after a change, and so is a scene that is still to be loaded
+        if self.live.get(instance) == Some(&None) {
             return Err(InstanceError::Followed(instance));
         }
         if moves && self.casts_shadows { Err(InstanceError::Shadows(instance)) } else { Ok(()) }
     }
 
-    /// An instance of the model is like this now. What the GPU has to be told; `None` where the scene is cut out for a view.
+    /// Changes an instance of the model. Returns the write to the GPU's array; `None` in a cut.
     pub(crate) fn change(&mut self, nth: usize, instance: &Instance, shown: Shown) -> Option<Write> {
         let LivePart { number, origin } = (*self.live.get(nth)?)?;
         let placement = instance.transform * DAffine3::from_translation(origin);
@@ -106,7 +107,7 @@ impl SceneData {
         Some(Write { to: EditTarget::Instances, offset, bytes: bytemuck::bytes_of(&record).to_vec() })
     }
 
-    /// All instances of the model are shown like this, in a scene that the GPU does not have yet.
+    /// Applies `shown` to all instances, in a scene that is not on the GPU yet.
     pub(crate) fn show(&mut self, instances: &[Instance], shown: &[Shown]) {
         if shown.iter().all(|shown| *shown == Shown::default()) {
             return;
@@ -117,19 +118,19 @@ impl SceneData {
             let colour = shown[nth].over(instances[nth].colour);
             self.instances[number].colour = colour.map_or(0, pack_colour);
         }
-        // lines may have placements of their own
+        // edge lines may have placements of their own
         let lines = self.edges.iter().flat_map(|edges| &edges.items);
         let hidden: Vec<u32> = lines.filter(|i| !shown[i.instance as usize - 1].visible).map(|i| i.placement).collect();
         hidden.into_iter().for_each(|placement| self.hide(placement, true));
         self.settle();
     }
 
-    /// All changes so far are made: what follows from several placements is made anew.
+    /// Updates everything that depends on several placements; call it after the last change.
     pub(crate) fn settle(&mut self) {
         self.trimmed.iter_mut().for_each(Trimmed::settle);
     }
 
-    fn hide(&mut self, number: u32, hidden: bool) {
+    pub(super) fn hide(&mut self, number: u32, hidden: bool) {
         if hidden || !self.hidden.is_empty() {
             self.hidden.resize(self.placements.len(), false);
             self.hidden[number as usize] = hidden;
@@ -141,17 +142,18 @@ impl SceneData {
     }
 }
 
-/// A view in which every point lies outside of the picture.
+/// A view that moves every point out of the picture.
 fn nowhere() -> abi::View {
     let beyond = [0.0, 0.0, 0.0, -BEYOND_PX];
     abi::View { x: beyond, y: beyond, depth: [0.0; 4], w: [0.0, 0.0, 0.0, 1.0] }
 }
 
-/// What shaders read of a placed part. `colour`: over those of its faces, by its opacity; `shell`: of an operand.
+/// The record that shaders read of a placed part. `colour` is drawn over its faces' colours, by its opacity; `shell` is
+/// the number of its operand.
 pub(super) fn placed_part(transform: DAffine3, colour: Option<Colour>, shell: u32) -> abi::Instance {
     let linear = transform.matrix3;
-    // normals transform by the cofactors: the inverse transposed times the determinant, which
-    // also exists for singular transforms; the sign of the determinant is told apart
+    // normals transform by the cofactor matrix: the inverse transpose times the determinant, which also exists for
+    // singular transforms; the sign of the determinant is stored separately
     let cofactor = DMat3::from_cols(
         linear.y_axis.cross(linear.z_axis),
         linear.z_axis.cross(linear.x_axis),

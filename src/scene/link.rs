@@ -1,19 +1,18 @@
-//! Sides of faces without trims that meet: linked, so that both are drawn with the same vertices.
+//! Links untrimmed faces' sides that coincide, so that both faces are drawn with the same vertices.
 //!
 //! ```text
 //!    one to one                one to several: halves of it, and their halves
-//!    ┌─────┐┌─────┐            ┌─────────┐┌──┐      the curve of a link is cut at all ends of sides on it; each
-//!    │     ││     │            │         │├──┤      piece belongs to one side, its *owner*, and every side that
-//!    │     ││     │            │         │├──┤      lies there takes its vertices from the owner's control points
+//!    ┌─────┐┌─────┐            ┌─────────┐┌──┐      a link's curve is cut at the ends of all its sides; each piece
+//!    │     ││     │            │         │├──┤      belongs to one side, its *owner*; all sides along the piece
+//!    │     ││     │            │         │├──┤      compute their vertices from the owner's control points
 //!    └─────┘└─────┘            └─────────┘└──┘
 //! ```
 //!
-//! Sides are the same whose control points, as they are uploaded, are the same within a few of their roundings, forwards
-//! or reversed, weights and degrees included. The corners of patches at borders are made the same bit for bit first, so
-//! whatever meets in a corner, by a side or by the corner alone, has one number for it. A side that coincides with
-//! no other is halved by de Casteljau's algorithm, [`MOST_HALVINGS`] times at most, and linked where every piece is the
-//! side of another patch. More than two sides that coincide are linked all together. Not linked are
-//! sides with other parametrisations or degrees, and such that meet in other parts than halves.
+//! Two sides coincide if their uploaded control points, weights included, are equal within a few roundings, in the same
+//! or the reverse order. Corners of patches at borders are first made equal bit for bit, so every meeting point has one
+//! number. A side that coincides with no other is halved by de Casteljau's algorithm, at most [`MOST_HALVINGS`] times,
+//! and linked if every piece is the side of another patch. Several sides that coincide form one link. Sides with
+//! different parametrisations or degrees are not linked, nor are sides that meet in parts other than halves.
 //!
 //! Cost: linear in the sides at borders.
 
@@ -22,15 +21,15 @@ use crate::abi::{FACE_CLOSED_U, FACE_CLOSED_V, FACE_TRIMMED, Face, Link, Patch, 
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Control points are the same when no coordinate differs by more than this share of the part's largest, weights
-/// likewise: four roundings to single precision.
+/// Control points are equal if no coordinate differs by more than this share of the part's largest coordinate, and no
+/// weight by more than this share of the largest weight: four roundings to single precision.
 const SAME: f64 = 1.0 / (1 << 21) as f64;
-/// Cells in which corners are looked for, in units of the distance at which they are the same: wide enough that
-/// most lie in one cell alone.
+/// Size of the grid's cells in which corners are looked up, in units of the distance at which corners are equal. It is
+/// so large that most corners' neighbourhoods lie in one cell.
 const CELL: f64 = 16.0;
-/// Sides have at most 4096 segments.
+/// A side has at most 4096 segments.
 const MOST_HALVINGS: u32 = 12;
-/// Most sides in one link: those of a curve that is halved towards both its ends, twice over.
+/// Most sides in one link: enough for a curve halved towards both ends, twice over.
 const MOST_SIDES: usize = Link::MOST_SIDES as usize;
 
 type Point = [f64; 4];
@@ -38,14 +37,14 @@ type Point = [f64; 4];
 /// One side of a patch at a border: `u = 0`, `v = 0`, `u = 1`, `v = 1`.
 #[derive(Clone, Debug)]
 struct PatchSide {
-    /// Number of the patch times four, and the side.
+    /// The patch's number times four, plus the side's.
     name: u32,
-    /// From its lower parameter up.
+    /// Control points, from the lower parameter up.
     net: Vec<Point>,
     corners: (u32, u32),
 }
 
-/// Where a side lies on the curve of its link: from `start / 2^halvings`, `1 / 2^halvings` long.
+/// The range of a side on its link's curve: from `start / 2^halvings`, `1 / 2^halvings` long.
 #[derive(Clone, Copy, Debug, Default)]
 struct Place {
     start: u32,
@@ -53,19 +52,19 @@ struct Place {
     reversed: bool,
 }
 
-/// Sides that coincide as wholes; the first is the owner.
+/// Sides that coincide over their whole length; the first is the owner.
 struct Group {
-    /// Whether each runs against the first.
+    /// The sides, and whether each runs against the first.
     sides: Vec<(usize, bool)>,
-    /// It is a piece of another side.
+    /// The group is a piece of another side.
     piece: bool,
-    /// The pieces of its one side, where that is cut.
+    /// The pieces of its one side, if that is cut.
     pieces: Vec<(usize, Place)>,
 }
 
-/// The links of these faces, at `links[4 * patch + side]`; grows `links` to hold them where there are some.
-/// Corners that are nearly the same become the same. Whether all sides of faces without trims are linked, but for
-/// those that are points, and those that a face has in common with itself.
+/// Writes the links of the faces in `range` to `links[4 * patch + side]`; lengthens `links` if there are some. Makes
+/// corners equal that are nearly equal. Returns whether every side of the untrimmed faces is linked, except for sides
+/// that are points and seams within one face.
 pub(super) fn link(
     faces: &[Face],
     range: Range<usize>,
@@ -75,7 +74,7 @@ pub(super) fn link(
 ) -> bool {
     let borders: Vec<Border> = borders(faces, range, patches).collect();
     let Some(mut corners) = Corners::new(&borders, patches, points) else { return true };
-    // all that stay first: so what becomes of a corner depends on nothing but itself
+    // all corners are collected before any is welded, so the result does not depend on the order
     for border in &borders {
         corners.keep(border, &patches[border.patch], points);
     }
@@ -103,11 +102,11 @@ pub(super) fn link(
 /// A patch that has open borders of its face.
 struct Border {
     patch: usize,
-    /// Bits of the borders.
+    /// Bits of its open borders.
     open: u32,
 }
 
-/// Patches at open borders of faces without trims.
+/// The patches at open borders of untrimmed faces.
 fn borders<'a>(faces: &'a [Face], range: Range<usize>, patches: &'a [Patch]) -> impl Iterator<Item = Border> + 'a {
     faces[range].iter().flat_map(move |face| {
         let first = face.first_patch as usize;
@@ -124,7 +123,7 @@ fn borders<'a>(faces: &'a [Face], range: Range<usize>, patches: &'a [Patch]) -> 
 }
 
 impl Border {
-    /// Bits in the order of sides.
+    /// Border bits in the order of sides.
     const BITS: [u32; 4] = [BORDER_U0, BORDER_V0, BORDER_U1, BORDER_V1];
 
     fn sides(&self) -> impl Iterator<Item = usize> {
@@ -139,7 +138,7 @@ impl Border {
         (0..=degree).map(move |i| patch.first as usize + from + i * step)
     }
 
-    /// Indices of the ends of its sides.
+    /// Indices of the control points at the ends of its open sides.
     fn corners(&self, patch: &Patch) -> impl Iterator<Item = usize> {
         let ends = |side| {
             let mut net = Self::net(side, patch);
@@ -148,7 +147,7 @@ impl Border {
         self.sides().flat_map(ends).flatten()
     }
 
-    /// `None` where it is but a point.
+    /// The side; `None` if it is a point.
     fn side(&self, side: usize, patch: &Patch, points: &[[f32; 4]], corners: &Corners) -> Option<PatchSide> {
         let net: Vec<Point> = Self::net(side, patch).map(|at| points[at].map(f64::from)).collect();
         let at = |p: &Point| [p[0] / p[3], p[1] / p[3], p[2] / p[3]];
@@ -161,17 +160,17 @@ impl Border {
     }
 }
 
-/// Corners of patches at borders, each once.
+/// The distinct corners of patches at borders.
 struct Corners {
     same: f64,
     same_weight: f64,
-    /// The first corner of each cell that has one, and after each the next in its cell.
+    /// The last corner added to each cell; each corner has the one added before it to the same cell.
     cells: HashMap<[i32; 3], u32>,
     all: Vec<(Point, Option<u32>)>,
 }
 
 impl Corners {
-    /// `None` where nothing could meet.
+    /// `None` if there are no borders with finite points.
     fn new(borders: &[Border], patches: &[Patch], points: &[[f32; 4]]) -> Option<Self> {
         let nets = borders.iter().flat_map(|b| b.sides().flat_map(|side| Border::net(side, &patches[b.patch])));
         let (mut size, mut weight) = (0.0f32, 0.0f32);
@@ -216,7 +215,7 @@ impl Corners {
         None
     }
 
-    /// Remembers a patch's corners at open borders that are not nearly the same as one that it remembers.
+    /// Adds a patch's corners at open borders, except those nearly equal to a corner that is present.
     fn keep(&mut self, border: &Border, patch: &Patch, points: &[[f32; 4]]) {
         for at in border.corners(patch) {
             let p = points[at].map(f64::from);
@@ -228,7 +227,7 @@ impl Corners {
         }
     }
 
-    /// Makes a patch's corners at open borders the same bit for bit as one that is remembered.
+    /// Makes a patch's corners at open borders equal, bit for bit, to the corners that were added.
     fn weld(&self, border: &Border, patch: &Patch, points: &mut [[f32; 4]]) {
         for at in border.corners(patch) {
             if let Some(n) = self.find(&points[at].map(f64::from)) {
@@ -238,12 +237,12 @@ impl Corners {
     }
 }
 
-/// Sides that coincide, found by their corners.
+/// Groups of coinciding sides, looked up by their corners.
 struct Groups<'a> {
     sides: &'a [PatchSide],
     corners: &'a Corners,
     all: Vec<Group>,
-    /// The last group between two corners, the lower one first, and before each the one before.
+    /// The last group between two corners, the lower one first; `before` has the group before each.
     between: HashMap<(u32, u32), usize>,
     before: Vec<Option<usize>>,
 }
@@ -267,7 +266,7 @@ impl<'a> Groups<'a> {
         groups
     }
 
-    /// The group whose first side has this net, and whether the net runs against it.
+    /// The group whose first side has this net, and whether the net runs against that side.
     fn find(&self, net: &[Point], corners: (u32, u32)) -> Option<(usize, bool)> {
         let mut at = self.between.get(&ordered(corners)).copied();
         while let Some(group) = at {
@@ -285,7 +284,7 @@ impl<'a> Groups<'a> {
         None
     }
 
-    /// Looks for the pieces of sides that are alone.
+    /// Finds pieces for sides that coincide with no other.
     fn cut(&mut self) {
         for group in 0..self.all.len() {
             let alone = |g: &Group| g.sides.len() == 1 && !g.piece;
@@ -298,7 +297,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// The groups that the one side of this one consists of.
+    /// The groups that make up the group's one side.
     fn pieces(&self, group: usize) -> Option<Vec<(usize, Place)>> {
         let side = &self.sides[self.all[group].sides[0].0];
         let mut rest = vec![(side.net.clone(), side.corners, Place::default())];

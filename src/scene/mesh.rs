@@ -1,4 +1,4 @@
-//! Meshes as arrays: single precision relative to the part's centre, as control points are.
+//! Meshes as arrays. Positions are single precision relative to the part's centre, like control points.
 //!
 //! ```text
 //!   part with 2 meshes, placed 3 times         mesh instances: A0 A1 A2 B0 B1 B2
@@ -13,7 +13,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Every mesh of the parts that are placed, and their instances.
+/// The meshes of all placed parts, and their instances.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Meshes {
     pub meshes: Vec<abi::Mesh>,
@@ -22,20 +22,20 @@ pub(crate) struct Meshes {
     pub positions: Vec<[f32; 3]>,
     /// Indices into `positions`.
     pub triangles: Vec<[u32; 3]>,
-    /// Octahedral, one a corner of the triangles of those meshes that have any.
+    /// Octahedral normals, one a corner of a triangle; empty for meshes without normals.
     pub normals: Vec<u32>,
-    /// Corners of the triangles of one mesh, and its range of `instances`.
+    /// The corners of each mesh's triangles, and the mesh's range of `instances`.
     pub draws: Vec<(Range<u32>, Range<u32>)>,
-    /// Of each part, of each of its meshes: its first triangle, where it is placed.
+    /// The first triangle of each mesh of each part that is placed.
     pub first_triangles: Vec<Vec<u32>>,
-    /// Of each of those that belong to parts: its number in its part.
+    /// The number, in its part, of each mesh that belongs to a part.
     pub numbers: Vec<u32>,
-    /// From this draw on only the triangles that face the eye are seen: Boolean solids.
+    /// From this draw on, only triangles that face the eye are drawn: meshes of Boolean solids.
     pub outward: usize,
 }
 
 impl Meshes {
-    /// `origins` has the centre of each part; `open`: a volume cuts the scene open.
+    /// `origins` has the centre of each part. `open`: a volume cuts the scene open.
     pub(super) fn new(model: &Model, origins: &[DVec3], open: bool) -> Self {
         let mut placed = vec![Vec::new(); model.parts.len()];
         (0..).zip(&model.instances).for_each(|(index, i)| placed[i.part].push(index));
@@ -55,7 +55,7 @@ impl Meshes {
         all
     }
 
-    /// One of the meshes that are seen from outside alone.
+    /// Adds a mesh of which only outer faces are drawn.
     pub(super) fn push_outward(&mut self, mesh: &Mesh, origin: DVec3, instance: u32) {
         self.push(mesh, origin, true, &[instance]);
     }
@@ -82,7 +82,7 @@ impl Meshes {
     }
 }
 
-/// Of one triangle; a corner without a direction gets the triangle's.
+/// The normals of a triangle's corners; a corner without one gets the triangle's.
 fn corner_normals(mesh: &Mesh, triangle: usize) -> [u32; 3] {
     let [a, b, c] = mesh.corners(triangle);
     let flat = (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Z);

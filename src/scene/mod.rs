@@ -1,4 +1,4 @@
-//! A model turned into what the GPU keeps: Bézier patches, trim curves, instances.
+//! A model as GPU data: Bézier patches, trim curves, instances.
 //!
 //! ```text
 //!   Model (f64, any size, any distance from the origin)
@@ -10,10 +10,11 @@
 //!   SceneData (plain arrays)  ──upload──▶  Scene (persistent pool)
 //! ```
 //!
-//! Single precision suffices because nothing is stored far from where it is seen: control points are
-//! relative to the centre of their part, and the transform from there to the eye is composed in
-//! `f64` every frame. Patches too slight for that have a fine net beside their points (`fine.rs`).
+//! Single precision suffices because coordinates are small where they are seen: control points are relative to the
+//! centre of their part, and the transform from there to the eye is composed in `f64` every frame. Patches with very
+//! short sides have a fine net in addition (`fine.rs`).
 
+mod arrays;
 mod cells;
 mod cones;
 mod data;
@@ -26,6 +27,8 @@ mod fine;
 mod flatten;
 mod in_sight;
 mod instance;
+mod join;
+mod kept;
 mod link;
 mod mesh;
 mod mixed;
@@ -42,6 +45,7 @@ mod view_cell;
 mod way;
 mod whole_view;
 
+pub(crate) use arrays::Array;
 pub(crate) use data::{Division, SceneData};
 pub(crate) use deep_zoom::{Cut, DeepZoom, DeepZoomUpload};
 pub(crate) use edges::EdgeData;
@@ -55,6 +59,7 @@ pub(crate) use flatten::{Cuts, flattened};
 pub(crate) use in_sight::{InSight, Reach};
 pub use instance::InstanceError;
 pub(crate) use instance::Shown;
+pub(crate) use join::{FirstNumbers, Joinable};
 pub(crate) use parts::Told;
 pub use picking::Hit;
 pub(crate) use picking::{Picked, Picking};
@@ -66,7 +71,7 @@ pub(crate) use trimmed::TableView;
 pub(crate) use upload::BaselineScene;
 #[cfg(feature = "baselines")]
 pub(crate) use upload::TableScene;
-pub(crate) use upload::{EdgeBuffers, ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles, Trims};
+pub(crate) use upload::{EdgeBuffers, ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles};
 pub use view::seen_by;
 #[cfg(any(test, feature = "baselines"))]
 pub(crate) use view::view;

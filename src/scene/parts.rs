@@ -1,8 +1,8 @@
-//! The faces of placed parts, made in parallel and handed on in order.
+//! Makes the faces of placed parts in parallel, and passes them on in order.
 //!
 //! ```text
-//!   parts      A   B   C   A'  D   B'        A' is A but for numbers and colours: made once
-//!   batches   └─────────────┘ └──────┘       made side by side, then handed on; what nobody else is like is not kept
+//!   parts      A   B   C   A'  D   B'        A' equals A except for numbers and colours: its faces are copied
+//!   batches   └─────────────┘ └──────┘       made in parallel, then passed on; only faces needed again are stored
 //! ```
 
 use super::face::{Body, Cuts, FaceData, Trimming};
@@ -12,16 +12,16 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-/// Faces that are made before they are handed on: work for all threads, and little memory beside that of a large scene.
+/// Faces in a batch: enough work for all threads, and little memory compared with a large scene.
 const BATCH: usize = 4096;
 
-/// Whoever waits for a scene: how many more faces are done. Called from several threads, in no order.
+/// Progress callback: the number of faces made since the last call. It runs on several threads, in no order.
 pub(crate) type Told<'a> = &'a (dyn Fn(usize) + Sync);
 
-/// A part, and what else its faces are made from.
+/// A part, and the other inputs of its faces.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlacedPart<'a> {
-    /// Of the part in its model.
+    /// The part's number in its model.
     pub number: usize,
     pub part: &'a Part,
     pub origin: DVec3,
@@ -41,20 +41,20 @@ impl PlacedPart<'_> {
         part.faces.par_iter().map(made).collect()
     }
 
-    /// Faces of a part that is like this one, with this one's numbers and colours.
+    /// The faces of an equal part, with this part's numbers and colours.
     fn named(&self, mut faces: Vec<FaceData>) -> Vec<FaceData> {
         faces.iter_mut().zip(&self.part.faces).for_each(|(made, face)| made.name(face));
         faces
     }
 
-    /// Cheap to tell, and the same for parts that are alike.
+    /// A cheap hash: equal parts have equal keys.
     fn key(&self) -> [u64; 5] {
         let points = self.part.faces.iter().map(|face| face.surface.points().len()).sum::<usize>();
         let [x, y, z] = self.origin.to_array().map(|x| (x + 0.0).to_bits());
         [self.part.faces.len() as u64, points as u64, x, y, z]
     }
 
-    /// The same faces come out, but for numbers, colours and the signs of zeros.
+    /// Whether both parts give equal faces, except for numbers, colours and the signs of zeros.
     fn is_like(&self, other: &Self) -> bool {
         let same = |(a, b): (&Face, &Face)| {
             a.kind == b.kind && a.same_sense == b.same_sense && a.surface == b.surface && a.loops == b.loops
@@ -65,7 +65,7 @@ impl PlacedPart<'_> {
     }
 }
 
-/// The first part that each one is like: itself, most often.
+/// The first part that each part equals; mostly the part itself.
 fn alike(parts: &[PlacedPart<'_>]) -> Vec<usize> {
     let mut firsts: HashMap<[u64; 5], Vec<usize>> = HashMap::new();
     let first = |(n, part): (usize, &PlacedPart<'_>)| {
@@ -79,7 +79,7 @@ fn alike(parts: &[PlacedPart<'_>]) -> Vec<usize> {
     parts.iter().enumerate().map(first).collect()
 }
 
-/// Makes the faces of all parts and hands each part's on, in order; `told` of each number of faces as they are done.
+/// Makes the faces of all parts and passes each part's to `take`, in order. Calls `told` with the number of new faces.
 pub(super) fn each_made(
     parts: &[PlacedPart<'_>],
     told: Told<'_>,
@@ -120,7 +120,7 @@ pub(super) fn each_made(
     }
 }
 
-/// The model without the instances that are followed as solids.
+/// The model without the instances that are drawn as solids.
 pub(super) fn drawn_as_faces<'a>(model: &'a Model, items: Option<&Items>) -> Cow<'a, Model> {
     let mut model = Cow::Borrowed(model);
     if let Some(items) = items.filter(|items| items.drawn.contains(&false)) {
@@ -143,7 +143,7 @@ mod tests {
         selvedge_io::import::open(&path).unwrap().model
     }
 
-    /// The bracket, a shorter one, and both once more with other numbers and colours.
+    /// The bracket, a shorter one, and copies of both with other numbers and colours.
     fn pairs() -> Model {
         let mut model = bracket();
         let whole = model.parts[0].clone();
@@ -165,7 +165,7 @@ mod tests {
         PlacedPart { number: 0, part, origin: DVec3::new(0.0, 1.0, 2.0), body: Body::Closed, trim, cuts: Cuts::Any }
     }
 
-    /// A part that is like another has what it would have by itself, with its own numbers and colours.
+    /// A part that equals another gets the faces that it would have by itself, with its own numbers and colours.
     #[test]
     fn parts_that_are_alike_have_the_faces_that_each_would_have() {
         for way in [TakenWay::Table, TakenWay::Exact] {

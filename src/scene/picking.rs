@@ -1,4 +1,4 @@
-//! What a pixel of the visibility images means, as a point of the model in `f64`.
+//! The meaning of a pixel of the visibility images, as a point of the model in `f64`.
 //!
 //! ```text
 //!   word, (u, v) of a triangle  ─▶ item ─▶ face of an instance ──Newton in f64──▶ exact point under the pixel's centre
@@ -17,84 +17,84 @@ use crate::model::{Camera, Face, Mesh, Model};
 use crate::picture::EdgeSettings;
 use glam::{DAffine3, DMat4, DVec2, DVec3, Vec4Swizzles};
 
-/// Steps of Newton's method, which doubles the digits with each: the start is within a pixel or so.
+/// Most steps of Newton's method. Each doubles the number of correct digits, from a start within about a pixel.
 const MOST_STEPS: usize = 32;
-/// It has arrived, pixels.
+/// Length of the last step, in pixels.
 const THERE_PX: f64 = 1e-9;
-/// Of the domain, the longest step.
+/// Longest step, as a share of the domain.
 const LONGEST_STEP: f64 = 0.25;
 
-/// The least cosine of a ray with a normal that is used. The depth of a face changes by one over the cosine from a
-/// pixel to the next; this bounds it.
+/// Least cosine between ray and normal. Between adjacent pixels, depth changes by up to one over the cosine; this is a
+/// bound.
 const LEAST_COSINE: f64 = 0.05;
 
 /// What a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Hit {
-    /// Index into [`Model::instances`](crate::model::Model::instances); `None` of Boolean solids.
+    /// Index into [`Model::instances`](crate::model::Model::instances); `None` for Boolean solids.
     pub instance: Option<usize>,
-    /// Index into [`Model::parts`](crate::model::Model::parts); `None` of Boolean solids.
+    /// Index into [`Model::parts`](crate::model::Model::parts); `None` for Boolean solids.
     pub part: Option<usize>,
-    /// Index into [`Part::faces`](crate::model::Part::faces); `None` of meshes and of Boolean solids.
+    /// Index into [`Part::faces`](crate::model::Part::faces); `None` for meshes and Boolean solids.
     pub face: Option<usize>,
     /// Index into [`Part::meshes`](crate::model::Part::meshes), and the triangle.
     pub triangle: Option<(usize, usize)>,
     /// Its number in the image of faces: [`Face::id`](crate::model::Face::id), [`Mesh::id`](crate::model::Mesh::id) or
     /// [`Primitive::id`](crate::model::Primitive::id).
     pub id: u32,
-    /// Parameters in the face's domain; of a triangle, the weights of its second and third corner; `None` of Boolean
+    /// Parameters in the face's domain; for a triangle, the weights of its second and third corner; `None` for Boolean
     /// solids.
     pub uv: Option<DVec2>,
-    /// The point, model coordinates.
+    /// The point, in model coordinates.
     pub point: DVec3,
     /// The edge of the face whose line covers the pixel, in scenes with
     /// [`edges`](crate::picture::SceneSettings::edges): an index into [`Edges::edges`](crate::model::Edges::edges) of
     /// the part. `None` if there is none, and on meshes.
     pub edge: Option<usize>,
-    /// Unit outward normal of the face or the triangle, model coordinates; `None` of Boolean solids, and where there is
-    /// none.
+    /// Unit outward normal of the face or the triangle, in model coordinates; `None` for Boolean solids, and at points
+    /// without a normal.
     pub normal: Option<DVec3>,
     /// Distance from the eye along the view axis, model units.
     pub depth: f64,
 }
 
-/// What the scene's numbers stand for.
-#[derive(Debug, Default)]
+/// The meaning of the scene's numbers.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Picking {
     /// First item of each placed face, its face and its instance in the scene.
     placed: Vec<[u32; 3]>,
     faces: Vec<PickFace>,
     /// Rectangle of each patch in the unit square of its face.
     patches: Vec<[f32; 4]>,
-    /// Of each instance of the scene: the model's, plus 1.
+    /// The model's instance, plus 1, of each instance of the scene.
     sources: Vec<u32>,
-    /// Mesh of its part, and first triangle, of each mesh of the scene that is one.
+    /// Number in its part, and first triangle, of each mesh that belongs to a part.
     meshes: Vec<[u32; 2]>,
-    /// Mesh and instance.
+    /// Mesh and instance of each mesh instance.
     mesh_instances: Vec<[u32; 2]>,
-    /// Solids that are drawn as meshes, which come last, and their first triangles.
+    /// Solids that are drawn as meshes, and their first triangles; these meshes come last.
     isolated: Vec<(Mesh, u32)>,
     /// Number of the primitive of each side, then of each triangle of operands.
     sides: Vec<u32>,
-    /// The edges of the model's parts, and how they are drawn; in scenes with lines.
+    /// The edges of the model's parts and their settings, in scenes with lines.
     edges: Option<(KnownEdges, EdgeSettings)>,
 }
 
 /// A face of the scene.
 #[derive(Clone, Copy, Debug, Default)]
 struct PickFace {
-    /// Of the model; `None` of those that bound operands.
+    /// The face of the model; `None` for faces of operands.
     face: Option<u32>,
     first_patch: u32,
     id: u32,
-    /// Of the surface that was uploaded: origin and size.
+    /// Origin and size of the uploaded surface's domain.
     domain: [f64; 4],
 }
 
 impl SceneData {
-    /// What its numbers stand for: faces are those of `shown`, and `face_of` has, of a part and a face of it, the face of
-    /// the model.
+    /// The meaning of the scene's numbers. Faces are those of `shown`; `face_of` returns the model's face for a part of
+    /// `shown` and a face of it.
     pub(crate) fn picking(&self, shown: &Model, face_of: impl Fn(usize, usize) -> usize) -> Picking {
         let mut faces = vec![PickFace::default(); self.faces.len()];
         for (made, face) in faces.iter_mut().zip(&self.faces) {
@@ -105,7 +105,7 @@ impl SceneData {
         let ends = self.parts.iter().skip(1).map(|(_, first)| *first).chain([end]);
         for (part, (&(_, first), end)) in self.parts.iter().zip(ends).enumerate() {
             if end - first != shown.parts[part].faces.len() {
-                continue; // it is not placed
+                continue; // the part is not placed
             }
             for (nth, face) in shown.parts[part].faces.iter().enumerate() {
                 let ((u0, u1), (v0, v1)) = face.surface.domain();
@@ -134,18 +134,30 @@ impl SceneData {
     }
 }
 
+impl Picking {
+    /// A model joins the scene: `new` has what its arrays stand for, whose numbers count on from the scene's.
+    pub(crate) fn join(&mut self, new: Self) {
+        self.placed.extend(new.placed);
+        self.faces.extend(new.faces);
+        self.patches.extend(new.patches);
+        self.sources.extend(new.sources);
+        self.meshes.extend(new.meshes);
+        self.mesh_instances.extend(new.mesh_instances);
+    }
+}
+
 /// A pixel of a frame.
 pub(crate) struct Picked<'a> {
     pub model: &'a Model,
-    /// Of the model's instances, when the frame was recorded.
+    /// The transforms of the model's instances when the frame was recorded.
     pub transforms: &'a [DAffine3],
     pub camera: &'a Camera,
-    /// Its centre.
+    /// The pixel's centre.
     pub pixel: DVec2,
 }
 
 impl Picking {
-    /// What the pixel's words mean: that of `visibility`, where it sees nothing that of `others`.
+    /// The hit of the pixel's two words: that of `visibility`, or, if that is empty, that of meshes and solids.
     pub(crate) fn hit(&self, of: &Picked<'_>, words: [[u32; 2]; 2]) -> Option<Hit> {
         let sees = |word: &[u32; 2]| word[0] & !GAP_CANDIDATE != 0;
         let [seen, second] = words.into_iter().find(sees)?;
@@ -161,8 +173,8 @@ impl Picking {
         }
     }
 
-    /// The edge of the hit's face that is nearest to the pixel, within half a line's width and half a pixel. Its point
-    /// must not be farther behind the hit than the slope of the face explains.
+    /// The edge of the hit's face that is nearest to the pixel, at most half a line's width and half a pixel away. Its
+    /// point must not lie farther behind the hit than the slope of the face explains.
     fn edge(&self, of: &Picked<'_>, hit: &Hit) -> Option<usize> {
         let (known, settings) = self.edges.as_ref()?;
         let (instance, part, face) = (hit.instance?, hit.part?, hit.face?);
@@ -186,7 +198,7 @@ impl Picking {
 
     fn placed_item(&self, item: usize) -> [u32; 3] {
         let next = self.placed.partition_point(|placed| placed[0] as usize <= item);
-        self.placed[next - 1] // placed faces without patches have the first item of the next one
+        self.placed[next - 1] // a placed face without patches has the first item of the next one
     }
 
     fn patch(&self, of: &Picked<'_>, item: usize, second: u32) -> Option<Hit> {
@@ -255,7 +267,7 @@ impl Picked<'_> {
         self.nowhere(id, origin + direction * (depth / direction.dot(forward)))
     }
 
-    /// Of no part.
+    /// A hit on no part.
     fn nowhere(&self, id: u32, point: DVec3) -> Hit {
         let depth = self.depth(point);
         let (instance, part, face, triangle, edge) = (None, None, None, None, None);
@@ -277,8 +289,8 @@ impl Picked<'_> {
         (uv, point, outward.try_normalize())
     }
 
-    /// The point of a placed face that is seen at the pixel's centre, or the nearest in the picture that Newton's method
-    /// finds, from (u, v) on.
+    /// The point of a placed face at the pixel's centre, or the point nearest to it in the picture that Newton's method
+    /// finds from `uv`.
     fn refined(&self, face: &Face, transform: &DAffine3, mut uv: DVec2) -> (DVec2, DVec3, Option<DVec3>) {
         let to_pixels = self.camera.pixel_matrix() * DMat4::from(*transform);
         let ((u0, u1), (v0, v1)) = face.surface.domain();

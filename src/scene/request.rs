@@ -1,11 +1,11 @@
-//! What a scene is made by.
+//! The settings that a scene is made with.
 
 #[cfg(feature = "baselines")]
 use crate::baselines::SceneOptions;
 use crate::picture::{SceneSettings, TrimWay};
 use std::ops::Deref;
 
-/// A host's settings; and, for comparisons, what is done otherwise.
+/// A host's settings, and the options of baselines.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SceneRequest {
     pub settings: SceneSettings,

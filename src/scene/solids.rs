@@ -1,13 +1,13 @@
-//! Boolean solids turned into what the GPU keeps: switches, and the surfaces around their primitives.
+//! Boolean solids as GPU data: switches, and the surfaces of their primitives.
 //!
 //! ```text
 //!   solids ──one tree: their union──▶ Blist ──▶ Leaf per switch ──▶ LeafSurface per side ──▶ Surface
-//!          ──those seen through─────▶ a Blist each, behind it                            (shared where
+//!          ──transparent ones ──────▶ a Blist each, after it                                (shared where
 //!   cylinder:  round side (quadric) ∩ below the top ∩ above the bottom                    sides coincide)
 //! ```
 //!
-//! A surface is stored in coordinates of its own, of about the size of 1, so single precision suffices;
-//! where it is stays in `f64` and is given relative to the eye every frame.
+//! A surface is stored in coordinates of its own, of a size about 1, so single precision suffices. Its place stays in
+//! `f64` and is given relative to the eye every frame.
 
 mod blister;
 mod order;
@@ -28,35 +28,35 @@ use std::ops::Range;
 pub(super) use surface::Surface;
 use surface::{Placed, sides_of};
 
-/// The arrays that the GPU gets, and the centres that change with the eye.
+/// The arrays for the GPU, and the centres, which frames convert to the eye's coordinates.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SolidData {
     pub leaves: Vec<abi::Leaf>,
-    /// From this one on they are lists of items that rays are followed through; before it, of the union that is seen.
+    /// Leaves before this one belong to the opaque union. The others are lists of items that rays are followed through.
     pub followed: u32,
     pub leaf_surfaces: Vec<abi::LeafSurface>,
-    /// Of those that are no planes, which come first.
+    /// The surfaces that are not planes; they come first.
     pub surfaces: Vec<Surface>,
     /// Middle of each leaf's box, model coordinates.
     pub leaf_centres: Vec<DVec3>,
-    /// Where each surface is.
+    /// The place of each surface.
     pub places: Vec<Placed>,
-    /// Of each operand without equations, a leaf that shows it.
+    /// For each operand without equations, a leaf that shows it.
     pub shell_leaves: Vec<u32>,
-    /// And the box around it.
+    /// The box around each operand without equations.
     pub(super) shell_boxes: Vec<Bounds>,
-    /// The meshes around them: triangles, vertices relative to the middle of the operand's box, and corners to
-    /// draw of each.
+    /// The meshes of operands: triangles, vertices relative to the middle of the operand's box, and the corners to draw
+    /// of each mesh.
     pub operand_meshes: Vec<abi::OperandMesh>,
     pub operand_triangles: Vec<[u32; 3]>,
     pub operand_positions: Vec<[f32; 3]>,
-    /// Of each triangle of meshes some of whose triangles lie in a plane with others, the surface, or
-    /// [`NO_PLANE`](abi::NO_PLANE).
+    /// The surface of each triangle, or [`NO_PLANE`](abi::NO_PLANE); only for meshes with a triangle whose plane others
+    /// share.
     pub operand_planes: Vec<u32>,
     pub operand_draws: Vec<Range<u32>>,
-    /// Those, until the GPU has what is made of them.
+    /// The operands without equations, until their data is uploaded.
     pub(super) operands: Vec<shell::Operand>,
-    /// For [`SolidWay::Cst`]: the leaves as they are drawn.
+    /// For [`SolidWay::Cst`]: the leaves in the order of drawing.
     pub order: Vec<u32>,
     /// For [`SolidWay::Blister`].
     pub blister: Option<Blister>,
@@ -67,22 +67,22 @@ pub(crate) struct SolidData {
 #[allow(missing_docs)] // the messages say what each field is
 #[non_exhaustive]
 pub enum UndrawnSolid {
-    /// There are too many primitives, or their expression is too large.
+    /// There are too many primitives, or the expression is too large.
     #[error(transparent)]
     Union(#[from] SolidError),
-    /// Primitives have more sides, or there are more operands without equations, than an entry of a tile's list can name.
+    /// There are more sides of primitives, or operands without equations, than an entry of a tile's list can number.
     #[error("more than {} sides of primitives, or operands without equations", 1u32 << (u32::BITS - abi::LEAF_FLAG_BITS))]
     Sides,
-    /// A volume that trims a model is not made of what has equations.
+    /// A volume that trims a model has a primitive without equations.
     #[error("a volume that trims a model has a mesh or a part among its primitives; it needs equations")]
     Volume,
-    /// The way to trim is for comparisons.
+    /// The way to trim is a baseline's.
     #[error("what a volume trims is not drawn by `{0}`")]
     VolumeBy(&'static str),
 }
 
-/// Solids, and what becomes of them: the first `opaque` are one union, from `followed` on rays are followed through
-/// each, and those from `clear` on are drawn so.
+/// Solids in three groups. The first `opaque` ones form one union. Rays are followed through each from `followed` on,
+/// and those from `clear` on are transparent.
 #[derive(Clone, Debug)]
 pub(crate) struct Lists<'a> {
     pub solids: Cow<'a, [Solid]>,
@@ -92,13 +92,13 @@ pub(crate) struct Lists<'a> {
 }
 
 impl<'a> Lists<'a> {
-    /// The union of all.
+    /// All solids as one union.
     pub(super) fn union(solids: &'a [Solid]) -> Self {
         let count = solids.len();
         Self { solids: Cow::Borrowed(solids), opaque: count, followed: count, clear: count }
     }
 
-    /// What is seen through is followed; `all`: everything is.
+    /// Transparent items are followed; with `all`, every item is.
     pub(super) fn of(items: Items, all: bool) -> Self {
         let Items { opaque, parts, clear, .. } = items;
         let (first, second) = (opaque.len(), opaque.len() + parts.len());
@@ -107,18 +107,18 @@ impl<'a> Lists<'a> {
     }
 }
 
-/// Primitives and the surfaces that they share.
+/// Primitives and their shared surfaces.
 struct Shared {
     whole: Solid,
     table: SurfaceTable,
-    /// Numbers of the surfaces in the table, [`NO_PLANE`](abi::NO_PLANE) of those that triangles have to themselves.
+    /// Numbers of the table's surfaces; [`NO_PLANE`](abi::NO_PLANE) for planes that belong to one triangle.
     surface_of: Vec<u32>,
     middle: DVec3,
-    /// Numbers of the primitives that are shells.
+    /// The shell number of each primitive without equations.
     shells: Vec<Option<u32>>,
-    /// First leaves of each in the union: where it adds, and where it is taken away.
+    /// The first leaf of each primitive in the union: where it is added, and where it is subtracted.
     leaf_of: Vec<[Option<u32>; 2]>,
-    /// The surface of what has no volume.
+    /// The surface of primitives without volume.
     nothing: Option<u32>,
 }
 
@@ -142,7 +142,7 @@ impl SolidData {
         data.push_list(&mut shared, &union, 0, 0, &reaches);
         data.followed = data.leaves.len() as u32;
         let mut first = 0;
-        // what is followed tells of solids beyond what their unions show
+        // a followed item needs all of its primitives, not only the parts that the union shows
         let boxes: Vec<Bounds> = shared.whole.primitives().iter().map(Primitive::bounds).collect();
         for (k, solid) in lists.solids.iter().enumerate() {
             if k >= lists.followed {
@@ -158,7 +158,7 @@ impl SolidData {
         number_exits(&mut data.leaves);
         data.put_planes_last();
         for item in data.followed as usize..data.leaves.len() {
-            // an item that holds all that is far away is there in every tile
+            // an item that contains everything far away is present in every tile
             let leaf = &mut data.leaves[item];
             if leaf.item as usize == item && leaf.flags & abi::LEAF_FALLS == 0 {
                 leaf.flags |= abi::LEAF_UNBOUNDED;
@@ -180,8 +180,8 @@ impl SolidData {
         Ok(data)
     }
 
-    /// Surfaces in the order in which their first faces are met, which say where they are; returns their numbers. A
-    /// triangle that lies in a plane by itself does without.
+    /// Adds surfaces in the order of their first faces, which give their places; returns their numbers. A triangle that
+    /// shares its plane with no other gets none.
     fn push_surfaces(&mut self, whole: &Solid, table: &SurfaceTable, middle: DVec3) -> Vec<u32> {
         let mut users = vec![0u32; table.surfaces().len()];
         let primitives = || (0..).zip(whole.primitives());
@@ -213,7 +213,7 @@ impl SolidData {
         self.places.len() as u32 - 1
     }
 
-    /// Surfaces get their numbers, and sides their order: so that planes need no shape, and are told by their sides.
+    /// Renumbers surfaces so that planes come last, and sorts sides likewise: a plane then needs no shape record.
     fn put_planes_last(&mut self) {
         let is_plane = |p: &Placed| p.surface().is_none();
         let mut order: Vec<usize> = (0..self.places.len()).collect();
@@ -240,7 +240,8 @@ impl SolidData {
         }
     }
 
-    /// The switches of one list, whose primitives are those from `first_primitive` on and matter within `reaches`.
+    /// Adds the switches of one list. Its primitives begin at `first_primitive`, and each matters only within its box
+    /// in `reaches`.
     fn push_list(
         &mut self,
         shared: &mut Shared,
@@ -260,13 +261,13 @@ impl SolidData {
             };
             let p = first_primitive + entry.primitive();
             let primitive = &shared.whole.primitives()[p as usize];
-            // places within shells are told from their boxes
+            // whether a point is within a shell is decided by its box
             let is_shell = shell::is_shell(primitive);
             let bounds = if is_shell { primitive.bounds() } else { reaches[entry.primitive() as usize] };
             let bounded = bounds.is_empty() || bounds.min.is_finite() && bounds.max.is_finite();
             let (centre, half) = match bounded {
-                true if bounds.is_empty() => (shared.middle, DVec3::ZERO), // somewhere, a point
-                // a face is that of the surface that it shares: of another primitive, which may be larger
+                true if bounds.is_empty() => (shared.middle, DVec3::ZERO), // a single point, anywhere
+                // faces lie on the surface that they share, which may be that of a larger primitive
                 true => {
                     let beyond = if is_shell { 0.0 } else { shared.table.distance() };
                     (bounds.centre(), (bounds.max - bounds.min) * 0.5 + beyond)
@@ -292,7 +293,7 @@ impl SolidData {
                 faces.iter().map(|f| shared.surface_of[f.surface as usize] << abi::SIDE_SHIFT | u32::from(f.flipped));
             self.leaf_surfaces.extend(sides.map(|surface| abi::LeafSurface { surface, leaf }));
             if faces.is_empty() && !is_shell {
-                // a primitive without volume is the inside of no point
+                // no point is within a primitive without volume
                 let nowhere = || self.push_surface(Some(surface::nowhere(shared.middle)));
                 let nothing = *shared.nothing.get_or_insert_with(nowhere);
                 self.leaf_surfaces.push(abi::LeafSurface { surface: nothing << abi::SIDE_SHIFT, leaf });
@@ -313,7 +314,7 @@ impl SolidData {
         }
     }
 
-    /// [`SolidWay::Events`] finds the faces: asked for, or for want of another way.
+    /// [`SolidWay::Events`] finds the faces, by request or because no other way can.
     pub(crate) fn is_by_events(&self) -> bool {
         !self.leaves.is_empty() && self.blister.is_none() && self.order.is_empty()
     }
@@ -323,7 +324,7 @@ impl SolidData {
         (self.followed as usize) < self.leaves.len()
     }
 
-    /// The volume that trims a scene; `None` when it is everywhere.
+    /// The volume that trims a scene; `None` if it is all of space.
     pub(super) fn volume(volume: &Solid, coincidence: f64, way: TakenWay) -> Result<Option<Self>, UndrawnSolid> {
         if !matches!(way, TakenWay::Table | TakenWay::Exact) {
             return Err(UndrawnSolid::VolumeBy(way.name()));
@@ -341,7 +342,7 @@ impl SolidData {
         Ok(Some(data))
     }
 
-    /// A leaf that no point is in.
+    /// Adds a leaf that contains no point.
     fn push_nothing(&mut self) {
         let nothing = self.push_surface(Some(surface::nowhere(DVec3::ZERO)));
         self.leaf_surfaces.push(abi::LeafSurface { surface: nothing << abi::SIDE_SHIFT, leaf: 0 });
@@ -351,7 +352,7 @@ impl SolidData {
         self.put_planes_last();
     }
 
-    /// `None` without leaves, else the most general kind of surface: `SURFACE_*`.
+    /// The most general kind of surface, `SURFACE_*`; `None` without leaves.
     pub(crate) fn kinds(&self) -> Option<u32> {
         (!self.leaves.is_empty()).then(|| match self.surfaces.as_slice() {
             [] => abi::SURFACE_PLANE,
@@ -360,22 +361,22 @@ impl SolidData {
         })
     }
 
-    /// What frames need once the GPU has the rest.
+    /// The part that frames still need after the upload.
     pub(crate) fn centres_only(self) -> Self {
         let Self { leaf_centres, places, shell_boxes, .. } = self;
         Self { leaf_centres, places, shell_boxes, ..Self::default() }
     }
 }
 
-/// A point near everything that is bounded.
+/// A point near all bounded solids.
 fn middle_of(solids: &[Solid]) -> DVec3 {
     let all = solids.iter().map(Solid::bounds).filter(|b| b.min.is_finite() && b.max.is_finite());
     let all = all.fold(crate::model::Bounds::EMPTY, crate::model::Bounds::union);
     if all.is_empty() { DVec3::ZERO } else { all.centre() }
 }
 
-/// Numbers the leaves so that the leaves whose chain of out-exits passes a leaf are a range, and marks
-/// where the chains end. Exits lead forward.
+/// Numbers the leaves so that all leaves whose chain of out-exits passes through a leaf form a range, and marks the end
+/// of each chain. Exits lead forward.
 fn number_exits(leaves: &mut [abi::Leaf]) {
     let mut size = vec![1u32; leaves.len()];
     for i in 0..leaves.len() {
@@ -384,8 +385,8 @@ fn number_exits(leaves: &mut [abi::Leaf]) {
             size[out as usize] += size[i];
         }
     }
-    // parents stand behind their children, so they are numbered first; `next` is the first number free
-    // below each leaf, and below the two ends
+    // parents stand after their children, so they are numbered first; `next` is the first free number below each leaf,
+    // and below the two ends
     let mut next = vec![0u32; leaves.len()];
     let mut ends = 0;
     for i in (0..leaves.len()).rev() {

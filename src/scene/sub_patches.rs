@@ -1,4 +1,4 @@
-//! Patches of solids' trimmed faces cut into pieces, so that most of what is seen of them needs no trim test.
+//! Splits the patches of solids' trimmed faces, so that most of their pixels need no trim test.
 //!
 //! ```text
 //!   ┌─────────────────┐           ┌───┬─────┬───────┐
@@ -10,10 +10,10 @@
 //!   └──────────────┴──┘           └───┴─────┴───────┘
 //! ```
 //!
-//! Made once, for no view in particular: what a piece costs in each frame is set against the tests that it saves where the
-//! whole scene is some thousand pixels wide. From as many lines as there is room for, the one that is worth least goes,
-//! and the next, until each is worth what it costs. Closer up, they are worth more; what is cut out of a model for close
-//! views (`scene/deep_zoom`) is made for views of one size and cut for that.
+//! The split is made once, for no particular view. It weighs the cost of a piece in each frame against the trim tests
+//! that it saves if the whole scene is [`VIEW_PX`] wide. It starts from the finest grid of lines and removes the least
+//! useful line until every line saves more than it costs. Closer views save more. A cut for a close view
+//! (`scene/deep_zoom`) has one size of view, and is split for that.
 
 use super::flatten::divided;
 use crate::abi::Side;
@@ -22,45 +22,45 @@ use crate::trim::{LoopIndex, RectSide};
 use glam::{DVec2, DVec4};
 use std::ops::Range;
 
-/// Across the scene, in the view that decides. Twice as many made turning frames of whole scenes slower by 5 %; ten times
-/// closer frames took 0.91 to 1.03 of the time.
+/// Width of the scene, in pixels, for which lines are chosen. A larger value makes frames of whole scenes slower and
+/// close ones hardly faster.
 pub(super) const VIEW_PX: f64 = 2000.0;
-/// What a drawn piece costs, in tested pixels. llvmpipe: some 5 µs, and 50 ns.
+/// Cost of drawing a piece, in tested pixels.
 const PIECE_PX: f64 = 150.0;
-/// What a pixel that needs no test costs, in tested pixels.
+/// Cost of a pixel without a test, in tested pixels.
 const PLAIN_PX: f64 = 0.3;
-/// Halvings of a patch along each parameter, at most.
+/// Most halvings of a patch along each parameter.
 const MOST_HALVINGS: u32 = 5;
-/// Pieces are not narrower than this, in pixels.
+/// Least width of a piece, in pixels.
 const LEAST_PX: f64 = 12.0;
-/// Of a piece's width, on each side: where no curve passes either. Skirts reach beyond their pieces, and only
-/// tested ones are asked for them.
+/// Margin on each side, as a share of a piece's width, that no curve may cross either. Skirts reach beyond their
+/// pieces, and only tested pieces are tested there.
 const MARGIN: f64 = 0.25;
 
-/// Each patch against the loops.
+/// How each patch lies to the loops.
 fn sides(grid: &PatchGrid, index: &LoopIndex) -> Vec<Side> {
     grid.patches.iter().map(|p| side(p, index, 0.0)).collect()
 }
 
-/// A grid of pieces.
+/// A grid of patches, split or not.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SubPatches {
     pub grid: PatchGrid,
-    /// Each of its patches against the loops.
+    /// How each patch lies to the loops.
     pub sides: Vec<Side>,
-    /// Of the patch that a column, and a row, was cut from: how much of it is in that.
+    /// The share of its original patch that each column, and each row, covers.
     pub shares: [Vec<f64>; 2],
 }
 
 impl SubPatches {
-    /// A grid that stays whole.
+    /// A grid that is not split.
     pub(super) fn whole(grid: PatchGrid, sides: Vec<Side>) -> Self {
         let shares = [grid.count_u, grid.count_v].map(|count| vec![1.0; count]);
         Self { grid, sides, shares }
     }
 }
 
-/// The grid, cut where that pays; `extent` is the scene's, in the units of the face.
+/// Splits the grid where that saves time; `extent` is the scene's, in the face's units.
 pub(super) fn sub_patches(grid: PatchGrid, index: &LoopIndex, extent: f64) -> SubPatches {
     let px = VIEW_PX / extent;
     let cuts = finest(&grid, if px.is_finite() { px } else { 0.0 });
@@ -75,7 +75,7 @@ pub(super) fn sub_patches(grid: PatchGrid, index: &LoopIndex, extent: f64) -> Su
     SubPatches { grid: divided(grid, &kept), sides: lines.sides(), shares }
 }
 
-/// Where each column and each row would be cut into the most equal pieces that it has room for.
+/// The finest split of each column and row: equal pieces, none narrower than [`LEAST_PX`].
 fn finest(grid: &PatchGrid, px: f64) -> [Vec<Vec<f64>>; 2] {
     let (size_u, size_v): (Vec<f64>, Vec<f64>) = grid.patches.iter().map(size).unzip();
     let largest = |sizes: &mut dyn Iterator<Item = &f64>| sizes.fold(0.0, |m: f64, x| m.max(*x));
@@ -88,14 +88,14 @@ fn finest(grid: &PatchGrid, px: f64) -> [Vec<Vec<f64>>; 2] {
     [across.collect(), up.collect()]
 }
 
-/// Lengths of a patch along u and v, about.
+/// Approximate lengths of a patch along u and v.
 fn size(p: &SurfacePatch) -> (f64, f64) {
     let length = |row: &[DVec4]| row.windows(2).map(|w| w[0].point().distance(w[1].point())).sum::<f64>();
     let mean = |p: &Patch| (0..=p.degree_v).map(|j| length(p.row(j))).sum::<f64>() / (p.degree_v + 1) as f64;
     (mean(&p.patch), mean(&p.patch.transposed()))
 }
 
-/// A patch against the loops, with so much of its width on each side.
+/// How a patch with a margin lies to the loops; `margin` is a share of its width on each side.
 fn side(p: &SurfacePatch, index: &LoopIndex, margin: f64) -> Side {
     let (lo, hi) = (DVec2::new(p.u.0, p.v.0), DVec2::new(p.u.1, p.v.1));
     let around = margin * (hi - lo);
@@ -106,7 +106,7 @@ fn side(p: &SurfacePatch, index: &LoopIndex, margin: f64) -> Side {
     }
 }
 
-/// What patches of so many pixels cost.
+/// The cost of a piece of `px` pixels.
 fn cost(side: Side, px: f64) -> f64 {
     match side {
         Side::Outside => 0.0,
@@ -115,17 +115,17 @@ fn cost(side: Side, px: f64) -> f64 {
     }
 }
 
-/// The lines between the finest pieces, as far as they are kept.
+/// The lines between the finest pieces that are not removed yet.
 struct Lines {
-    /// Of all finest pieces below each of their corners in u and in v, along u fastest.
+    /// A summed-area table: for each corner, all finest pieces below it in u and in v, along u fastest.
     below: Vec<Sum>,
-    /// Corners along u.
+    /// Number of corners along u.
     corners_u: usize,
-    /// Along u and along v: where the spans between lines end.
+    /// The ends of the spans between lines, along u and along v.
     ends: [Vec<End>; 2],
 }
 
-/// Of some of the finest pieces.
+/// Sums over some of the finest pieces.
 #[derive(Clone, Copy, Default)]
 struct Sum {
     px: f64,
@@ -133,12 +133,12 @@ struct Sum {
     outside: i64,
 }
 
-/// Where a span of the finest pieces ends.
+/// The end of a span of the finest pieces.
 #[derive(Clone, Copy)]
 struct End {
-    /// The piece behind it.
+    /// The first piece after it.
     at: usize,
-    /// A patch ends there: it stays.
+    /// An original patch ends here; the line is never removed.
     fixed: bool,
 }
 
@@ -163,7 +163,7 @@ impl Lines {
         Self { below, corners_u, ends }
     }
 
-    /// Gives up the line that is worth least, as long as there is one that costs more than it saves.
+    /// Removes the least useful line, while one costs more than it saves.
     fn merge(&mut self) {
         loop {
             let all = (0..2).flat_map(|axis| (0..self.ends[axis].len()).map(move |k| (axis, k)));
@@ -182,7 +182,7 @@ impl Lines {
         start..self.ends[axis][k].at
     }
 
-    /// What all would cost more without the line at the end of span `k` along an axis.
+    /// The cost saved by the line at the end of span `k` along an axis.
     fn worth(&self, axis: usize, k: usize) -> f64 {
         let (low, high) = (self.span(axis, k), self.span(axis, k + 1));
         let of = |own: Range<usize>, other: &Range<usize>| {
@@ -194,7 +194,7 @@ impl Lines {
         others.map(|other| of(low.start..high.end, &other) - of(low.clone(), &other) - of(high.clone(), &other)).sum()
     }
 
-    /// The finest pieces of a rectangle as one: how it lies to the loops, and its pixels.
+    /// The finest pieces of a rectangle as one piece: how it lies to the loops, and its pixels.
     fn merged(&self, u: Range<usize>, v: Range<usize>) -> (Side, f64) {
         let count = (u.len() * v.len()) as i64;
         let below = |i: usize, j: usize| self.below[j * self.corners_u + i];
@@ -211,13 +211,13 @@ impl Lines {
         (side, all.px - left.px - under.px + both.px)
     }
 
-    /// Of the pieces between the lines that are kept.
+    /// How the pieces between the remaining lines lie to the loops.
     fn sides(&self) -> Vec<Side> {
         let spans = |axis: usize| (0..self.ends[axis].len()).map(move |k| self.span(axis, k));
         spans(1).flat_map(|v| spans(0).map(move |u| self.merged(u, v.clone()).0)).collect()
     }
 
-    /// Those of the cuts that are kept.
+    /// The cuts of the remaining lines.
     fn kept(&self, cuts: &[Vec<Vec<f64>>; 2]) -> [Vec<Vec<f64>>; 2] {
         std::array::from_fn(|axis| {
             let mut kept = self.ends[axis].iter().map(|end| end.at).peekable();

@@ -1,16 +1,16 @@
-//! What a sun sees of what casts shadows: which of it each part of its picture sees.
+//! The sun's picture: tiles across its rays, each with a list of what may cast shadows in it.
 //!
 //! ```text
-//!        ☀  rays are parallel: one picture for all frames         right ▶
-//!        │                                              ┌────┬────┬────┐ up ▲     tiles, each with the leaves whose
-//!   ┌────┴────┐  boxes of leaves ──────────────────────▶│ A  │ AB │ B  │          boxes reach into it, and their Blist;
-//!   ▼         ▼  triangles, facets                      └────┴────┴────┘          triangles of those without equations;
-//! ```                                                                             facets of parts that are placed
+//!        ☀  rays are parallel: one picture for all frames    right ▶
+//!        │                                          ┌────┬────┬────┐ up ▲   tiles; each lists the leaves whose boxes
+//!   ┌────┴────┐  boxes of leaves ──────────────────▶│ A  │ AB │ B  │        reach it, and their Blist; triangles of
+//!   ▼         ▼  triangles, facets                  └────┴────┴────┘        operands without equations; facets of parts
+//! ```
 //!
-//! As passes `solid_rects` to `solid_fold` have it for the eye, but made once, on the CPU and in `f64`: it depends on
-//! the scene and the sun only. A point beside the picture belongs to the nearest tile, since nothing that is missing
-//! there reaches beyond the picture. [`casters`] says what there is, [`faces`] and [`region`] how trimmed faces become
-//! triangles.
+//! For the eye, passes `solid_rects` to `solid_fold` make such lists in each frame. For the sun they are made once, on
+//! the CPU in `f64`, since they depend only on the scene and the sun. A point beside the picture belongs to the nearest
+//! tile, because everything that casts shadows lies within the picture. [`casters`] collects what casts shadows;
+//! [`faces`] and [`region`] turn trimmed faces into triangles.
 
 mod casters;
 mod faces;
@@ -28,54 +28,54 @@ use rayon::prelude::*;
 /// The sun of a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct SunData {
-    /// Of unit length.
+    /// Unit vector towards the sun.
     towards: DVec3,
-    /// Across the rays, of unit length.
+    /// Unit vector across the rays.
     right: DVec3,
     up: DVec3,
     /// The corner of the first tile, along `right` and `up`.
     corner: DVec2,
-    /// Of a tile, model units.
+    /// Side of a tile, in model units.
     side: f64,
-    /// Tiles along `right` and `up`; none where nothing casts shadows.
+    /// Number of tiles along `right` and `up`; 0 if nothing casts shadows.
     across: [u32; 2],
     pub tiles: Vec<SunTile>,
     pub leaves: Vec<TileLeaf>,
     pub triangles: Vec<SunTriangle>,
     pub facets: Vec<SunFacet>,
-    /// Triangles of each tile, and facets behind all of those.
+    /// The triangles of each tile, and after all of them the facets of each tile.
     pub lists: Vec<u32>,
-    /// Middles of the parts that have facets, model coordinates.
+    /// Middles of the parts with facets, in model coordinates.
     pub middles: Vec<DVec3>,
-    /// Parts and operands that were too much.
+    /// Number of parts and operands that are left out for want of room.
     pub left_out: usize,
-    /// The most that the spline faces that cast shadows are off by, model units.
+    /// Largest deviation of the flattened spline faces, in model units.
     pub deviation: f64,
 }
 
-/// Tiles to a leaf or triangle, and at most: lists of some each, where they lie beside each other.
+/// Wanted number of tiles for each leaf or triangle, and most tiles of all: then lists of casters side by side are
+/// short.
 const TILES_EACH: usize = 4;
 const MOST_TILES: usize = 1 << 16;
-/// Entries of all lists to a leaf or triangle, above those that few may have: what lies before each other gets larger
-/// tiles.
+/// Most entries of all lists, for each leaf or triangle, beyond a number that small scenes may have. Casters that lie
+/// behind each other exceed it and get larger tiles.
 const ENTRIES_EACH: u64 = 32;
 const FEW_ENTRIES: u64 = 1 << 16;
-/// And of all lists at most, where there are fewer tiles to make: 64 MiB.
+/// Most entries of all lists in any scene: 64 MiB.
 const MOST_ENTRIES: u64 = 1 << 24;
-/// A box reaches this far beside itself, in tiles: above the rounding of a point seen from an eye that is a thousand
-/// scenes away.
+/// Margin around a box, in tiles. It is larger than the rounding of a point seen from an eye a thousand scenes away.
 const MARGIN: f64 = 1.0 / 32.0;
-/// Of a tile, model units: single precision holds its inverse.
+/// Least side of a tile, in model units: its inverse is finite in single precision.
 const LEAST_SIDE: f64 = 1e-30;
 
-/// A box across the rays, model units.
+/// A box across the rays, in model units.
 #[derive(Clone, Copy)]
 struct Square {
     low: DVec2,
     high: DVec2,
 }
 
-/// Tiles from first to last that something reaches.
+/// First and last tile that something reaches.
 #[derive(Clone, Copy)]
 struct Rect {
     first: [u32; 2],
@@ -83,8 +83,8 @@ struct Rect {
 }
 
 impl SunData {
-    /// `towards` is finite and not 0; its square may be neither. `placed`: the model whose instances cast shadows, all of
-    /// them drawn.
+    /// `towards` is finite and not 0; its square may overflow or vanish. `placed` is the model whose instances cast
+    /// shadows; all of them are drawn.
     pub(super) fn new(towards: DVec3, solids: &SolidData, placed: Option<&Model>) -> Self {
         let towards = (towards / towards.abs().max_element()).normalize();
         let (right, up) = towards.any_orthonormal_pair();
@@ -120,12 +120,12 @@ impl SunData {
         let ends = boxes.iter().flatten().copied().chain(facets.iter().map(of_facet));
         let (low, high) =
             ends.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), b| (lo.min(b.low), hi.max(b.high)));
-        // one tile where there is nothing, or where numbers have no room for what is between
+        // one tile if there is nothing, or if the size is not finite
         let size = if low.cmple(high).all() && (high - low).is_finite() { high - low } else { DVec2::ZERO };
         sun.corner = if low.is_finite() { low } else { DVec2::ZERO };
         let count = leaves.len() + triangles.len() + facets.len();
         let wanted = (TILES_EACH * count).clamp(1, MOST_TILES) as f64;
-        // square tiles, `wanted` of them, or a row of as many
+        // `wanted` square tiles, or a row of `wanted` tiles
         let square = size.x.sqrt() * size.y.sqrt() / wanted.sqrt();
         sun.side = square.max(size.max_element() / wanted).max(LEAST_SIDE);
         let most = (FEW_ENTRIES + ENTRIES_EACH * count as u64).min(MOST_ENTRIES);
@@ -150,7 +150,7 @@ impl SunData {
         DVec2::new(self.right.dot(p), self.up.dot(p))
     }
 
-    /// Where a leaf is across the rays; `None` everywhere.
+    /// The box of a leaf across the rays; `None` if the leaf is unbounded.
     fn square_of(&self, leaf: &Leaf, centre: DVec3) -> Option<Square> {
         let half = DVec3::from_array(leaf.half_size.map(f64::from));
         let bounded = leaf.flags & LEAF_UNBOUNDED == 0 && half.is_finite() && centre.is_finite();
@@ -166,7 +166,7 @@ impl SunData {
         Rect { first: [tile(first.x, 0), tile(first.y, 1)], last: [tile(end.x, 0), tile(end.y, 1)] }
     }
 
-    /// The leaves of each tile, in order, and their exits; the triangles; and the facets.
+    /// Makes each tile's list of leaves, in order and with exits, and its lists of triangles and facets.
     fn list(&mut self, casters: &[Leaf], of_leaves: &[Rect], of_triangles: &[Rect], of_facets: &[Rect]) {
         let (starts, leaves) = self.by_tile(of_leaves);
         let (triangle_starts, mut lists) = self.by_tile(of_triangles);
@@ -197,7 +197,7 @@ impl SunData {
         }
     }
 
-    /// Who reaches each tile, in order, and where its list begins.
+    /// The start of each tile's list, and the lists: the numbers of the rects that reach each tile, ascending.
     fn by_tile(&self, rects: &[Rect]) -> (Vec<u32>, Vec<u32>) {
         let across = self.across[0];
         let tiles = |r: &Rect| {
@@ -219,12 +219,12 @@ impl SunData {
         (starts, lists)
     }
 
-    /// Middles of parts that have facets, seen from an eye, as texels.
+    /// Middles of the parts with facets, relative to the eye, as texels.
     pub(crate) fn middles_from(&self, eye: DVec3) -> Vec<[f32; 4]> {
         self.middles.iter().map(|middle| (middle - eye).as_vec3().extend(0.0).to_array()).collect()
     }
 
-    /// For the frames of an eye.
+    /// The sun's constants for frames of an eye.
     pub(crate) fn seen_from(&self, eye: DVec3) -> abi::Sun {
         let place = (DVec2::new(self.right.dot(eye), self.up.dot(eye)) - self.corner) / self.side;
         abi::Sun {
@@ -234,7 +234,7 @@ impl SunData {
             down: self.across[1],
             up: (self.up / self.side).as_vec3().to_array(),
             eye: place.as_vec2().to_array(),
-            // each of two faces is off by the deviation, and their trims by less than that again
+            // both faces at a border deviate by up to this, and their trims by less than as much again
             crack: (4.0 * self.deviation / self.side) as f32,
         }
     }
@@ -244,14 +244,14 @@ impl SunData {
         self.across[0] > 0
     }
 
-    /// What frames need once the GPU has the rest.
+    /// The part that frames still need after the upload.
     pub(super) fn directions_only(self) -> Self {
         let (tiles, leaves, triangles) = (Vec::new(), Vec::new(), Vec::new());
         Self { tiles, leaves, triangles, facets: Vec::new(), lists: Vec::new(), ..self }
     }
 }
 
-/// Of a triangle's corners.
+/// The box around a triangle's corners.
 fn square_of(triangle: &Flat) -> Square {
     let [a, b, c] = triangle.corners;
     Square { low: a.min(b).min(c), high: a.max(b).max(c) }
@@ -264,9 +264,9 @@ impl Rect {
     }
 }
 
-/// The Blist of some of the leaves: one that is missing is one that the point is out of.
+/// The Blist restricted to some leaves; the point is outside all others.
 struct Folded {
-    /// Exits are places in the list.
+    /// Exits are places in the restricted list.
     leaves: Vec<TileLeaf>,
     entry: u32,
 }
@@ -274,13 +274,14 @@ struct Folded {
 impl Folded {
     /// `list` is ascending.
     ///
-    /// A walk that goes to a missing leaf follows its out-exits to the first that is there. These make a forest, in
-    /// which leaf `l` has numbers `pre..end`: sought is the innermost range of `list` that holds the missing leaf's.
+    /// A walk that reaches a missing leaf follows its out-exits to the first leaf in the list. Out-exits form a forest
+    /// in which leaf `l` has the numbers `pre..end`. So the next leaf of the walk is the one whose range is the
+    /// innermost around the missing leaf's number.
     fn new(casters: &[Leaf], list: &[u32]) -> Self {
         let mut order: Vec<u32> = (0..list.len() as u32).collect();
         let leaf = |place: u32| &casters[list[place as usize] as usize];
         order.sort_unstable_by_key(|place| leaf(*place).pre);
-        // ranges around each, by a stack
+        // the innermost range around each leaf, by a stack
         let mut around = vec![None; order.len()];
         let mut open: Vec<usize> = Vec::new();
         for (at, place) in order.iter().enumerate() {

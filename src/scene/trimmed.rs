@@ -1,12 +1,12 @@
-//! Which views a trim table is made for.
+//! The views for which a trim table is made.
 //!
 //! ```text
-//!   all that is trimmed is about as wide as the picture  ──▶ Everywhere    around.rs    any view from about as far
-//!   a part of it is seen                                 ──▶ Of(wider)     nearby.rs    any view from near by
-//!   the eye is at a face, or above a pole                ──▶ Of(view)                   this view
+//!   everything trimmed is about as wide as the picture  ──▶ Everywhere   whole_view.rs  any view from about as far
+//!   a part of it is seen                                ──▶ Of(wider)    view_cell.rs   any view of the view cell
+//!   the eye is at a face, or above a pole               ──▶ Of(view)                    this view only
 //! ```
 //!
-//! Each follows from the view alone, not from what was drawn before: so does the picture.
+//! The table depends on the view alone, not on earlier frames; so does the picture.
 
 use super::data::SceneData;
 use super::view_cell::view_cell;
@@ -16,20 +16,20 @@ use crate::picture::TakenWay;
 use glam::{DAffine3, Vec3};
 use std::ops::Range;
 
-/// Cells that share a box: a few bytes for each, and yet boxes that are not much larger than a cell.
+/// Cells that share a box: a few bytes for each cell, and boxes not much larger than a cell.
 const GROUP: usize = 16;
 
-/// What a trim table is made of: two views with the same can have the same table.
+/// The input of a trim table. Two views with equal input may use the same table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum TableView {
-    /// So many pixels a model unit, seen or not.
+    /// A density in pixels a model unit, for all cells, visible or not.
     Everywhere(f32),
-    /// What this camera sees, as fine as it sees it.
+    /// The cells that this camera sees, as densely as it sees them.
     Of(Camera),
 }
 
 impl TableView {
-    /// Pixels a model unit; 0 where that is as a camera sees it.
+    /// Pixels a model unit; 0 if the camera decides.
     pub(crate) fn density(&self) -> f32 {
         match self {
             Self::Everywhere(density) => *density,
@@ -38,15 +38,15 @@ impl TableView {
     }
 }
 
-/// Where what the table trims is, in the model's coordinates.
+/// Boxes around everything that the table trims, in model coordinates.
 #[derive(Clone, Debug)]
 pub(crate) struct Trimmed {
     ball: Option<Ball>,
-    /// Of some cells of one instance each; empty where nobody sees it.
+    /// The box of each group of cells of one instance; empty if the instance is hidden.
     boxes: Vec<Bounds>,
-    /// Of each placed part, which boxes are its own.
+    /// The range of boxes of each placed part.
     placed: Vec<PlacedBoxes>,
-    /// Of the cells of all faces, in the coordinates of their part's centre.
+    /// The boxes of all faces' cells, relative to their part's centre.
     cells: Vec<[[f32; 3]; 2]>,
 }
 
@@ -55,12 +55,12 @@ pub(crate) struct Trimmed {
 struct PlacedBoxes {
     boxes: Range<usize>,
     cells: Range<usize>,
-    /// Around all of its boxes.
+    /// The box around all of its boxes.
     around: Bounds,
 }
 
 impl Trimmed {
-    /// As placed; `None` where there is no table.
+    /// The boxes of a scene's placed cells; `None` without a table.
     pub(super) fn by_table(data: &SceneData) -> Option<Self> {
         if data.trim_way() != Some(TakenWay::Table) {
             return None;
@@ -69,7 +69,7 @@ impl Trimmed {
         let mut trimmed = Self { ball: None, boxes: Vec::new(), placed: Vec::new(), cells };
         let mut faces = data.face_instances.iter().peekable();
         for (number, placement) in (0..).zip(&data.placements) {
-            // the faces of a part follow each other, and so do their cells
+            // the faces of a part are consecutive, and so are their cells
             let mut cells = 0..0;
             while let Some(face) = faces.next_if(|face| face.instance == number) {
                 let face = face.face as usize;
@@ -87,7 +87,7 @@ impl Trimmed {
         Some(trimmed)
     }
 
-    /// The part of this number is placed so, or not seen. [`settle`](Self::settle) follows.
+    /// Moves the part of this number, or hides it (`None`). Call [`settle`](Self::settle) after the last change.
     pub(super) fn place(&mut self, number: usize, placement: Option<&DAffine3>) {
         let Some(part) = self.placed.get_mut(number) else { return };
         let boxes = &mut self.boxes[part.boxes.clone()];
@@ -98,13 +98,30 @@ impl Trimmed {
         part.around = boxes.iter().copied().fold(Bounds::EMPTY, Bounds::union);
     }
 
-    /// All parts are placed.
+    /// So many placed parts come behind these; `new` has those that the table trims. [`settle`](Self::settle) follows.
+    pub(super) fn join(&mut self, new: Option<Self>, parts: usize) {
+        let (boxes, cells) = (self.boxes.len(), self.cells.len());
+        let behind = |range: Range<usize>, first: usize| range.start + first..range.end + first;
+        let Some(new) = new else {
+            let nothing = PlacedBoxes { boxes: boxes..boxes, cells: cells..cells, around: Bounds::EMPTY };
+            return self.placed.extend(std::iter::repeat_n(nothing, parts));
+        };
+        self.boxes.extend(new.boxes);
+        self.cells.extend(new.cells);
+        self.placed.extend(new.placed.into_iter().map(|part| PlacedBoxes {
+            boxes: behind(part.boxes, boxes),
+            cells: behind(part.cells, cells),
+            ..part
+        }));
+    }
+
+    /// Updates the ball around all boxes.
     pub(super) fn settle(&mut self) {
         self.ball = Ball::around(self.placed.iter().map(|part| part.around).fold(Bounds::EMPTY, Bounds::union));
     }
 }
 
-/// Of a cell, as placed.
+/// The box of a placed cell.
 fn box_of(cell: &[[f32; 3]; 2], placement: &DAffine3) -> Bounds {
     let [min, max] = cell.map(|p| Vec3::from_array(p).as_dvec3());
     let corners = Bounds { min, max }.corners().map(|corner| placement.transform_point3(corner));
@@ -112,7 +129,7 @@ fn box_of(cell: &[[f32; 3]; 2], placement: &DAffine3) -> Bounds {
 }
 
 impl SceneData {
-    /// What a trim table for this view and so many pixels beside it is made of; `None` where there is no table.
+    /// The input of a trim table for this view and a margin of `beside_px` pixels; `None` without a table.
     pub(crate) fn table_view(&self, camera: &Camera, beside_px: f64) -> Option<TableView> {
         let trimmed = self.trimmed.as_ref()?;
         let ball = trimmed.ball.as_ref()?;

@@ -1,4 +1,4 @@
-//! The scene's persistent buffers: only those that its model needs.
+//! The scene's persistent buffers. Each exists only if the model needs it.
 
 #[cfg(feature = "baselines")]
 use super::Division;
@@ -16,38 +16,38 @@ use std::ops::Range;
 /// A scene in GPU memory.
 pub(crate) struct Scene {
     pub patches: TexelBuffer,
-    /// Where nothing of their faces is; `None` where they are not asked whether they lie behind others.
-    outside: Option<Buffer>,
-    /// Of the normals of each patch; `None` where no part is closed without trims.
+    /// The cells of each patch that no part of the face covers; `None` without occlusion culling.
+    pub(super) outside: Option<Buffer>,
+    /// The cone of each patch's normals; `None` if no part is closed and without trims.
     pub cones: Option<Buffer>,
     /// Homogeneous control points, and fine nets.
     pub points: TexelBuffer,
-    /// Sides that faces share; `None` where they share none.
+    /// Sides that faces share; `None` if there are none.
     pub links: Option<Buffer>,
     pub faces: TexelBuffer,
     pub face_instances: TexelBuffer,
     pub instances: TexelBuffer,
     pub items: TexelBuffer,
-    /// What divides patches in place of the bound; `None` where that does.
+    /// Slefes and their table; `None` if bounds divide the patches.
     #[cfg(feature = "baselines")]
     slefes: Option<Buffer>,
-    /// What trimming needs; `None` when no patch is trimmed.
+    /// Buffers of the trim test; `None` if no patch is trimmed.
     pub trims: Option<Trims>,
     /// Boolean solids; `None` when there are none.
     pub solids: Option<Solids>,
-    /// What meshes need; `None` when there is none.
+    /// Buffers of meshes; `None` if there are none.
     pub meshes: Option<MeshBuffers>,
-    /// The volume that trims faces and meshes; `None` when none does.
+    /// The volume that trims faces and meshes; `None` without one.
     pub volume: Option<Volume>,
-    /// Parts and instances of the model, of each instance; `None` where nothing tells them apart.
+    /// The model's part and instance of each instance; `None` if no output needs them.
     pub sources: Option<TexelBuffer>,
-    /// What lines along edges are drawn from; `None` where there are none.
+    /// Buffers of lines along edges; `None` without lines.
     pub edges: Option<EdgeBuffers>,
-    /// What the sun sees; `None` without one, and where nothing casts shadows.
+    /// The sun's picture; `None` without a sun, or if nothing casts shadows.
     pub sun: Option<SunTiles>,
 }
 
-/// Edges of parts, in pieces, and where these are placed.
+/// Pieces of the parts' edges, and their placed copies.
 pub(crate) struct EdgeBuffers {
     pub pieces: Buffer,
     pub points: TexelBuffer,
@@ -61,58 +61,58 @@ pub(crate) struct EdgeBuffers {
 pub(crate) struct SunTiles {
     pub tiles: Buffer,
     pub leaves: Buffer,
-    /// Those of operands and of placed parts, and which each tile sees; only where there are some.
+    /// Triangles of operands and of placed parts, and each tile's lists; `None` if there are none.
     pub triangles: Option<TexelBuffer>,
     pub facets: Option<TexelBuffer>,
     pub lists: Option<TexelBuffer>,
 }
 
-/// A volume's switches, and their surfaces.
+/// A volume's switches and surfaces.
 pub(crate) struct Volume {
     pub leaves: Buffer,
     pub leaf_surfaces: TexelBuffer,
     pub surfaces: TexelBuffer,
 }
 
-/// The switches of the Blist, and their surfaces.
+/// The Blist's switches and surfaces.
 pub(crate) struct Solids {
     pub leaves: Buffer,
     pub leaf_surfaces: TexelBuffer,
     pub surfaces: TexelBuffer,
-    /// The leaves as they are drawn, and how many; only where each is drawn by itself.
+    /// The leaves in the order of drawing, and their number; only if each is drawn by itself.
     pub order: Option<(Buffer, u32)>,
-    /// For way `blister`: the walk, and its order.
+    /// For way `blister`: the walk, and the order of its leaves.
     pub blister: Option<(Blister, Buffer)>,
-    /// `None` where every operand has equations.
+    /// `None` if every operand has equations.
     pub shells: Option<Shells>,
 }
 
-/// Operands without equations: a leaf of each, and the meshes around them.
+/// Operands without equations: a leaf of each, and their meshes.
 pub(crate) struct Shells {
     pub leaves: Buffer,
     pub meshes: Buffer,
     pub triangles: Buffer,
     pub positions: Buffer,
-    /// Surfaces in whose planes triangles lie.
+    /// Surfaces of the triangles, by number.
     pub planes: Buffer,
-    /// Corners of the triangles of each mesh.
+    /// Corners of each mesh's triangles.
     pub draws: Vec<Range<u32>>,
 }
 
-/// Triangles, where they are placed, and the draws that cover them.
+/// Triangles, their instances, and the draws over both.
 pub(crate) struct MeshBuffers {
     pub meshes: Buffer,
     pub instances: Buffer,
     pub positions: Buffer,
     pub triangles: Buffer,
     pub normals: Buffer,
-    /// Corners of triangles, and mesh instances.
+    /// Corners of triangles, and mesh instances, of each draw.
     pub draws: Vec<(Range<u32>, Range<u32>)>,
-    /// From this draw on seen from outside only.
+    /// From this draw on, only outer faces are drawn.
     pub outward: usize,
 }
 
-/// What the scene's way to trim needs.
+/// Buffers of the scene's way to trim.
 pub(crate) enum Trims {
     Table(Box<TableScene>),
     Exact(Box<ExactScene>),
@@ -120,13 +120,13 @@ pub(crate) enum Trims {
     Baseline(Box<BaselineScene>),
 }
 
-/// What a way to compare with needs.
+/// Buffers of a baseline's way to trim.
 #[cfg(feature = "baselines")]
 pub(crate) enum BaselineScene {
     Untrimmed,
     /// Faces, bands, cells, lists, pieces, points.
     Bisect([TexelBuffer; 6]),
-    /// Curves and cells; texels to a pixel and the number of placed faces.
+    /// Curves and cells; the texels of each pixel and the number of placed faces.
     Texture(TableScene, Buffer),
 }
 
@@ -138,25 +138,25 @@ pub(crate) struct ExactScene {
 }
 
 impl ExactScene {
-    /// As the trim test reads them.
+    /// The buffers in the order of the trim test.
     pub(crate) fn all(&self) -> [&TexelBuffer; 3] {
         [&self.faces, &self.cells, &self.arcs]
     }
 }
 
-/// Trim curves and the cells that tell their density.
+/// Trim curves, and the cells from which their scan lines' density is computed.
 pub(crate) struct TableScene {
     pub cells: Buffer,
     pub cell_items: Buffer,
     pub curves: TexelBuffer,
     pub curve_points: TexelBuffer,
     pub curve_items: TexelBuffer,
-    /// Bin items of strips with several bins; `None` where there are none.
+    /// Bin items of strips with several bins; `None` without any.
     pub wide_strips: Option<Buffer>,
 }
 
 impl Solids {
-    /// With the places of surfaces as one frame's eye sees them.
+    /// The switches, with the places of surfaces for one frame's eye.
     pub(crate) fn primitives<'a>(&'a self, surface_places: &'a TexelBuffer) -> Primitives<'a> {
         let Self { leaves, leaf_surfaces, surfaces, .. } = self;
         Primitives { leaves, leaf_surfaces, surfaces, surface_places }
@@ -164,7 +164,7 @@ impl Solids {
 }
 
 impl Volume {
-    /// With the places of surfaces as one frame's eye sees them.
+    /// The switches, with the places of surfaces for one frame's eye.
     pub(crate) fn primitives<'a>(&'a self, surface_places: &'a TexelBuffer) -> Primitives<'a> {
         let Self { leaves, leaf_surfaces, surfaces } = self;
         Primitives { leaves, leaf_surfaces, surfaces, surface_places }
@@ -172,40 +172,38 @@ impl Volume {
 }
 
 impl Scene {
-    /// Where nothing of each patch's face is.
+    /// The cells of each patch that no part of the face covers.
     ///
-    /// # Panics
-    /// In a scene without occlusion culling.
+    /// # Panics In a scene without occlusion culling.
     pub(crate) fn outside(&self) -> &Buffer {
         self.outside.as_ref().expect("scenes with occlusion culling have it")
     }
 
-    /// What divides patches in place of the bound.
+    /// Slefes and their table.
     ///
-    /// # Panics
-    /// In a scene that the bound divides.
+    /// # Panics In a scene whose patches are divided by bounds.
     #[cfg(feature = "baselines")]
     pub(crate) fn slefes(&self) -> &Buffer {
         self.slefes.as_ref().expect("scenes that slefes divide have them")
     }
 
-    /// What the trim table is made of, in scenes that it trims.
+    /// The trim table's input, in scenes that it trims.
     pub(crate) fn table(&self) -> Option<&TableScene> {
         if let Some(Trims::Table(trims)) = &self.trims { Some(trims) } else { None }
     }
 
-    /// What the exact trim test reads, in scenes that it trims.
+    /// The exact trim test's buffers, in scenes that it trims.
     pub(crate) fn exact(&self) -> Option<&ExactScene> {
         if let Some(Trims::Exact(trims)) = &self.trims { Some(trims) } else { None }
     }
 
-    /// What a way to compare with needs, in scenes that it trims.
+    /// A baseline's buffers, in scenes that it trims.
     #[cfg(feature = "baselines")]
     pub(crate) fn baseline(&self) -> Option<&BaselineScene> {
         if let Some(Trims::Baseline(trims)) = &self.trims { Some(trims) } else { None }
     }
 
-    /// Its patches, seen so.
+    /// The scene's patches with these views.
     pub(crate) fn placed<'a>(&'a self, views: &'a TexelBuffer) -> Placed<'a> {
         Placed {
             views,
@@ -400,7 +398,7 @@ fn surfaces(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &SolidD
     texels(uploads, cmd, name, &data.surfaces.iter().map(Surface::texels).collect::<Vec<_>>(), Texel::F32x4)
 }
 
-/// For passes that read structs, and those that fetch texels.
+/// Buffers for passes that read structs and for passes that fetch texels.
 fn read_both<T: Pod>(
     uploads: &mut Uploads,
     cmd: &Commands<'_>,
@@ -412,7 +410,7 @@ fn read_both<T: Pod>(
     TexelBuffer::new(cmd.device(), uploads.buffer(cmd, Pool::Persistent, name, usage, data)?, texel)
 }
 
-/// For passes that fetch texels alone: the range of a storage buffer does not bind them.
+/// Buffers for passes that only fetch texels, so the size limit of storage buffers does not apply.
 fn texels<T: Pod>(
     uploads: &mut Uploads,
     cmd: &Commands<'_>,
@@ -425,7 +423,7 @@ fn texels<T: Pod>(
     TexelBuffer::new(cmd.device(), buffer, texel)
 }
 
-/// Only where there are some.
+/// `None` if `data` is empty.
 fn some_texels<T: Pod>(
     uploads: &mut Uploads,
     cmd: &Commands<'_>,

@@ -1,18 +1,18 @@
-//! What shaders are told of a camera.
+//! The numbers that shaders read of a camera.
 
 use crate::abi;
 use crate::model::Camera;
 use glam::{DAffine3, DMat4, DVec2, DVec4};
 
-/// The rows that take a placed part to homogeneous pixels: composed in `f64`, rounded once.
+/// The rows that map a placed part to homogeneous pixels: composed in `f64`, rounded once.
 pub(crate) fn view(pixels: DMat4, placement: DAffine3) -> abi::View {
     let rows = (pixels * DMat4::from(placement)).transpose();
     let row = |r: DVec4| r.to_array().map(|x| x as f32);
     abi::View { x: row(rows.x_axis), y: row(rows.y_axis), depth: row(rows.z_axis), w: row(rows.w_axis) }
 }
 
-/// The larger of the two numbers of pixels per unit slope (or per model unit), and the largest stretch towards the
-/// picture's corners.
+/// The larger of the two focal lengths, in pixels per unit slope (or per model unit), and the largest stretch towards
+/// the picture's corners.
 pub(crate) fn focal_and_slant(camera: &Camera) -> (f64, f64) {
     let focal = camera.focal_px().max_element();
     if !camera.is_perspective() {
@@ -23,8 +23,8 @@ pub(crate) fn focal_and_slant(camera: &Camera) -> (f64, f64) {
     (focal, (1.0 + corner * corner).sqrt())
 }
 
-/// How far the picture, `margin_px` wider on each side, reaches from the view axis to the farther of two opposite
-/// sides: at a depth of 1, or in a parallel view in model units.
+/// The larger of left and right, and of bottom and top, measured from the view axis to the side of the picture with
+/// `margin_px` more pixels: slopes, or model units in a parallel view.
 pub(crate) fn half_slopes(camera: &Camera, margin_px: f64) -> DVec2 {
     (farthest_sides(camera) + margin_px) / camera.focal_px()
 }
@@ -36,7 +36,7 @@ fn farthest_sides(camera: &Camera) -> DVec2 {
     principal.max(size - principal)
 }
 
-/// `frame` as the camera sees it: those of its constants that say where what it shows is, and how large.
+/// `frame` with the constants that depend on the camera's place, direction and picture.
 pub fn seen_by(camera: &Camera, frame: abi::Frame) -> abi::Frame {
     let (focal, slant) = focal_and_slant(camera);
     abi::Frame {

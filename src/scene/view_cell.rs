@@ -1,13 +1,13 @@
-//! One trim table for all views of a part of the model from near by.
+//! View cells: one trim table for all views of a part of the model from nearly the same place and direction.
 //!
 //! ```text
 //!    ╲ wider ╲        view      ╱ wider ╱        eye   in a cell of a lattice, as wide as a share of the picture
-//!     ╲   ╲                    ╱   ╱                   where the nearest thing is that it shows
-//!      ╲     ╲      nearest   ╱   ╱              axis  in a cell of the directions, as wide as a share of the angle
+//!     ╲   ╲                    ╱   ╱                   at the depth of the nearest visible box
+//!      ╲     ╲      nearest   ╱   ╱              axis  in a cell of directions, as wide as a share of the angle
 //!       ╲      ╲ ─────────── ╱   ╱
-//!        ╲       ╲    d    ╱    ╱                The table is that of a camera in the middles of both, which sees
-//!     ┌───╲───────┬╲──────╱╮   ╱                 what any eye and axis of these cells see, as fine or finer.
-//!     │    ╲      │  ·eye  │  ╱
+//!        ╲       ╲    d    ╱    ╱                The table is made for a camera in the middle of both cells. It sees
+//!     ┌───╲───────┬╲──────╱╮   ╱                 everything that any eye and axis of these cells see, at least as
+//!     │    ╲      │  ·eye  │  ╱                  finely.
 //!     │     ╲_____·________│_╱                   P is D >= d away from the eye, θ off its axis; from the middle, r away
 //!     │        middle      │                     and δ turned, D₀ and θ₀:
 //!     └───────────┴────────┘
@@ -16,11 +16,13 @@
 //!     so the middle sees less than  (1 + r / d) (cos ε + sin ε tan θ)²  times coarser:  focal / (D cos² θ) pixels a unit
 //! ```
 //!
-//! Its picture has so many times more pixels, and is wider by ε. A parallel view is the same everywhere along its axis: its
-//! lattice has the point next to the middle of all that is trimmed, and a turn by δ moves what is `R` away by `R δ`.
+//! The middle camera's picture has that factor more pixels, and is wider by ε. A parallel view does not change along
+//! its axis. So its lattice holds the point of the axis nearest to the centre of everything trimmed, and a turn by δ
+//! moves a point at distance `R` by `R δ`.
 //!
-//! Cells follow from the view alone, and steps of a fourth of an octave keep their size while the view hardly changes. Axes and
-//! planes of coordinates are in the middle of cells: a view straight from the front does not come and go by roundings.
+//! Cells follow from the view alone. Their sizes are steps of a fourth of an octave, so they stay while the view hardly
+//! changes. The axes and planes of coordinates lie in the middle of cells, so rounding does not change the cell of a
+//! view straight from the front.
 
 use super::whole_view::Ball;
 use super::{focal_and_slant, half_slopes};
@@ -28,31 +30,32 @@ use crate::model::{Bounds, Camera, Projection};
 use glam::{DVec2, DVec3, Vec2Swizzles};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Of half of the picture's shorter side: how wide the cells of eyes and of axes are.
+/// Width of the cells of eyes and of axes, as a share of half the picture's shorter side.
 const SHARE: f64 = 0.125;
-/// The same of the direction that is up: few viewers turn it, and a cell costs all others rows.
+/// The same for the up direction. Few viewers turn it, and wider cells would cost all views more rows.
 const UP_SHARE: f64 = 0.25 * SHARE;
-/// Steps of an octave.
+/// Steps in an octave.
 const STEPS: f64 = 4.0;
-/// A picture is not made wider than this angle on each side of its axis.
+/// Largest angle between the axis and a side of a picture, in radians.
 const WIDEST: f64 = 1.3;
-/// Cells along an axis, to either side: beyond, coordinates resolve them no more.
+/// Most cells along an axis, on either side of 0: `f64` coordinates resolve no more.
 const MOST_CELLS: f64 = 1e12;
-/// Least sine of the angle between the axis and what is up.
+/// Least sine of the angle between the axis and the up direction.
 const LEAST_UPRIGHT: f64 = 0.05;
-/// Most that an eye and an axis of a cell move what is seen, in widths of the cell of axes.
+/// Largest movement of a visible point between the views of a cell, in widths of the cell of axes.
 const MOST_MOVED: f64 = 4.0;
-/// Half of a table's picture in sides of the view's: 0.5 where the axis is in the middle, 1 where it is in a corner.
+/// Largest distance from the axis to a side, as a share of the view's side: 0.5 if the axis is in the middle, 1 in a
+/// corner.
 const MOST_BESIDE: f64 = 1.0;
-/// Of all sums below.
+/// Relative rounding of all sums below.
 const ROUNDING: f64 = 1e-9;
 
-/// The camera whose table serves this view, widened by so many pixels, and those from near by; `None`: it wants one of its own.
-/// What is trimmed lies in the ball, and in the boxes.
+/// The camera whose table serves this view, with a margin of `margin_px`, and all views of the same cell. `None` if the
+/// view needs a table of its own. Everything trimmed lies in the ball and in the boxes.
 pub(super) fn view_cell(camera: &Camera, margin_px: f64, ball: &Ball, boxes: &[Bounds]) -> Option<Camera> {
     let (focal, _) = focal_and_slant(camera);
-    // a table's picture is symmetric about the axis: if the axis is off the middle, both sides get the wider one's
-    // width
+    // a table's picture is symmetric about the axis: if the axis is off the middle, both sides get the width of the
+    // wider one
     let half = half_slopes(camera, margin_px);
     let size = DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1));
     let own = (size + 2.0 * margin_px) / camera.focal_px();
@@ -62,7 +65,7 @@ pub(super) fn view_cell(camera: &Camera, margin_px: f64, ball: &Ball, boxes: &[B
     if camera.is_perspective() { perspective(camera, half, focal, boxes) } else { parallel(camera, half, focal, ball) }
 }
 
-/// `half`: of the picture, at a depth of 1.
+/// `half`: half the picture's size at a depth of 1.
 fn perspective(camera: &Camera, half: DVec2, focal: f64, boxes: &[Bounds]) -> Option<Camera> {
     let nearest = at_most(Sight::new(camera, half).nearest(boxes)?);
     let share = half.min_element().min(1.0);
@@ -75,15 +78,16 @@ fn perspective(camera: &Camera, half: DVec2, focal: f64, boxes: &[Bounds]) -> Op
     let ahead = nearest * wide * (1.0 / corner).min(0.5 * SHARE / wide);
     let eye = axes.middle(camera.eye, DVec3::new(beside, beside, ahead))?;
     let (aside, ahead) = (FRAC_1_SQRT_2 * beside, 0.5 * ahead);
-    // what is straight ahead stays there: no side is farther from the axis than the picture's corner is, turned and moved
+    // the point straight ahead stays there: no side is farther from the axis than the picture's corner, turned and
+    // moved
     let slant = corner / (1.0 + corner * corner).sqrt() + MOST_MOVED * wide;
     let parallax = (aside / nearest).asin() + (ahead * slant / (nearest - aside)).asin();
-    let moved = parallax + turn * (1.0 + corner); // what turns at a corner rolls, too
+    let moved = parallax + turn * (1.0 + corner); // a turn also rolls points at a corner
     if moved > MOST_MOVED * wide {
         return None;
     }
 
-    // a side is nearer to a corner than its angle from the axis tells
+    // seen from a corner, a side is nearer than its angle from the axis
     let wider = half.map(|side| {
         let beside = moved.sin() * ((1.0 + corner * corner) / (1.0 + side * side)).sqrt();
         (side.atan() + beside.min(1.0).asin()).min(WIDEST).tan()
@@ -109,14 +113,14 @@ fn perspective(camera: &Camera, half: DVec2, focal: f64, boxes: &[Bounds]) -> Op
     Sight::new(&table, wider).sides.into_iter().all(covers).then_some(table)
 }
 
-/// `half`: of the picture, model units.
+/// `half`: half the picture's size, in model units.
 fn parallel(camera: &Camera, half: DVec2, focal: f64, ball: &Ball) -> Option<Camera> {
     let (right, up, forward) = camera.axes();
     let radius = ball.radius;
     let eye = camera.eye - ball.centre;
-    let foot = eye - forward * eye.dot(forward); // of the middle, on the axis
+    let foot = eye - forward * eye.dot(forward); // the axis's point nearest to the centre
     if foot.length() > 2.0 * radius {
-        return None; // far beside all that is trimmed
+        return None; // far beside everything trimmed
     }
     let share = half.min_element();
     let cell = at_most(SHARE * share);
@@ -127,7 +131,7 @@ fn parallel(camera: &Camera, half: DVec2, focal: f64, ball: &Ball) -> Option<Cam
 
     let place = axes.middle(foot, DVec3::splat(cell))?;
     let place = ball.centre + place - axes.forward * place.dot(axes.forward);
-    let before = 4.0 * radius; // all that is trimmed is behind the eye's plane
+    let before = 4.0 * radius; // everything trimmed is behind the eye's plane
     let size = (2.0 * wider * focal).ceil();
     let table = Camera {
         eye: place - axes.forward * before,
@@ -144,7 +148,7 @@ fn parallel(camera: &Camera, half: DVec2, focal: f64, ball: &Ball) -> Option<Cam
     (reach(axes.right) <= wider.x && reach(axes.up) <= wider.y).then_some(table)
 }
 
-/// Right, up and forward, in the middle of a cell.
+/// Right, up and forward in the middle of a cell.
 struct Axes {
     right: DVec3,
     up: DVec3,
@@ -152,8 +156,9 @@ struct Axes {
 }
 
 impl Axes {
-    /// The middle of the cell, `wide` on the faces of a cube, that the camera's axis is in. Up is what a lattice says that the
-    /// axes of coordinates are on, cells of `roll`; `None` where that is along the axis.
+    /// The middle of the cell that contains the camera's axis; cells are `wide` on the faces of a cube. The up
+    /// direction is rounded to a lattice of width `roll`, which contains the coordinate axes. `None` if the axis is
+    /// nearly parallel to it.
     fn around(camera: &Camera, wide: f64, roll: f64) -> Option<Self> {
         let (_, _, forward) = camera.axes();
         let main = forward.abs().max_position();
@@ -170,7 +175,7 @@ impl Axes {
         })
     }
 
-    /// That of the lattice's cell around a point; `None` where coordinates do not resolve it.
+    /// The middle of the lattice's cell around a point; `None` if coordinates do not resolve the cell.
     fn middle(&self, p: DVec3, cell: DVec3) -> Option<DVec3> {
         let at = DVec3::new(p.dot(self.right), p.dot(self.up), p.dot(self.forward)) / cell;
         let middle = at.round() * cell;
@@ -179,24 +184,24 @@ impl Axes {
     }
 }
 
-/// The step at or below.
+/// The largest step not above `x`.
 fn at_most(x: f64) -> f64 {
     ((x.log2() * STEPS).floor() / STEPS).exp2()
 }
 
-/// The step at or above.
+/// The smallest step not below `x`.
 fn at_least(x: f64) -> f64 {
     ((x.log2() * STEPS).ceil() / STEPS).exp2()
 }
 
-/// The pyramid that a perspective picture shows, `half` as wide and high at a depth of 1.
+/// The pyramid of a perspective picture; `half` is half its size at a depth of 1.
 struct Sight {
     eye: DVec3,
     forward: DVec3,
     depth_range: (f64, f64),
-    /// Towards its corners, of length 1.
+    /// Unit vectors to its corners.
     corners: [DVec3; 4],
-    /// Inwards from its sides, of length 1.
+    /// Unit normals of its sides, inwards.
     sides: [DVec3; 4],
 }
 
@@ -214,8 +219,8 @@ impl Sight {
         }
     }
 
-    /// How far away at least is what it shows of the boxes; `None` where it shows nothing, or may show what is nearer than its
-    /// near plane.
+    /// A lower bound on the distance of the visible boxes. `None` if no box is visible, or if one may be nearer than
+    /// the near plane.
     fn nearest(&self, boxes: &[Bounds]) -> Option<f64> {
         let (near, far) = self.depth_range;
         let mut nearest2 = f64::INFINITY;
@@ -256,7 +261,7 @@ mod tests {
         (Ball { centre: DVec3::ZERO, radius: 10.0 }, boxes)
     }
 
-    /// A point that a view, widened, shows at a corner or elsewhere at its border; whether what is trimmed may be there.
+    /// A point at the border of a widened view, often at a corner, and whether trimmed faces may be there.
     fn at_the_border(random: &mut Random, camera: &Camera, ball: &Ball, boxes: &[Bounds]) -> (DVec3, bool) {
         let (width, height) = (f64::from(camera.size.0), f64::from(camera.size.1));
         let mut side =
@@ -272,8 +277,8 @@ mod tests {
         (origin + direction * nearest * 10.0f64.powf(random.range(0.0, 1.0)), true)
     }
 
-    /// Of a part of the scene, from within it and from afar, wide and narrow. Half of them look down nearly along what is up:
-    /// as their axis turns a little, they roll.
+    /// A view of a part of the scene, from inside or outside, wide or narrow. Half of the views look down nearly along
+    /// the up direction: they roll when their axis turns a little.
     fn some_view(random: &mut Random, parallel: bool) -> Camera {
         let away = |random: &mut Random, far: f64| DVec3::from_array(std::array::from_fn(|_| random.range(-far, far)));
         let is_steep = random.integer(0, 1) == 0;
@@ -295,7 +300,7 @@ mod tests {
         Camera { eye, target, up, projection, depth_range: (0.05, 120.0), size: (640, 360) }
     }
 
-    /// Where a point is in a picture, how deep, and the most pixels that a unit covers there.
+    /// A point's place in the picture, its depth, and the most pixels that a unit covers there.
     fn seen(camera: &Camera, p: DVec3) -> Option<(DVec2, f64, f64)> {
         let (focal, _) = focal_and_slant(camera);
         let (at, depth) = camera.project(p)?;
@@ -306,7 +311,7 @@ mod tests {
         Some((at, depth, stretch))
     }
 
-    /// How far beyond the picture a point is, in pixels; 0 within.
+    /// Distance of a point from the picture, in pixels; 0 within it.
     fn beyond(camera: &Camera, at: DVec2) -> f64 {
         let size = DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1));
         (at - size).max(-at).max_element().max(0.0)
@@ -315,7 +320,7 @@ mod tests {
     #[test]
     fn what_a_view_shows_its_table_has_as_fine() {
         let mut random = Random::new(5);
-        let mut served = [[0; 2]; 2]; // parallel or not: views without and with a table of their own
+        let mut served = [[0; 2]; 2]; // views served by a cell, views with their own table
         let mut points = 0;
         for n in 0..2000 {
             let parallel = n % 3 == 0;
@@ -341,12 +346,12 @@ mod tests {
                 points += 1;
             }
         }
-        // the others look from within a box, or down: rolled, they show more than their table has
+        // the other views are inside a box, or look down and roll: they show more than the cell's table has
         assert!(served.iter().all(|[shared, own]| *shared > 2 * own), "{served:?}");
         assert!(points > 10_000, "{points}");
     }
 
-    /// A view ten times closer than one that shows all, and others that move by a few pixels a frame.
+    /// A view ten times closer than one of the whole scene; each step moves it by a few pixels.
     fn moved(step: usize, parallel: bool, by: impl Fn(f64) -> (DVec3, DVec3)) -> Camera {
         let (eye, target) = by(step as f64);
         let projection = match parallel {
@@ -360,7 +365,7 @@ mod tests {
     fn a_view_that_moves_slowly_keeps_its_table_for_some_frames() {
         let (ball, boxes) = scene(&mut Random::new(8));
         let turned = |step: f64| {
-            let angle = 0.3 + 2e-4 * step; // four pixels of what is as far from the target as the eye's way is long
+            let angle = 0.3 + 2e-4 * step; // four pixels of motion at the distance of the eye's path
             (DVec3::new(25.0 * angle.cos(), 25.0 * angle.sin(), 9.0), DVec3::new(1.0, 2.0, 0.5))
         };
         let shifted = |step: f64| {

@@ -1,15 +1,16 @@
-//! Which way a scene is trimmed, told before anything is made for either.
+//! Chooses the way to trim before any array is made.
 //!
 //! ```text
-//!   rows of a placed face  =  bins (strips + length)        length: of a curve along v, in rows, where the scene is as
-//!                                                           wide as a picture of PICTURE_PX
+//!   rows of a placed face  =  bins (strips + length)        length: of a curve along v, in rows, if the scene is
+//!                                                           as wide as a picture of PICTURE_PX
 //!   Auto:  rows of all faces <= MOST_ROWS  and  points <= MOST_POINTS  ──▶ table        else ──▶ exact
 //! ```
 //!
-//! [`MOST_ROWS`] is a quarter of what the table's passes can number, so finer tolerances, larger pictures and views of a part
-//! of the model mostly have room, too. No count that is made before there is a view bounds all of them: an eye within a face
-//! sees as many rows as it likes. A view that wants more than there can be has the renderer load the model once more, for the
-//! exact way (`renderer/load.rs`). The renderer keeps a copy of the model for that, which is why [`MOST_POINTS`] is a bound, too.
+//! [`MOST_ROWS`] is a quarter of what the table's passes can number, so finer tolerances, larger pictures and close
+//! views mostly fit, too. No count made before there is a view is a bound for all views: an eye inside a face sees any
+//! number of rows. If a view needs more rows than possible, the renderer uploads the model again for the exact way
+//! (`renderer/load.rs`). The renderer stores a copy of the model for that; therefore [`MOST_POINTS`] limits the points,
+//! too.
 
 use super::cells::strips;
 use super::instance::stretch;
@@ -20,25 +21,25 @@ use crate::model::{Face, Mesh, Model, Part, Shape};
 use crate::picture::{SceneSettings, Smooth, TakenWay, TrimWay};
 use rayon::prelude::*;
 
-/// Rows that the table is expected to have at most where [`TrimWay::Auto`] takes it.
+/// Most rows that a table is expected to have if [`TrimWay::Auto`] chooses it.
 const MOST_ROWS: f64 = (1u32 << 21) as f64;
-/// Control points and corners of meshes: 64 MiB of points.
+/// Most control points and mesh corners together: 64 MiB.
 const MOST_POINTS: usize = 1 << 21;
-/// Of the picture for which rows are counted: the ball around the scene is as wide.
+/// Width of the picture for which rows are counted, in pixels; the ball around the scene is as wide.
 const PICTURE_PX: f64 = 2048.0;
-/// Between scan lines at the default tolerance.
+/// Distance of scan lines at the default tolerance, in pixels.
 const ROW_PX: f64 = 0.125;
-/// Of each knot span of a curve whose length is told.
+/// Chords for each knot span of a measured curve.
 const CHORDS: u32 = 4;
 
-/// How `settings` trim a model, never [`TrimWay::Auto`]; `None` where nothing of it is trimmed.
+/// The way in which `settings` trim a model, never [`TrimWay::Auto`]; `None` if no face is trimmed.
 pub fn trim_way(model: &Model, settings: SceneSettings) -> Option<TrimWay> {
     let bodies = model.parts.iter().chain(operands(model).map(|(part, _)| part));
     let is_trimmed = bodies.flat_map(|part| &part.faces).any(|face| !face.loops.is_empty());
     is_trimmed.then(|| taken(model, settings.into()))?.reported()
 }
 
-/// The way that is asked for, or suits the model.
+/// The way that the settings name, or that suits the model.
 pub(super) fn taken(model: &Model, settings: SceneRequest) -> TakenWay {
     #[cfg(feature = "baselines")]
     if let Some(method) = settings.baseline.trim {
@@ -56,7 +57,7 @@ fn suits_table(model: &Model) -> bool {
     points(model) <= MOST_POINTS && rows(model) <= MOST_ROWS
 }
 
-/// Spline parts that Boolean solids name, and how many times as large they are placed.
+/// Spline parts that Boolean solids use, and the scale of each.
 fn operands(model: &Model) -> impl Iterator<Item = (&Part, f64)> {
     model.solids.iter().flat_map(|solid| solid.primitives()).filter_map(|primitive| match &primitive.shape {
         Shape::Part(part) => Some((&**part, stretch(primitive.transform.matrix3))),
@@ -73,8 +74,8 @@ fn points(model: &Model) -> usize {
     bodies.map(of).sum()
 }
 
-/// That the trim table of a picture of the whole scene has, about; where those that it has however small it is seen are too
-/// many, these.
+/// Approximate number of rows of the trim table for a picture of the whole scene. If the rows that it has at any size
+/// are already too many, their number.
 fn rows(model: &Model) -> f64 {
     let Some(ball) = Ball::around(model.control_bounds()) else { return 0.0 };
     let of_strips = |face: &Face| {
@@ -90,7 +91,7 @@ fn rows(model: &Model) -> f64 {
     fewest + summed(model, of_length, |scale| scale * lines_a_unit)
 }
 
-/// Of all placed faces that have loops: `of` each, as many times as `by` its scale.
+/// Sum over all placed faces with loops: `of` the face, times `by` of its scale.
 fn summed(model: &Model, of: impl Fn(&Face) -> f64 + Sync, by: impl Fn(f64) -> f64) -> f64 {
     let of_part = |part: &Part| part.faces.par_iter().filter(|face| !face.loops.is_empty()).map(&of).sum::<f64>();
     let parts: Vec<f64> = model.parts.par_iter().map(of_part).collect();
@@ -105,14 +106,15 @@ fn strips_and_bins(face: &Face) -> (f64, f64) {
     (f64::from(face.strip_count()), f64::from(face.bin_count()))
 }
 
-/// Knots along v between which a surface is one polynomial.
+/// The knot spans along v; in each, the surface is one polynomial.
 fn v_spans(face: &Face) -> impl Iterator<Item = (f64, f64)> {
     let (v0, v1) = face.surface.domain().1;
     let pairs = face.surface.knots().1.windows(2).map(|pair| (pair[0], pair[1]));
     pairs.filter(move |(a, b)| a < b && *a >= v0 && *b <= v1)
 }
 
-/// The longest of a few curves along v, as chords between points of the surface: control points may lie far from it.
+/// The longest of three curves along v, as chords between points of the surface. Control points may lie far from the
+/// surface.
 fn length(face: &Face) -> f64 {
     let (u0, u1) = face.surface.domain().0;
     let chords = if face.surface.degrees().1 > 1 { CHORDS } else { 1 };
@@ -139,7 +141,7 @@ mod tests {
         selvedge_io::import::open(&path).unwrap().model
     }
 
-    /// Its bodies once more for each place, side by side.
+    /// A model with copies of its bodies side by side.
     fn repeated(model: &Model, times: usize) -> Model {
         let step = model.bounds().diagonal();
         let shifted = |n: usize| DAffine3::from_translation(DVec3::X * (n as f64 * step));
@@ -154,7 +156,7 @@ mod tests {
         assert_eq!(ROW_PX, Budget::of(FrameSettings::default().tolerance_px).row);
     }
 
-    /// A control point of little weight may lie a million times as far away as any point of the surface.
+    /// A control point of small weight may lie a million times farther away than any point of the surface.
     #[test]
     fn lengths_are_of_the_surface_not_of_its_control_points() {
         let column = |x: f64| [(0.0, 1.0), (1.0, 1e-6), (1.0, 1.0)].map(|(y, w)| DVec4::new(x * w, y, 0.0, w));
@@ -164,12 +166,12 @@ mod tests {
         let surface = Surface::new((1, 2), vec![0.0, 0.0, 1.0, 1.0], knots, points).unwrap();
         let mut face = bracket().parts[0].faces[0].clone();
         face.surface = surface;
-        // up to 1.5 in the middle, and back to 1 at the end
+        // it rises to 1.5 in the middle and falls back to 1
         let length = length(&face);
         assert!(length > 1.5 && length < 3.0, "{length}");
     }
 
-    /// The bound is passed by as many copies as have so many rows: not one fewer.
+    /// The bound is exceeded at the number of copies that have so many rows, and not earlier.
     #[test]
     fn few_rows_are_for_the_table_and_many_for_the_exact_way() {
         let bracket = bracket();

@@ -1,8 +1,8 @@
-//! One trim table for all views from about as far.
+//! One trim table for all views of the whole model from about the same distance.
 //!
 //! ```text
-//!               ╭────╮             the ball holds all that is trimmed. A unit at P, w deep, covers at most
-//!    eye ·──────│─P  │────▶ axis   focal |P| / w² pixels where it is seen, whatever way the surface faces there
+//!               ╭────╮             the ball contains everything trimmed. A unit at P, at depth w, covers at most
+//!    eye ·──────│─P  │────▶ axis   focal |P| / w² pixels where it is visible, whatever the surface's orientation
 //!               ╰────╯
 //!
 //!    along a ray that leaves the ball's middle by φ and the axis by at most α + φ:
@@ -10,26 +10,26 @@
 //!          |P| >= ρ(φ)  and  w = |P| cos θ, θ <= α + φ      =>      |P| / w² <= 1 / (ρ(φ) cos² (α + φ))
 //! ```
 //!
-//! Scan lines for a density that is at least that of a view serve it, and which they are follows from the density alone.
-//! Rounded up to the next of a few steps it is the same for all views from about as far: a model that is turned needs no new
-//! table while it is seen as a whole, and a view's picture is the same whatever was drawn before.
+//! A table of higher density than a view's serves the view, and its scan lines follow from the density alone. Densities
+//! are rounded up to the next of a few steps, so views from about the same distance share one table: a model that is
+//! turned needs no new table while the whole model is visible, and the picture does not depend on earlier views.
 //!
-//! Such a table has rows for what lies beside the picture, too: for views of a part of the model there is `view_cell.rs`.
+//! Such a table also has rows beside the picture. Views of a part of the model use `view_cell.rs`.
 
 use super::focal_and_slant;
 use crate::model::{Bounds, Camera};
 use glam::DVec3;
 
-/// Densities are rounded up to the next power of the fourth root of two: a twelfth too many rows, on average.
+/// Densities are rounded up to a power of the fourth root of two, a twelfth too many rows on average.
 const STEPS: f64 = 4.0;
-/// How many times the longer side of the picture the ball may be wide; beyond that most of the table is beside the picture.
+/// Largest width of the ball, in longer sides of the picture; a wider ball would be mostly beside the picture.
 const MOST_WIDE: f64 = 2.0;
-/// Parts of the angle under which the ball is seen that are told apart.
+/// Parts into which the ball's apparent angle is divided.
 const PARTS: u32 = 32;
-/// Of the boxes that the ball holds, and of the sums below.
+/// Relative rounding of the ball and of the sums below.
 const ROUNDING: f64 = 1e-6;
 
-/// What is trimmed lies in it, in the model's coordinates.
+/// A ball around everything trimmed, in model coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ball {
     pub(super) centre: DVec3,
@@ -37,14 +37,14 @@ pub(crate) struct Ball {
 }
 
 impl Ball {
-    /// Around a box; `None` around nothing, or where it has no end.
+    /// The ball around a box; `None` if the box is empty or unbounded.
     pub(super) fn around(bounds: Bounds) -> Option<Self> {
         let radius = 0.5 * bounds.diagonal() * (1.0 + ROUNDING);
         (!bounds.is_empty() && radius.is_finite() && radius > 0.0).then(|| Self { centre: bounds.centre(), radius })
     }
 
-    /// Most pixels that a model unit covers where a picture shows the ball; `None` from within it, and from so near that
-    /// it tells nothing.
+    /// Most pixels that a model unit covers in a picture of the ball; `None` if the eye is inside the ball or very near
+    /// it.
     fn density(&self, camera: &Camera) -> Option<f64> {
         let (focal, slant) = focal_and_slant(camera);
         if !camera.is_perspective() {
@@ -70,8 +70,8 @@ impl Ball {
         Some(focal * densest.fold(0.0, f64::max) * (1.0 + ROUNDING))
     }
 
-    /// The density of the trim table for all views from about as far as this one, pixels a model unit; `None`: it shows but
-    /// a part of the ball.
+    /// The density of the trim table for all views from about this distance, in pixels a model unit; `None` if the view
+    /// shows only a part of the ball.
     pub(super) fn table_density(&self, camera: &Camera) -> Option<f32> {
         let steps = (self.density(camera)?.log2() * STEPS).ceil();
         let density = (steps / STEPS).exp2();
@@ -105,7 +105,7 @@ mod tests {
         }
     }
 
-    /// Largest stretch of a step at a point, by differences of what is projected.
+    /// Largest stretch of a small step at a point, by finite differences of projections.
     fn stretch(camera: &Camera, p: DVec3) -> Option<f64> {
         const STEP: f64 = 1e-6;
         let (at, _) = camera.project(p)?;
@@ -143,7 +143,7 @@ mod tests {
             }
             see(ball().centre - (ball().centre - eye).normalize() * ball().radius);
             assert!(densest <= bound * (1.0 + 1e-6), "{densest} of {bound}: {camera:?}");
-            // from nearer, few of the points are where it is densest; beside the middle, few are seen
+            // from nearer, few points are where the ball is densest; off the middle, few are visible
             assert!(distance < 7.0 || n >= 60 || densest >= 0.6 * bound, "{densest} of {bound}: {camera:?}");
         }
     }

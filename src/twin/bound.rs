@@ -1,5 +1,4 @@
-//! Twin of the pass `bound`: which patches can be seen, and how finely each must be
-//! divided.
+//! Twin of the pass `bound`: finds the patches that may be visible, and bounds how finely each must be divided.
 
 use super::cone::looks_away;
 use super::factor::factors;
@@ -9,8 +8,8 @@ pub use crate::abi::constants::bound::DEPTH_SHARE;
 use crate::abi::{Counters, Frame, Patch, Side, View};
 use glam::Vec3;
 
-/// `tau_u | tau_v << 16` of each item; 0 for one that cannot be seen. Counts factors above
-/// [`MOST_SEGMENTS`] in `counters.clamps`.
+/// `tau_u | tau_v << 16` of each item; 0 for an item that is not visible. Counts factors above [`MOST_SEGMENTS`] in
+/// `counters.clamps`.
 pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u32> {
     (0..frame.items_in_sight as usize)
         .map(|item| {
@@ -21,7 +20,7 @@ pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u
             }
             let (margin, far) = (frame.gap_radius_px + 1.0, far_of(&face, frame));
             let Some(seen) = see(view, frame, patch.box_min, patch.box_max, margin, far) else { return 0 };
-            // nothing is drawn farther from the box: cut patches have skirts
+            // nothing is drawn farther from the box; trimmed patches have skirts
             let skirt = if patch.side() == Side::Inside { 0.0 } else { frame.gap_radius_px };
             if !covers_a_centre(&seen, frame.deviation_px + frame.spread_px + skirt) {
                 return 0;
@@ -61,8 +60,8 @@ fn factors_of(frame: &Frame, scene: &Scene<'_>, patch: &Patch, instance: usize, 
     if fewer[0] * fewer[1] < tau[0] * tau[1] { fewer } else { tau }
 }
 
-/// What is `seen` of the patch's box, drawn closer: what is drawn is a mean of the control points. `None` where one of
-/// them is before the near plane.
+/// Shrinks `seen`, the projection of the patch's box, to the control points, whose hull contains the patch. `None` if a
+/// control point is before the near plane.
 fn draw_closer(frame: &Frame, points: &[[f32; 4]], view: &View, seen: Seen) -> Option<Seen> {
     let (mut w, mut steepest) = (3.0e38f32, 0.0f32);
     let (mut low, mut high) = ([3.0e38f32; 2], [-3.0e38f32; 2]);
@@ -83,7 +82,7 @@ fn draw_closer(frame: &Frame, points: &[[f32; 4]], view: &View, seen: Seen) -> O
     (w >= frame.near).then_some(Seen { w: w.max(seen.w), slant, low, high })
 }
 
-/// As [`Patch::bend`], of a polynomial patch of these degrees, of what moves pixels within `range`: times `W`.
+/// Like [`Patch::bend`], for the movement of pixels of a polynomial patch of these degrees within `range`, times `W`.
 fn bend_seen(points: &[[f32; 4]], (n, k): (usize, usize), view: &View, range: [[f32; 2]; 2]) -> [f32; 3] {
     let at = |i: usize, j: usize| {
         let p = points[j.min(k) * (n + 1) + i.min(n)];

@@ -1,14 +1,14 @@
-//! Twin of the pass `carry`: the winding number that each row of a strip with several bins begins with.
+//! Twin of the pass `carry`: the winding number at the start of each row of a strip with several bins.
 //!
 //! ```text
 //!   bin               0     1     2     3
 //!   crossings add up  +1    0     -1    0      as pass `cross` counted them
-//!   begins with        0    1     1     0
+//!   at the start      0    1     1     0
 //! ```
 
 use crate::abi::{Frame, StripRows};
 
-/// Of the strips that begin at the bin items `wide_strips`; rows of all others begin with 0, and have 0 already.
+/// For the strips that begin at the bin items `wide_strips`; rows of all others start with 0, which is already stored.
 pub fn carry(frame: &Frame, strips: &[StripRows], wide_strips: &[u32], row_windings: &mut [i32]) {
     for &strip in wide_strips {
         let rows = strips[strip as usize];
@@ -17,7 +17,7 @@ pub fn carry(frame: &Frame, strips: &[StripRows], wide_strips: &[u32], row_windi
             for bin in rows.first_bin..=rows.last_bin() {
                 let row = rows.row_of(line, bin);
                 if row >= frame.row_capacity {
-                    break; // and so are the line's other rows
+                    break; // the line's other rows have none, either
                 }
                 let crossed = std::mem::replace(&mut row_windings[row as usize], winding);
                 winding += crossed;

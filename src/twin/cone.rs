@@ -1,21 +1,23 @@
-//! Twin of `glsl/include/cone.glsl`: patches of closed parts without trims that look away from the viewer.
+//! Twin of `glsl/include/cone.glsl`: patches of closed parts without trims that are turned away from the viewer.
 //!
 //! ```text
 //!   eye ●─────── ray ───────▶ middle of the box, its corners within `around`
 //!                                ╲
 //!                                 ╲ axis of the outward normals, which are within θ of it
 //!
-//!   all of it looks away where   ray · axis >= |ray| sin θ + around
+//!   the whole patch is turned away if   ray · axis >= |ray| sin θ + around
 //! ```
 //!
 //! *Proof.* With `φ` between ray and axis, a normal `n` and a point `p` of the patch,
 //! `n · (p - eye) >= |ray| cos(φ + θ) - around`, and `cos(φ + θ) >= cos φ - sin θ` for `φ <= 90° - θ`.
 //!
-//! A closed surface hides such a patch by what is before it, unless the near plane has cut that off: so the part must
-//! lie behind that plane, all of it. The sides of trimmed faces have gaps, which `gap_fill` finds by the faces that look away
-//! behind them: those stay. So do those of parts whose sides are not all drawn with the same vertices (`scene/link.rs`).
+//! Nearer surfaces of a closed part hide such a patch, unless the near plane cuts them off; so the whole part must lie
+//! behind that plane. Trimmed faces have gaps at their borders, and `gap_fill` finds these by the back faces behind
+//! them, so patches of trimmed faces are drawn. So are patches of parts whose sides are not all linked
+//! (`scene/link.rs`).
 //!
-//! The eye is where the homogeneous pixel vanishes. Source: L. A. Shirman, S. S. Abi-Ezzi, *The cone of normals technique
+//! The eye is the point whose homogeneous pixel is 0. Source: L. A. Shirman, S. S. Abi-Ezzi, *The cone of normals
+//! technique
 //! for fast processing of curved patches*, Computer Graphics Forum 12, 1993.
 
 use crate::abi::constants::cone::EYE_ROUNDING;
@@ -35,8 +37,8 @@ fn xyz(row: [f32; 4]) -> Vector {
     [row[0], row[1], row[2]]
 }
 
-/// Whether all of the patch looks away. `cone`: the axis of the outward normals, as long as the part reaches from its
-/// origin, 0 where there is none; the sine of half its angle.
+/// Whether the whole patch is turned away. `cone`: the axis of the outward normals, as long as the part's radius, 0
+/// without a cone; the sine of half its angle.
 pub fn looks_away(view: &View, frame: &Frame, patch: &Patch, cone: [f32; 4]) -> bool {
     let axis = xyz(cone);
     let radius = times(axis, axis).sqrt();

@@ -1,24 +1,24 @@
-//! Twin of `glsl/include/coverage.glsl`: how much of a pixel a trimmed face covers.
+//! Twin of `glsl/include/coverage.glsl`: the share of a pixel that a trimmed face covers.
 //!
 //! ```text
-//!     ┌───────b─┐     w: winding number at the pixel's centre c.   A point p of the pixel has another one where the
-//!     │  c    ╲▒│     way from c to p crosses an arc, so  ∫ winding = w - Σ (signed area that a chord hides from c).
-//!     │        ╲│     A chord a ─▶ b hides what the rays from c between a and b sweep, less the triangle c a b:
+//!     ┌───────b─┐     w: winding number at the pixel's centre c.   A point p of the pixel has another one if the
+//!     │  c    ╲▒│     segment c p crosses an arc, so  ∫ winding = w - Σ (signed area that a chord hides from c).
+//!     │        ╲│     A chord a ─▶ b hides the area that rays from c between a and b sweep, less the triangle c a b:
 //!     └─────────a         swept(b) - swept(a) - (a × b) / 2
 //! ```
 //!
 //! `swept(d)` is the area of the unit square that a ray from its centre sweeps from `(1, 0)` to `d`: 1/8 of the ray's
-//! slope in each of the eight octants. So the area is exact for straight borders, corners, slits and holes
-//! alike, however many arcs run through the pixel. Where the centre is between a chord and its arc, which the exact test
-//! tells, `w` is changed to what the chords make of it.
+//! slope in each of the eight octants. So the area is exact for straight borders, corners, slits and holes alike, with
+//! any number of arcs in the pixel. If the centre is between a chord and its arc, which the exact test decides, `w` is
+//! corrected to that of the chords.
 //!
-//! Bent arcs count as [`CHORDS`] chords of equal steps between where they enter a cell (or the pixel's box) and leave it:
-//! an arc of radius `r` px bulges by less than `2 / (8 CHORDS² r)` px over each. The pixel's square is mapped to the
-//! domain by its first derivatives.
+//! A curved arc counts as [`CHORDS`] chords of equal steps within a cell (or the pixel's box): an arc of radius `r` px
+//! bulges by less than `2 / (8 CHORDS² r)` px over each. The pixel's square is mapped to the domain by its first
+//! derivatives.
 //!
-//! The list of the centre's cell tells all of the pixel, where the pixel's box is in that list's; else the lists of all cells that
-//! meet the box, each between the cell's borders. Where they are more than [`MOST_CELLS`], what the centre sees counts as the
-//! whole pixel.
+//! If the pixel's box lies in the box of the centre's list, that list suffices. Otherwise the lists of all cells that
+//! meet the pixel's box are used, each between the cell's borders. If there are more than [`MOST_CELLS`], the pixel
+//! counts as covered or not as its centre is.
 
 //! ```text
 //!   error on another GPU, whose quotients are off by d = 2.5 * 2^-23 and whose roots by 2 d:
@@ -33,14 +33,14 @@ use super::exact::Exact;
 pub use crate::abi::constants::coverage::{CHORDS, MOST_CELLS};
 use crate::abi::{ARC_UP, ExactArc};
 
-/// What a face covers of a pixel.
+/// The part of a pixel that a face covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cover {
-    /// Of the pixel's area, 0 to 1.
+    /// Share of the pixel's area, 0 to 1.
     pub share: f32,
-    /// The border in the pixel, turned a quarter away from the face and added up; pixels.
+    /// Sum of the border's pieces in the pixel, turned by 90 degrees away from the face; pixels.
     pub outward: [f32; 2],
-    /// A border runs through the pixel.
+    /// A border crosses the pixel.
     pub cut: bool,
 }
 
@@ -48,15 +48,15 @@ pub struct Cover {
 #[cfg(test)]
 #[derive(Clone, Copy, Debug)]
 pub struct Bound {
-    /// Of the share.
+    /// Error of the share.
     pub share: f32,
-    /// Of either number of `outward`. A shorter border may or may not count as cutting the pixel.
+    /// Error of either component of `outward`. A shorter border may or may not count as crossing the pixel.
     pub outward: f32,
 }
 
 #[cfg(test)]
 impl Bound {
-    /// Of a pixel.
+    /// The bounds for a pixel.
     pub fn of(along: Along) -> Self {
         const D: f32 = 2.5 * f32::EPSILON;
         let pixels = along.as_flattened().iter().fold(0.0f32, |most, x| most.max(x.abs()));
@@ -65,12 +65,12 @@ impl Bound {
     }
 }
 
-/// The pixel's length and width in the domain's directions: how far the pixel moves with u, and with v.
+/// The pixel's sides in the domain: change of the pixel with u, and with v.
 pub type Along = [[f32; 2]; 2];
 
 impl Exact<'_> {
-    /// What of the pixel around the normalised `(u, v)` is inside the loops of a face; loops that overlap count
-    /// once. The face's cells hold arcs along scan lines, too:
+    /// The part of the pixel around the normalised `(u, v)` that is inside a face's loops; overlapping loops count
+    /// once. The face's cells must also have arcs along scan lines:
     /// [`ExactTrim::with_flats`](crate::trim::ExactTrim::with_flats).
     pub fn cover(&self, face: usize, uv: [f32; 2], along: Along) -> Cover {
         let winding = self.winding(face, uv);
@@ -89,7 +89,7 @@ impl Exact<'_> {
         let axes = f.axes();
         let mut sum = Sum { along, winding, hidden: 0.0, outward: [0.0; 2], cut: false };
         let mut asked = 0;
-        // one list for the whole pixel, where there is one: that of the centre's cell
+        // one list for the whole pixel, if possible: that of the centre's cell
         let middle = self.list(face, uv);
         if middle.holds_for(lo) && middle.holds_for(hi) {
             self.arcs(middle.first).for_each(|arc| sum.add_arc(arc, uv, (lo, hi)));
@@ -116,16 +116,16 @@ impl Exact<'_> {
     }
 }
 
-/// Pairs of whole numbers, row by row, each from the first to the last of a range.
+/// Pairs of whole numbers, row by row; each runs through a range, ends included.
 fn through(range: impl Fn(usize) -> (f32, f32)) -> impl Iterator<Item = [f32; 2]> {
     let [columns, rows] = [range(0), range(1)].map(|(first, last)| first as u32..=last as u32);
     rows.flat_map(move |row| columns.clone().map(move |column| [column as f32, row as f32]))
 }
 
-/// What chords add up to.
+/// Sums over chords.
 struct Sum {
     along: Along,
-    /// At the centre, as the chords have it.
+    /// Winding number at the centre, for the chords.
     winding: i32,
     hidden: f32,
     outward: [f32; 2],
@@ -140,7 +140,7 @@ impl Sum {
         Cover { share: mean.abs().min(1.0), outward: self.outward.map(|x| x * way), cut: self.cut }
     }
 
-    /// The part of an arc that is in a box.
+    /// Adds the part of an arc that is in a box.
     fn add_arc(&mut self, arc: &ExactArc, uv: [f32; 2], (from, to): ([f32; 2], [f32; 2])) {
         let relative = |p: [f32; 2]| [p[0] - arc.low[0], p[1] - arc.low[1]];
         let (begin, end) = arc.within(relative(from), relative(to));
@@ -156,7 +156,7 @@ impl Sum {
             let p = [base[0] + q[0], base[1] + q[1]];
             ([pu[0] * p[0] + pv[0] * p[1], pu[1] * p[0] + pv[1] * p[1]], p[1])
         };
-        // in the pixel, and v from its centre
+        // points in the pixel, and their v relative to its centre
         let mut corners = [([0.0; 2], 0.0); CHORDS as usize + 1];
         corners[0] = pixel(begin);
         for k in 1..=chords {
@@ -171,7 +171,7 @@ impl Sum {
             let mut sweep = swept_along(a, b);
             let mut left = (sweep > 0.0) == (det > 0.0);
             if sweep.abs() == 0.5 {
-                // the centre is on it: as the exact test has it
+                // the centre is on it: decide as the exact test does
                 left = arc.is_right_of(uv);
                 sweep = if left == (det > 0.0) { 0.5 } else { -0.5 };
             } else if in_row && a_v < 0.0 && b_v >= 0.0 && left != arc.lies_right(uv) {
@@ -187,7 +187,7 @@ impl Sum {
 }
 
 impl ExactArc {
-    /// Whether a point on it counts as left of it, as it runs from its lower end to its higher one.
+    /// Whether a point on the arc counts as left of it, for an arc that runs from its lower to its higher end.
     fn is_right_of(&self, uv: [f32; 2]) -> bool {
         if self.low[1] < uv[1] && uv[1] <= self.high[1] {
             self.lies_right(uv)
@@ -196,8 +196,8 @@ impl ExactArc {
         }
     }
 
-    /// Parameters between which it is in a box, whose corners are relative to its lower end. Along the box's upper and right
-    /// side it is not: cells that share a side must not both have it.
+    /// The parameters between which the arc lies in a box, whose corners are relative to its lower end. The box
+    /// excludes its upper and right side, so an arc along a common side of two cells counts once.
     fn within(&self, lo: [f32; 2], hi: [f32; 2]) -> (f32, f32) {
         let (mut begin, mut end) = (0.0f32, 1.0f32);
         for i in 0..2 {
@@ -227,7 +227,7 @@ pub fn swept(d: [f32; 2]) -> f32 {
     }
 }
 
-/// What a ray from the centre sweeps along a chord; positive when it turns as `(1, 0)` does to `(0, 1)`.
+/// The area that a ray from the centre sweeps along a chord; positive if it turns from `(1, 0)` to `(0, 1)`.
 fn swept_along(a: [f32; 2], b: [f32; 2]) -> f32 {
     let turn = swept(b) - swept(a);
     turn - (turn + 0.5).floor()

@@ -1,5 +1,4 @@
-//! Twin of the pass `cross`: every linear segment meets every scan line that it
-//! crosses.
+//! Twin of the pass `cross`: intersects every linear segment with every scan line that it crosses.
 //!
 //! ```text
 //!   v ▲   ─────────── scan line        bottom-open, top-closed: v_a < v <= v_b, so a line through a
@@ -8,7 +7,7 @@
 //!     │   a ●                          v of line j of strip k:  (k + (j + 1/2) / mu_k) / strips
 //! ```
 //!
-//! A scan line has a row in each bin that is seen (`bins.rs`).
+//! A scan line has a row in each visible bin (`u_bins.rs`).
 //!
 //! ```text
 //!   error of u on another GPU:   point + min(|Δu|, |Δu / Δv| (line + 2 point)) + 2 d |Δu|
@@ -23,8 +22,8 @@
 //! If a scan line is nearer to a chord's end than `line + point`, it may cross the next chord instead, and `u` has no
 //! bound.
 //!
-//! An intercept is `u` as order-preserving bits, its lowest bit the direction: 1 upwards. In which
-//! order a row receives its intercepts is left to the GPU; the rows compare as sets.
+//! An intercept is `u` as order-preserving bits, its lowest bit the direction: 1 upwards. The order of a row's
+//! intercepts is left to the GPU; tests compare rows as sets.
 
 use super::border_cells::columns_between;
 use super::curve::curve_point;
@@ -35,7 +34,7 @@ use super::{Scene, strips_of};
 use crate::abi::constants::border_cells::BAND_ROUNDING;
 use crate::abi::{BORDER_BANDS, Frame, StripRows};
 
-/// Intercepts of each of `row_capacity` rows, and what those of strips with several bins add to the winding number.
+/// The number of intercepts of each of `row_capacity` rows, and, for strips with several bins, their sum of windings.
 pub fn count(frame: &Frame, scene: &Scene<'_>, strips: &[StripRows], segment_starts: &[u32]) -> (Vec<u32>, Vec<i32>) {
     let mut counts = vec![0; frame.row_capacity as usize];
     let mut windings = vec![0; frame.row_capacity as usize];
@@ -48,8 +47,7 @@ pub fn count(frame: &Frame, scene: &Scene<'_>, strips: &[StripRows], segment_sta
     (counts, windings)
 }
 
-/// Writes the intercepts of each row from `row_starts` on, as far as there is room, and counts
-/// `row_counts` down to zero.
+/// Writes the intercepts of each row from `row_starts` on, up to the capacity, and counts `row_counts` down to zero.
 pub fn insert(
     frame: &Frame,
     scene: &Scene<'_>,
@@ -104,7 +102,7 @@ pub fn ordered_bits(u: f32) -> u32 {
     if bits & 0x8000_0000 != 0 { !bits } else { bits | 0x8000_0000 }
 }
 
-/// Four words for each band of each bin: the columns of it that chords pass, or come nearer to than half a scan line.
+/// Four words for each band of each bin: the columns that chords cross, or come nearer to than half a scan line.
 pub fn border_cells(frame: &Frame, scene: &Scene<'_>, strips: &[StripRows], segment_starts: &[u32]) -> Vec<[u32; 4]> {
     let mut cells = vec![[0; 4]; (frame.bin_count * BORDER_BANDS) as usize];
     chords(frame, scene, strips, segment_starts, |chord| {
@@ -123,7 +121,7 @@ pub fn border_cells(frame: &Frame, scene: &Scene<'_>, strips: &[StripRows], segm
     cells
 }
 
-/// A segment where it passes a strip that has scan lines.
+/// The part of a segment in a strip that has scan lines.
 struct Chord {
     low: [f32; 2],
     high: [f32; 2],
@@ -141,7 +139,7 @@ struct Chord {
 }
 
 impl Chord {
-    /// Where `v` is in the strip, 0 to 1 within it.
+    /// `v` relative to the strip, 0 to 1 within it.
     fn of_strip(&self, p: [f32; 2]) -> f32 {
         p[1] * self.strips - self.of_face
     }
@@ -186,7 +184,8 @@ fn crossings(
     });
 }
 
-/// Every segment in every strip, but for those right of all that is seen, and those of loops that are left of it all.
+/// Every segment in every strip, except for those right of all visible bins, and those of loops left of all visible
+/// bins.
 fn chords(
     frame: &Frame,
     scene: &Scene<'_>,
@@ -197,7 +196,7 @@ fn chords(
     for item in 0..frame.curve_count as usize {
         let n = segment_starts[item + 1] - segment_starts[item];
         let (placed, face, curve) = scene.curve(item);
-        // segments beyond what one dispatch can hold get no thread
+        // segments beyond the limit of one dispatch have no thread
         for i in 0..n.min(MOST_SEGMENTS.saturating_sub(segment_starts[item])) {
             let from = curve_point(&curve, scene.curve_points, i, n);
             let to = curve_point(&curve, scene.curve_points, i + 1, n);

@@ -4,8 +4,8 @@ use crate::abi::Curve;
 
 /// Point `i` of `n` equal steps along the parameter, by Horner's scheme in the Bernstein basis.
 ///
-/// The ends are the stored ones, so that curves of a loop share them bit for bit; inner points depend
-/// on `(curve, i, n)` alone, so that segments share theirs.
+/// The ends are the stored ones, so curves of a loop share them bit for bit. Inner points depend only on
+/// `(curve, i, n)`, so segments share theirs.
 pub fn curve_point(curve: &Curve, curve_points: &[f32], i: u32, n: u32) -> [f32; 2] {
     if i == 0 {
         return curve.start;

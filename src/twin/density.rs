@@ -9,18 +9,18 @@ use super::view::{far_of, nearest_in_slab, pixels_per_unit, see};
 use crate::abi::{Cell, Face, FaceInstance, Frame};
 use crate::math::octahedral;
 
-/// What the pass writes.
+/// The results of the pass.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Density {
-    /// Height of each placed strip in pixels, at its first bin; 0 for one that cannot be seen.
+    /// Height of each placed strip in pixels, at its first bin; 0 if it is not visible.
     pub strip_heights: Vec<f32>,
     /// Largest pixels per unit of `u` and of `v` of each placed face.
     pub face_speeds: Vec<[f32; 2]>,
-    /// A bit for each bin that can be seen of each placed strip, at its first bin.
+    /// A bit for each visible bin of each placed strip, at its first bin.
     pub seen_bins: Vec<u32>,
 }
 
-/// Pixels that one unit of a cell can cover; `None` where nobody sees it.
+/// Pixels that one unit of a cell can cover; `None` if the cell is not visible.
 fn pixels_of(frame: &Frame, scene: &Scene<'_>, placed: FaceInstance, face: &Face, cell: &Cell) -> Option<f32> {
     let instance = &scene.instances[placed.instance as usize];
     if frame.table_density > 0.0 {
@@ -36,7 +36,7 @@ fn pixels_of(frame: &Frame, scene: &Scene<'_>, placed: FaceInstance, face: &Face
     Some(pixels_per_unit(frame, instance, &seen))
 }
 
-/// The largest over the visible cells of each strip and of each face.
+/// The largest values over the visible cells of each strip and of each face.
 pub fn density(frame: &Frame, scene: &Scene<'_>) -> Density {
     let mut out = Density {
         strip_heights: vec![0.0; frame.bin_count as usize],
@@ -56,7 +56,7 @@ pub fn density(frame: &Frame, scene: &Scene<'_>) -> Density {
         let strip = (placed.first_bin + cell.bin - bin) as usize;
         out.seen_bins[strip] |= 1 << bin;
         let height = &mut out.strip_heights[strip];
-        // a visible strip gets a scan line, however flat it is seen
+        // a visible strip gets a scan line, even if it is nearly parallel to the rays
         *height = height.max((cell.speed_v * pixels / face.strip_count() as f32).max(1e-6));
         let speeds = &mut out.face_speeds[placed_index];
         *speeds = [speeds[0].max(cell.speed_u * pixels), speeds[1].max(cell.speed_v * pixels)];

@@ -1,4 +1,4 @@
-//! Twin of the passes `edge_count` and `edge_emit`: pieces of edges into chords.
+//! Twin of the passes `edge_count` and `edge_emit`: divides pieces of edges into chords.
 //!
 //! The method and its bound are those of [`edges::flatten`](crate::edges::flatten), in single precision and for the
 //! lines of a frame: a piece that needs more than [`MOST_CHORDS`] is halved, one outside the picture left out.
@@ -7,13 +7,13 @@ use super::view::to_pixel;
 use crate::abi::constants::edge_divide::{EDGE_HALVINGS, EDGE_MOST_CHORDS, EDGE_TOLERANCE_PX};
 use crate::abi::{Chord, EdgeItem, EdgeLine, EdgePiece, Frame, View};
 
-/// Chords of a piece; one that needs more is halved.
+/// Most chords of a piece; a piece that needs more is halved.
 pub const MOST_CHORDS: u32 = EDGE_MOST_CHORDS;
 
-/// What the passes read.
+/// The input of the passes.
 #[derive(Clone, Copy, Debug)]
 pub struct Given<'a> {
-    /// Part to pixel, per placement.
+    /// Part to pixel, for each placement.
     pub views: &'a [View],
     /// Placed pieces.
     pub items: &'a [EdgeItem],
@@ -23,11 +23,11 @@ pub struct Given<'a> {
     pub points: &'a [[f32; 4]],
     /// Edges.
     pub lines: &'a [EdgeLine],
-    /// Pixels beyond the picture.
+    /// Pixels beyond the picture to which lines are drawn.
     pub margin_px: f32,
 }
 
-/// Chords of each item, and how many pieces bend too much after the last halving.
+/// Chords of each item, and the number of pieces that bend too much after the last halving.
 pub fn divide(frame: &Frame, given: &Given<'_>) -> (Vec<Vec<Chord>>, u32) {
     let mut clamps = 0;
     let chords = (0..)

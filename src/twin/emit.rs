@@ -1,11 +1,11 @@
-//! Twin of the pass `emit`: the list of sub-patches, and the draws that cover it.
+//! Twin of the pass `emit`: writes the list of sub-patches, and the draws that cover it.
 //!
 //! ```text
 //!   vertices before an item  0 ..... draw_vertices ..... 2 draw_vertices ....
-//!   draw that gets it        |   0   |        1         |        2
+//!   draw that covers it      |   0   |        1         |        2
 //! ```
 //!
-//! Sums and extrema only: the order of the items does not matter.
+//! Only sums and extrema: the order of the items does not matter.
 
 use super::{FAILED_DRAWS, FAILED_SUB_PATCHES};
 use crate::abi::{Counters, Factors, Frame, SubPatch};
@@ -25,10 +25,10 @@ pub struct Draw {
     pub first_instance: u32,
 }
 
-/// Writes `sub_patches` and `draws` (plain, then trimmed: `draw_capacity` each; reset before), as far
-/// as they have room; `counters` tell what there was, and what failed.
+/// Writes `sub_patches` and `draws` (plain, then trimmed: `draw_capacity` each; cleared before), up to their
+/// capacities. `counters` receive the total numbers and the failures.
 ///
-/// The starts are the prefix sums of the counts of [`Split`](super::split::Split), with the total behind them.
+/// The starts are the prefix sums of the counts of [`Split`](super::split::Split), followed by the total.
 pub fn emit(
     frame: &Frame,
     factors: &[Factors],

@@ -1,5 +1,5 @@
-//! Twin of `glsl/include/exact.glsl`: the exact trim test. What the structures mean stands in
-//! [`trim::ExactTrim`](crate::trim::ExactTrim).
+//! Twin of `glsl/include/exact.glsl`: the exact trim test. [`trim::ExactTrim`](crate::trim::ExactTrim) describes the
+//! data structure.
 
 pub use crate::abi::constants::exact::FAR;
 use crate::abi::{ARC_LAST, ARC_UP, CELL_SPLIT, ExactArc, ExactCell, ExactFace};
@@ -8,31 +8,31 @@ use crate::trim::{AT_HIGH, AT_LOW, MARGIN};
 /// The arrays of all faces.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Exact<'a> {
-    /// By number of the face.
+    /// One for each face, by its number.
     pub faces: &'a [ExactFace],
-    /// Of all faces.
+    /// Cells of all faces.
     pub cells: &'a [ExactCell],
-    /// Lists of all cells.
+    /// The lists of all cells.
     pub arcs: &'a [ExactArc],
 }
 
-/// A list of arcs, and the points that it is for.
+/// A list of arcs, and the points for which it is valid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct List {
     /// Its first arc.
     pub first: u32,
-    /// Winding number by what is not in the list.
+    /// Winding number of the arcs that are not in the list.
     pub winding: i32,
-    /// Least corner of the cell's own rectangle; infinite, as far as can be, beyond the outermost cells.
+    /// Least corner of the cell's rectangle; unbounded for the outermost cells.
     pub lo: [f32; 2],
     /// Largest corner.
     pub hi: [f32; 2],
-    /// Around it: of the points that the list is for.
+    /// Margin around the rectangle where the list is valid, too.
     pub margin: [f32; 2],
 }
 
 impl List {
-    /// Whether it tells the winding number of a point.
+    /// Whether the list gives the winding number of a point.
     pub fn holds_for(&self, uv: [f32; 2]) -> bool {
         (0..2).all(|i| uv[i] >= self.lo[i] - self.margin[i] && uv[i] <= self.hi[i] + self.margin[i])
     }
@@ -47,17 +47,17 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// Cell that a coordinate is in.
+    /// The cell that contains a coordinate.
     pub(super) fn index(self, x: f32) -> f32 {
         (x * self.scale - self.first).floor().max(0.0).min(self.count - 1.0)
     }
 
-    /// Part of a cell that it is in, of so many.
+    /// The part of a cell, of `parts`, that contains it.
     pub(super) fn part(self, x: f32, index: f32, parts: f32) -> f32 {
         ((x * self.scale - self.first - index) * parts).floor().max(0.0).min(parts - 1.0)
     }
 
-    /// From where to where a part of a cell is, and its list's margin.
+    /// Start and end of a part of a cell, and the margin of its list.
     fn range(self, index: f32, part: f32, parts: f32) -> [f32; 3] {
         let side = 1.0 / (self.scale * parts);
         let at = index * parts + part;
@@ -86,7 +86,7 @@ impl ExactFace {
 }
 
 impl Exact<'_> {
-    /// The list of the cell that the normalised `uv` is in.
+    /// The list of the cell that contains the normalised `uv`.
     pub fn list(&self, face: usize, uv: [f32; 2]) -> List {
         let f = self.faces[face];
         let axes = f.axes();
@@ -97,13 +97,13 @@ impl Exact<'_> {
         self.list_of(&axes, cell, index, part)
     }
 
-    /// Parts of a cell along each axis.
+    /// Number of parts of a cell along each axis.
     pub(super) fn parts(&self, cell: usize) -> f32 {
         let cell = self.cells[cell];
         if cell.first & CELL_SPLIT != 0 { (1u32 << cell.winding) as f32 } else { 1.0 }
     }
 
-    /// That of a part of a cell.
+    /// The list of a part of a cell.
     pub(super) fn list_of(&self, axes: &[Axis; 2], cell: usize, index: [f32; 2], part: [f32; 2]) -> List {
         let parts = self.parts(cell);
         let mut own = self.cells[cell];
@@ -115,7 +115,7 @@ impl Exact<'_> {
         List { first: own.first, winding: own.winding, lo, hi, margin }
     }
 
-    /// Winding number of a point in the box of a list; 0 for one that is no number.
+    /// Winding number of a point in the box of a list; 0 for NaN.
     pub fn winding_in(&self, list: &List, uv: [f32; 2]) -> i32 {
         if !uv.iter().all(|x| x.abs() < FAR) {
             return 0;
@@ -123,7 +123,7 @@ impl Exact<'_> {
         list.winding + self.arcs(list.first).map(|arc| arc.winding(uv)).sum::<i32>()
     }
 
-    /// Winding number of the loops of a face around the normalised `(u, v)`; 0 for one that is no number.
+    /// Winding number of a face's loops around the normalised `(u, v)`; 0 for NaN.
     pub fn winding(&self, face: usize, uv: [f32; 2]) -> i32 {
         self.winding_in(&self.list(face, uv), uv)
     }
@@ -137,7 +137,7 @@ impl Exact<'_> {
 }
 
 impl ExactArc {
-    /// What it adds to the winding number of a point.
+    /// The winding number that the arc adds to a point.
     fn winding(&self, uv: [f32; 2]) -> i32 {
         let direction = if self.shape & ARC_UP != 0 { 1 } else { -1 };
         let low = if self.shape & AT_LOW != 0 { direction } else { 0 };
@@ -150,10 +150,10 @@ impl ExactArc {
         }
     }
 
-    /// It passes `v`, which is above its lower end and not above its higher one, at some larger `u`.
+    /// Whether the arc passes `v`, which is above its lower end and not above its higher one, at some larger `u`.
     pub(super) fn lies_right(&self, [u, v]: [f32; 2]) -> bool {
         if v == self.high[1] {
-            return self.high[0] > u; // as its neighbour has it
+            return self.high[0] > u; // the same as the neighbouring arc
         }
         let (chord, corner) = (self.chord(), self.corner);
         let p = [u - self.low[0], v - self.low[1]];
@@ -163,22 +163,22 @@ impl ExactArc {
         let back: [f32; 2] = std::array::from_fn(|i| turned * corner[i] - turned * chord[i]);
         let middle = turned * chord[0] * p[1] - p[0] * (turned * chord[1]);
         let high = p[0] * (turned * corner[1]) - turned * corner[0] * p[1];
-        let low = back[0] * q[1] - q[0] * back[1]; // as a rest it would have the rounding of the longer sides
+        let low = back[0] * q[1] - q[0] * back[1]; // as a difference it would have the longer sides' rounding
         let beyond = middle > 0.0 && middle * middle > low.max(0.0) * (self.fullness * high.max(0.0));
         beyond == (turned > 0.0)
     }
 
-    /// Weight of the corner, where the ends have 1; 0 when the arc is straight.
+    /// Weight of the corner, for weights 1 at the ends; 0 for a straight arc.
     fn weight(&self) -> f32 {
         0.5 * self.fullness.sqrt()
     }
 
-    /// Its ends, from the lower to the higher.
+    /// The vector from its lower to its higher end.
     pub(super) fn chord(&self) -> [f32; 2] {
         [self.high[0] - self.low[0], self.high[1] - self.low[1]]
     }
 
-    /// A point of it, relative to its lower end.
+    /// A point of the arc, relative to its lower end.
     pub(super) fn point(&self, t: f32) -> [f32; 2] {
         let chord = self.chord();
         if t >= 1.0 {
@@ -193,10 +193,10 @@ impl ExactArc {
         std::array::from_fn(|i| (corner * self.corner[i] + end * chord[i]) / sum)
     }
 
-    /// Parameter at which a coordinate, relative to its lower end, becomes `x`; 0 or 1 beyond its ends.
+    /// Parameter at which a coordinate, relative to the lower end, is `x`; 0 or 1 beyond the ends.
     ///
-    /// With `r = t / (1 - t)`, corner `c`, its weight `w` and chord `d` it is `(2 w r c + r² d) / (1 + 2 w r + r²)`: `r` is the
-    /// only positive root of `(d - x) r² + 2 w (c - x) r - x`.
+    /// With `r = t / (1 - t)`, corner `c`, its weight `w` and chord `d`, the coordinate is
+    /// `(2 w r c + r² d) / (1 + 2 w r + r²)`: `r` is the only positive root of `(d - x) r² + 2 w (c - x) r - x`.
     pub(super) fn reached(&self, axis: usize, x: f32) -> f32 {
         let chord = self.chord()[axis];
         let way = if chord < 0.0 { -1.0 } else { 1.0 };
@@ -212,7 +212,7 @@ impl ExactArc {
         }
         let b = self.weight() * (corner - to);
         let root = (b * b + (end - to) * to).sqrt();
-        // of t = r / (1 + r), whichever sum has no difference in it
+        // for t = r / (1 + r), the sum without cancellation
         if b > 0.0 { to / (to + (b + root)) } else { (root - b) / ((root - b) + (end - to)) }
     }
 }

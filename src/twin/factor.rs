@@ -3,7 +3,7 @@
 //! ```text
 //!   1 / tau_v ┌───────────┐          a triangle with vertices on the surface S, within a rectangle
 //!             │ T      ╱  │          of 1 / tau_u by 1 / tau_v in (u, v); T is its point at (u, v),
-//!             │    ╱  T'  │          e = T(u, v) - S(u, v) what it is off by
+//!             │    ╱  T'  │          e = T(u, v) - S(u, v) its deviation
 //!             └───────────┘
 //!                  1 / tau_u
 //! ```
@@ -15,55 +15,54 @@
 //!   |e| ≤ ½ Σ λ_i |S_uu du_i² + 2 S_uv du_i dv_i + S_vv dv_i²| ≤ ½ Σ λ_i (a du_i² + 2 b |du_i dv_i| + c dv_i²)
 //! ```
 //!
-//! each `i` with the derivatives at a place of its own, and `a`, `b`, `c` from
-//! [`derivative_bound`](crate::spline::DerivativeBound), good for all places. `Σ λ_i du_i²` is the variance of a quantity that
-//! spans at most `1 / tau_u`, hence at most `1 / (4 tau_u²)` (Popoviciu), and `Σ λ_i |du_i dv_i|` at most
+//! with the derivatives of each `i` at a different place, and `a`, `b`, `c` from
+//! [`derivative_bound`](crate::spline::DerivativeBound), valid at all places. `Σ λ_i du_i²` is the variance of a
+//! quantity that spans at most `1 / tau_u`, hence at most `1 / (4 tau_u²)` (Popoviciu), and `Σ λ_i |du_i dv_i|` at most
 //! `1 / (4 tau_u tau_v)` (Cauchy and Schwarz). So
 //!
 //! ```text
 //!   |e| ≤ E = (a / tau_u² + 2 b / (tau_u tau_v) + c / tau_v²) / 8
 //! ```
 //!
-//! for every triangle in such a rectangle, of either diagonal; pass [`split`](super::split) sees to it that
-//! those along sides of another factor are in one too.
+//! for every triangle in such a rectangle, of either diagonal. Pass [`split`](super::split) ensures that triangles
+//! along sides with another factor are in such a rectangle, too.
 //!
-//! **On the screen.** View coordinates, depth `z`, `focal` pixels per unit slope. The pixels of `T` and of
-//! `S` are apart by `focal |T_xy / T_z - S_xy / S_z|`; with `T = S + e` this is either of
+//! **On the screen.** View coordinates, depth `z`, `focal` pixels per unit slope. The pixels of `T` and `S` differ by
+//! `focal |T_xy / T_z - S_xy / S_z|`; with `T = S + e` this is either of
 //!
 //! ```text
 //!   focal |e_xy - (S_xy / S_z) e_z| / T_z        focal |e_xy - (T_xy / T_z) e_z| / S_z
 //! ```
 //!
-//! By Cauchy and Schwarz `|e_xy - s e_z| ≤ |e| sqrt(1 + |s|²)`. `S` and `T` are means of the control
-//! points, so both depths are at least the smallest of theirs, `W_min`, and `|s|` is at most the steepest slope of
-//! theirs; where `S` or `T` is in the picture, at most that of the picture's: `slant = sqrt(1 + tan²)` with the
-//! smaller one. (Their box has nearer and steeper corners: 6 % more quads of 1500 random patches.) A placement stretches
-//! `e` by `scale` at most:
+//! By Cauchy and Schwarz `|e_xy - s e_z| ≤ |e| sqrt(1 + |s|²)`. `S` and `T` are means of the control points. So both
+//! depths are at least the smallest depth of the control points, `W_min`, and `|s|` is at most their steepest slope; if
+//! `S` or `T` is in the picture, also at most the picture's: `slant = sqrt(1 + tan²)` with the smaller one. (The box of
+//! the control points has nearer and steeper corners.) A placement stretches `e` by `scale` at most:
 //!
 //! ```text
 //!   deviation_px ≤ E · scale · focal · slant / W_min
 //! ```
 //!
-//! In a parallel view `focal` is pixels per unit and `slant = W = 1`. Where a control point lies before the near plane,
-//! the box stands for them, and where that crosses it, `W_min` is cut to `near`: the drawn `T` has `T_z ≥ near`, and
-//! `S_z ≥ near - |e|` costs a factor of at most
-//! `1 / (1 - deviation_px / focal)`, one part in 5000 for half a pixel at the usual lenses. A trimmed
-//! face's skirt reaches beyond `[0, 1]²`: `visibility_surface.glsl` pushes no vertex so far that the surface leaves its
-//! tangent by more than a quarter of the budget, so across the border it is off by 25/16 of it at most.
+//! In a parallel view `focal` is pixels per unit and `slant = W = 1`. If a control point lies before the near plane,
+//! the box replaces the control points, and if the box crosses the plane, `W_min` is set to `near`: the drawn `T` has
+//! `T_z ≥ near`, and `S_z ≥ near - |e|` costs a factor of at most `1 / (1 - deviation_px / focal)`, one part in 5000
+//! for half a pixel and usual lenses. A trimmed face's skirt extends beyond `[0, 1]²`: `visibility_surface.glsl` pushes
+//! vertices only as far as the surface stays within a quarter of the budget of its tangent, so across the border it
+//! deviates by at most 25/16 of the budget.
 //!
-//! **Towards the eye.** What is off along the ray moves no pixel. For a polynomial patch pass [`bound`](super::bound) projects
-//! the second differences of the net, which bound its second derivatives, into the picture:
+//! **Towards the eye.** A deviation along the ray moves no pixel. For a polynomial patch, pass [`bound`](super::bound)
+//! projects the second differences of the net, which bound its second derivatives, into the picture:
 //!
 //! ```text
 //!   a, b, c = sup |(d_X - x d_W, d_Y - y d_W)|      d = n (n-1) Δ²_u, n k Δ_u Δ_v, k (k-1) Δ²_v of the control points
 //!   deviation_px ≤ E / W_min                        as homogeneous pixels; (x, y) where the patch is seen in the picture
 //! ```
 //!
-//! since the pixels of `T` and `S` are apart by `|e_X - x e_W| / T_W` with `(x, y)` the pixel of `S`, and by the same with
-//! the two exchanged; each coordinate is linear in `x`, so the ends of its range have the most. In space `T` may then be
-//! off by [`DEPTH_SHARE`](super::bound::DEPTH_SHARE) times the budget, by the bound above, and no more: factors that keep
-//! both are taken where they make fewer quads. Rational patches stay with the bound in space: second differences of
-//! their nets see weights vary around every arc.
+//! since the pixels of `T` and `S` differ by `|e_X - x e_W| / T_W` with `(x, y)` the pixel of `S`, and by the same with
+//! the two exchanged; each coordinate is linear in `x`, so its largest values are at the ends of its range. In space
+//! `T` may then deviate by [`DEPTH_SHARE`](super::bound::DEPTH_SHARE) times the budget, by the bound above. Factors
+//! that satisfy both bounds are used if they give fewer quads. Rational patches use the bound in space alone: weights
+//! that vary around an arc make second differences of their nets large.
 //!
 //! **The choice.** With `a`, `b`, `c` over the budget and `r = tau_u / tau_v`, the quads are
 //!
@@ -71,13 +70,13 @@
 //!   tau_u tau_v = a / r + 2 b + c r          fewest, 2 (sqrt(a c) + b), at r = sqrt(a / c)
 //! ```
 //!
-//! Where the surface mostly twists, `b` is large and `r` hardly matters, yet the fewest quads would be as
-//! slender as the smaller of `a`, `c` is small: thousands of segments along one side, one along the
-//! other. So `r` is the ratio nearest to 1 that costs at most [`SPARE`] more quads than the fewest. Where
-//! it asks for less than one segment, one it is, and the other factor follows from a quadratic equation.
+//! If the surface mostly twists, `b` is large and `r` hardly matters, but the fewest quads would be as slender as the
+//! smaller of `a`, `c` is small: thousands of segments along one side, one along the other. So `r` is the ratio nearest
+//! to 1 that costs at most [`SPARE`] more quads than the fewest. If a factor is below one segment, it is set to one,
+//! and the other factor follows from a quadratic equation.
 //!
-//! Accuracy: 0 violations, see the tests beside this file, which also state by how much it divides too
-//! finely. Sources: D. Filip, R. Magedson, R. Markot, *Surface algorithms using bounds on derivatives*,
+//! Accuracy: 0 violations; the tests beside this file also measure how much finer than necessary it divides. Sources:
+//! D. Filip, R. Magedson, R. Markot, *Surface algorithms using bounds on derivatives*,
 //! CAGD 3, 1986 (right triangles, in space); T. Popoviciu, *Sur les équations algébriques*, 1935.
 
 pub use crate::abi::constants::factor::SPARE;
@@ -86,8 +85,8 @@ use crate::abi::constants::factor::UP;
 /// Segments `(tau_u, tau_v)`, whole numbers of small product, with
 /// `bend[0] / tau_u² + 2 bend[1] / (tau_u tau_v) + bend[2] / tau_v² ≤ budget`.
 ///
-/// `bend`: `|S_uu x² + 2 S_uv x y + S_vv y²| ≤ bend[0] x² + 2 bend[1] |x y| + bend[2] y²`, part units; `budget` is `8 deviation_px` over the pixels
-/// that one part unit can cover. Good for factors up to 10⁹.
+/// `bend`: `|S_uu x² + 2 S_uv x y + S_vv y²| ≤ bend[0] x² + 2 bend[1] |x y| + bend[2] y²`, part units. `budget` is
+/// `8 deviation_px` over the pixels that one part unit can cover. Valid for factors up to 10⁹.
 pub fn factors(bend: [f32; 3], budget: f32) -> [f32; 2] {
     let [a, b, c] = bend.map(|x| x / budget);
     if (a + 2.0 * b + c) * UP <= 1.0 {
@@ -100,8 +99,8 @@ pub fn factors(bend: [f32; 3], budget: f32) -> [f32; 2] {
     let r = 1.0f32.max(2.0 * al / most).min(most / (2.0 * cl));
     let tv = (a / (r * r) + 2.0 * b / r + c).sqrt();
     let tu = r * tv;
-    // tv < 1 only where r > 1, so r is the smaller root: c <= a / r², tv² >= 2 c, and 1 - c does not
-    // cancel; tu alike
+    // tv < 1 only if r > 1, so r is the smaller root: c <= a / r², tv² >= 2 c, and 1 - c has no cancellation; the same
+    // for tu
     if tv < 1.0 {
         return [((b + (b * b + a * (1.0 - c)).sqrt()) / (1.0 - c) * UP).ceil(), 1.0];
     }
@@ -120,7 +119,7 @@ mod screen_bound;
 mod tests {
     use super::*;
 
-    /// Tight, to the rounding up; never more than the spare over the fewest quads, whole numbers aside.
+    /// Tight up to rounding; at most the spare share above the fewest quads, except for rounding to whole numbers.
     #[test]
     fn the_pair_meets_the_budget_with_few_quads() {
         let sizes = [0.0, 1e-9, 0.3, 0.7, 3.0, 50.0, 2000.0, 1e6];
@@ -149,7 +148,7 @@ mod tests {
         assert_eq!(factors([0.0; 3], 1.0), [1.0, 1.0]);
     }
 
-    /// A twisted strip that is also slightly bent along one parameter: cut both ways.
+    /// A twisted strip that is also slightly bent along one parameter is divided along both.
     #[test]
     fn a_twist_is_not_cut_into_slivers() {
         let [u, v] = factors([0.0, 2500.0, 30.0], 1.0);

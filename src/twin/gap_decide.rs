@@ -1,21 +1,21 @@
-//! Twin of `glsl/include/gap_candidate.glsl` and `gap_decide.glsl`: which face belongs at a gap candidate, from the
-//! pixel's situation and its candidates. The rules, in the order and the words of docs/design/gaps.md.
+//! Twin of `glsl/include/gap_candidate.glsl` and `gap_decide.glsl`: decides the visible face of a gap candidate, from
+//! the pixel's situation and its candidates. Order and names of the rules are those of docs/design/gaps.md.
 //!
 //! ```text
 //!   candidates ──consider, one by one──▶ Evidence ──▶ decide ──▶ word of the visibility buffer
 //! ```
 //!
-//! A choice is the shader's wherever no two depths that it compares differ by rounding alone.
+//! The choice equals the shader's unless two compared depths differ only by rounding.
 
 use crate::abi::Frame;
 use crate::abi::constants::gap_decide::SAME_DEPTH;
 use crate::abi::constants::gap_radius::GAP_SLACK;
 pub use crate::abi::constants::on_pixel::ON_PIXEL_PX;
 
-/// Farther than anything.
+/// Farther than every point.
 pub const FARTHEST: f32 = 3.0e38;
 
-/// What a face is at the pixel's centre.
+/// The face at the pixel's centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
     /// Not there.
@@ -23,53 +23,53 @@ pub enum Kind {
     Absent,
     /// A border or silhouette of it is within the gap radius.
     Near,
-    /// Its surface passes the centre, inside its trims; of the pixel's own face: and the whole gap radius.
+    /// Its surface passes the centre, inside its trims; for the pixel's own face, the whole gap radius is inside.
     Present,
 }
 
-/// Where a candidate was seen.
+/// The pixel that showed a candidate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum From {
-    /// By the next pixel.
+    /// The next pixel.
     #[default]
     Beside,
-    /// Beyond other gap candidates.
+    /// A pixel beyond other gap candidates.
     Beyond,
-    /// It is the pixel's own face, across a silhouette.
+    /// The pixel's own face, across a silhouette.
     Fold,
 }
 
-/// Where a face ends near the pixel.
+/// The end of a face near the pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outline {
-    /// The sum of the gap radius's points in the face, pixels; zero where all are.
+    /// The sum of the gap radius's points in the face, pixels; zero if all are.
     pub into: [f32; 2],
-    /// The other way the face does not reach half of the gap radius.
+    /// In the other direction, the face does not reach half of the gap radius.
     pub ends: bool,
 }
 
-/// A face that may belong there.
+/// A face that may be visible there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {
     /// Whether it is there.
     pub kind: Kind,
-    /// Where it was seen.
+    /// The pixel that showed it.
     pub from: From,
-    /// Of the scene, + 1; 0 where it is no patch.
+    /// Number in the scene, + 1; 0 for meshes and solids.
     pub face: u32,
-    /// Its trims, at the centre.
+    /// Its trims contain the centre.
     pub inside: bool,
-    /// Looks away from the viewer.
+    /// It is turned away from the viewer.
     pub away: bool,
     /// At the centre; larger is farther.
     pub depth: f32,
-    /// From the centre to the nearest point of its surface, pixels.
+    /// Distance from the centre to the nearest point of its surface, in pixels.
     pub miss: f32,
-    /// Of its depth, a pixel.
+    /// Slope of its depth, per pixel.
     pub slope: [f32; 2],
-    /// For the visibility buffer.
+    /// Its word for the visibility buffer.
     pub word: [u32; 2],
-    /// How it ends.
+    /// Its end near the pixel.
     pub outline: Outline,
 }
 
@@ -90,14 +90,14 @@ impl Default for Candidate {
     }
 }
 
-/// Why the pixel is a gap candidate, and what is known about it.
+/// The reason why the pixel is a gap candidate, and the pixel's surroundings.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Situation {
-    /// A border lies before what is seen, or the eye is within a solid; else a back face is seen.
+    /// A border lies before the visible surface, or the eye is within a solid; else a back face is visible.
     pub border: bool,
-    /// No border is near: nothing is seen, between patches on both sides.
+    /// No border is near: the pixel is empty, between patches on both sides.
     pub isolated: bool,
-    /// No patch is seen.
+    /// The pixel shows no patch.
     pub empty: bool,
     /// A neighbour shows the background.
     pub empty_beside: bool,
@@ -109,12 +109,12 @@ pub struct Situation {
     pub cut_open: bool,
     /// Word of the visibility buffer.
     pub seen: [u32; 2],
-    /// The face that is seen; absent where there is none.
+    /// The visible face; absent if there is none.
     pub own: Candidate,
 }
 
 impl Situation {
-    /// A back face all of whose gap radius is inside its trims: the pixel looks into a solid.
+    /// A back face whose trims contain the whole gap radius: the pixel shows a solid's inside.
     fn is_interior(&self) -> bool {
         !self.border && self.own.kind == Kind::Present
     }
@@ -123,43 +123,43 @@ impl Situation {
         self.own.kind != Kind::Absent && self.own.miss <= ON_PIXEL_PX
     }
 
-    /// Candidates beyond this depth do not count.
+    /// Candidates beyond this depth are ignored.
     fn depth_limit(&self) -> f32 {
         if self.is_interior() { self.own.depth * (1.0 - SAME_DEPTH) } else { FARTHEST }
     }
 }
 
-/// Which face is seen: a word of the visibility buffer.
+/// The visible face, as a word of the visibility buffer.
 pub fn decide(frame: &Frame, situation: &Situation, candidates: &[Candidate]) -> [u32; 2] {
     let mut evidence = Evidence::new(frame, situation);
     candidates.iter().for_each(|c| evidence.consider(c));
     evidence.decide()
 }
 
-/// Of the candidates, what decides.
+/// The candidates on which the decision depends.
 struct Evidence<'a> {
     frame: &'a Frame,
     s: &'a Situation,
-    /// The nearest that is present.
+    /// The nearest present one.
     present: Candidate,
-    /// The nearest that is near.
+    /// The nearest near one.
     near: Candidate,
-    /// The nearest that is near, of another face.
+    /// The nearest near one of another face.
     second: Candidate,
-    /// The nearest front that touches the back face that is seen.
+    /// The nearest front that touches the visible back face.
     touching: Candidate,
-    /// Whose surface passes closest to the centre, before the back face if possible.
+    /// The one whose surface passes closest to the centre, preferably before the back face.
     closest: Candidate,
     closest_before: bool,
-    /// Near ones are of two faces.
+    /// The near ones belong to two faces.
     edge: bool,
-    /// The face that met the own one last.
+    /// The last face that met the own one.
     met: u32,
     /// Two faces meet the own one.
     corner: bool,
 }
 
-/// A mesh or solid at the very pixel.
+/// A mesh or solid in the pixel itself.
 fn other_candidate(depth: f32) -> Candidate {
     Candidate { kind: Kind::Present, inside: true, depth, miss: 0.0, ..Candidate::default() }
 }
@@ -180,7 +180,7 @@ fn covers(a: &Candidate, b: &Candidate) -> bool {
 }
 
 impl<'a> Evidence<'a> {
-    /// Before any candidate. Where no patch is seen, a mesh or solid at the pixel is there.
+    /// The state before any candidate. If no patch is visible, a mesh or solid in the pixel is present.
     fn new(frame: &'a Frame, s: &'a Situation) -> Self {
         let none = Candidate::default();
         let present = s.other.filter(|_| s.border && s.empty).map_or(none, other_candidate);
@@ -199,17 +199,17 @@ impl<'a> Evidence<'a> {
         }
     }
 
-    /// How much its depth changes within the gap radius.
+    /// Change of its depth within the gap radius.
     fn lean(&self, c: &Candidate) -> f32 {
         GAP_SLACK * self.frame.gap_radius_px * dot(c.slope, c.slope).sqrt()
     }
 
-    /// In all of the gap radius: surfaces that meet within it are not.
+    /// Whether a is before b in all of the gap radius; surfaces that meet within it are not.
     fn wholly_before(&self, a: &Candidate, b: &Candidate) -> bool {
         a.depth + self.lean(a) + self.lean(b) < b.depth
     }
 
-    /// How far apart in depth a front and a back count as one: the front stands back by this.
+    /// Distance in depth at which a front and a back count as one: the front is moved back by this.
     fn touch(&self, front: &Candidate) -> f32 {
         let px = if self.frame.perspective != 0 { front.depth } else { 1.0 } / self.frame.focal;
         let slope = front.slope[0].abs() + front.slope[1].abs() + px;
@@ -278,7 +278,7 @@ impl<'a> Evidence<'a> {
         self.met = c.face;
     }
 
-    /// Rule "common silhouette", of two that are near.
+    /// Rule "common silhouette", for two near ones.
     fn put_covering_first(&mut self) {
         let meet = self.second.kind == Kind::Near && !self.wholly_before(&self.near, &self.second);
         if meet && covers(&self.second, &self.near) {
@@ -286,7 +286,7 @@ impl<'a> Evidence<'a> {
         }
     }
 
-    /// Rule "common silhouette", of the own face.
+    /// Rule "common silhouette", for the own face.
     fn own_is_covered(&self, near_first: bool) -> bool {
         let nearest = if near_first { &self.near } else { &self.present };
         let ends = self.s.border && self.s.own_on_pixel() && self.s.own.kind == Kind::Near;

@@ -1,11 +1,12 @@
-//! Twin of the pass `lines`: `mu = ceil(height / spacing)` scan lines for each v-strip, and a
-//! row of each in every bin from the first to the last that is seen.
+//! Twin of the pass `lines`: `mu = ceil(height / spacing)` scan lines for each v-strip, and a row of each in every bin
+//! from the first to the last visible one.
 
 use super::u_bins::seen_range;
 pub use crate::abi::constants::scene::MAX_ROWS;
 use crate::abi::{Counters, Frame};
 
-/// Rows of each strip of `strip_heights` pixels, at its first bin; scan lines cut to [`MAX_ROWS`] count as clamps.
+/// Rows of each strip of `strip_heights` pixels, at its first bin; strips with more than [`MAX_ROWS`] scan lines are
+/// clamps.
 pub fn lines(frame: &Frame, strip_heights: &[f32], seen_bins: &[u32], counters: &mut Counters) -> Vec<u32> {
     strip_heights
         .iter()

@@ -1,15 +1,15 @@
-//! The CPU twin of each compute pass: the same results in plain Rust, for the parity tests to compare
-//! with and for whoever wants to read what a shader computes without reading GLSL.
+//! The CPU twin of each compute pass: the same results in plain Rust, for parity tests and for readers who do not know
+//! GLSL.
 //!
 //! ```text
 //!   glsl/tessellation/bound.comp   twin::bound   frame::tessellation::bound   parity::bound
 //!   glsl/include/view.glsl         twin::view                                  one name, four places
 //! ```
 //!
-//! A twin repeats the shader's single-precision operations in the shader's order, and the shader marks
-//! them `precise`. Where division and square root are rounded correctly, as on the CPU and on
-//! llvmpipe, the results are the same bit for bit; Vulkan allows a GPU 2.5 units in the last place for
-//! a quotient and 3 for a root, so there a `ceil` may come out one higher or lower.
+//! A twin repeats the shader's single-precision operations in the shader's order, and the shader marks them `precise`.
+//! If division and square root are rounded correctly, as on the CPU and on llvmpipe, the results are the same bit for
+//! bit. Vulkan allows a GPU 2.5 units in the last place for a quotient and 3 for a root, so a `ceil` may then be one
+//! higher or lower.
 
 pub mod border_cells;
 pub mod bound;
@@ -54,10 +54,10 @@ use crate::abi::{Cell, Curve, Face, FaceInstance, Instance, Link, Patch, View};
 /// Most segments along one side of a patch.
 pub const MOST_SEGMENTS: u32 = MAX_FACTOR * MAX_SPLIT;
 
-/// What the passes read of a scene: the arrays of `glsl/include/scene.glsl`, by reference.
+/// The scene as passes read it: the arrays of `glsl/include/scene.glsl`, by reference.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Scene<'a> {
-    /// Part to pixel, per instance.
+    /// Part to pixel, for each instance.
     pub views: &'a [View],
     /// Placed parts.
     pub instances: &'a [Instance],
@@ -67,13 +67,13 @@ pub struct Scene<'a> {
     pub faces: &'a [Face],
     /// Patches of all faces.
     pub patches: &'a [Patch],
-    /// Their control points, homogeneous.
+    /// Homogeneous control points.
     pub points: &'a [[f32; 4]],
-    /// Of each patch where nothing of its face is, in scenes where they may lie behind others.
+    /// The cells of each patch that no part of the face covers, in scenes with occlusion culling.
     pub outside: &'a [[u32; 2]],
-    /// Of the outward normals of each patch ([`cone`]); none where no part is closed without trims.
+    /// The cone of each patch's outward normals ([`cone`]); empty if no part is closed and without trims.
     pub cones: &'a [[f32; 4]],
-    /// Sides that faces share, four a patch; none where they share none.
+    /// Sides that faces share, four a patch; empty if there are none.
     pub links: &'a [Link],
     /// Face instance of each item.
     pub items: &'a [u32],
@@ -83,7 +83,7 @@ pub struct Scene<'a> {
     pub cell_items: &'a [u32],
     /// Trim curves.
     pub curves: &'a [Curve],
-    /// Their control points, three numbers each.
+    /// Control points of curves, three numbers each.
     pub curve_points: &'a [f32],
     /// Face instance of each curve item.
     pub curve_items: &'a [u32],
@@ -105,7 +105,7 @@ impl Scene<'_> {
     }
 }
 
-/// The strips of a face with `strip_count` that `v` from `lo` to `hi` reaches, first and last.
+/// The first and last strip, of `strip_count`, from `lo` to `hi` in `v`.
 fn strips_of(lo: f32, hi: f32, strip_count: u32) -> (u32, u32) {
     let strips = strip_count as f32;
     let strip = |v: f32| (v * strips).floor().clamp(0.0, strips - 1.0) as u32;

@@ -1,30 +1,32 @@
-//! Twin of the passes `cull_early`, `depth_pyramid` and `cull_late`, and of `glsl/include/behind.glsl`: which patches
-//! lie behind what has been drawn.
+//! Twin of the passes `cull_early`, `depth_pyramid` and `cull_late`, and of `glsl/include/behind.glsl`: finds the
+//! patches that are hidden behind the surfaces drawn so far.
 //!
 //! ```text
 //!        eye
-//!         │      a cell's triangles lie within `off` of what is bilinear through its corners, so within
-//!     ▁▁▁▁▼▁▁▁▁  the corners' pixels and `off` more, and no nearer than the nearest corner less `off`:
-//!       front    there, all of the front is nearer: nothing of the cell passes the depth test
+//!         │      a cell's triangles lie within `off` of the bilinear surface through its corners, so within
+//!     ▁▁▁▁▼▁▁▁▁  the corners' pixels and `off` more, and not nearer than the nearest corner less `off`:
+//!       front    if the front is nearer in all of these pixels, nothing of the cell passes the depth test
 //!     ┌───────┐
 //!     │ cell  │
 //!     └───────┘
 //! ```
 //!
-//! **Triangles.** A triangle's point at `(u, v)` is within `E(1 / τ)` of the surface there, and the surface of a cell of
-//! sides `s` within `E(s)` of what is bilinear through its corners, with `E(s) = (a s_u² + 2 b s_u s_v + c s_v²) / 8`
-//! and `a`, `b`, `c` the patch's bend ([`factor`](super::factor)). A bilinear point is a mean of the corners: its depth lies between
-//! theirs, and its pixel within theirs, which are quotients of linear functions.
+//! **Triangles.** A triangle's point at `(u, v)` is within `E(1 / τ)` of the surface there, and the surface of a cell
+//! of sides `s` within `E(s)` of the bilinear surface through its corners, with
+//! `E(s) = (a s_u² + 2 b s_u s_v + c s_v²) / 8` and `a`, `b`, `c` the patch's bend ([`factor`](super::factor)). A
+//! bilinear point is a mean of the corners: its depth lies between theirs, and its pixel, a quotient of linear
+//! functions, within theirs.
 //!
-//! **Borders.** What pass `visibility` pushes outwards, it pushes along the tangent by at most a segment, and by as much
-//! as takes it twice the gap radius across the border: `s + p` is within `4 E(p)` of `s + p S_u`, and the tangent turns by at
-//! most `|S_uv| <= b + sqrt(a c)` along the border (the form along `(s, 1 / s)` less that along `(s, -1 / s)` is 4 S_uv). How many units of u that is hangs on the place; here it is asked at the cell's
-//! corners and doubled. Of faces with cells that are left out ([`is_outside`]) all sides of a cell count as borders.
+//! **Borders.** Pass `visibility` pushes skirts along the tangent by at most a segment, and by at most twice the gap
+//! radius across the border: `s + p` is within `4 E(p)` of `s + p S_u`, and the tangent turns by at most
+//! `|S_uv| <= b + sqrt(a c)` along the border (the form along `(s, 1 / s)` less that along `(s, -1 / s)` is 4 S_uv).
+//! The push in units of u depends on the place; here it is computed at the cell's corners and doubled. For faces with
+//! cells that are left out ([`is_outside`]), all sides of a cell count as borders.
 //!
-//! **What does not pass the depth test changes nothing.** Neither visibility nor depth, and a skirt counts only before
-//! what is seen. Fronts stand back from where they are, so they are never nearer than this bound.
+//! **A fragment that fails the depth test changes nothing:** neither visibility nor depth, and a skirt counts only
+//! before the visible surface. Fronts are moved back, never forward, so they are not nearer than this bound.
 //!
-//! Whatever rounds does so within a pixel, which is added on each side, and `DEPTH_ROUNDING` of the depth.
+//! Rounding is covered by a pixel on each side, and by `DEPTH_ROUNDING` of the depth.
 
 use super::{MAX_PUSH, Scene};
 use crate::abi::constants::behind::{self, MOST_CELLS, MOST_SQUARES};
@@ -34,11 +36,11 @@ use crate::spline::Patch;
 use glam::{DVec2, DVec3, DVec4};
 use std::ops::RangeInclusive;
 
-/// Pixels that a cell has along each parameter, some.
+/// Approximate size of a cell along each parameter, in pixels.
 const CELL_PX: f64 = behind::CELL_PX as f64;
-/// Of depths that the rasteriser interpolates.
+/// Rounding of depths that the rasteriser interpolates.
 const DEPTH_ROUNDING: f64 = behind::DEPTH_ROUNDING as f64;
-/// What is pushed at a cell's corners is up to so much more between them.
+/// Factor by which skirts may be pushed farther between a cell's corners than at them.
 const PUSH_SLACK: f64 = behind::PUSH_SLACK as f64;
 
 /// Whether a patch with these taus is drawn now.
@@ -46,7 +48,7 @@ pub fn is_drawn(tau: u32) -> bool {
     tau != 0 && tau & TAU_HIDDEN == 0
 }
 
-/// Marks patches that were `hidden`; how many are marked.
+/// Marks patches that were `hidden`; returns the number of marks.
 pub fn cull_early(hidden: &[u32], taus: &mut [u32]) -> u32 {
     let mut marked = 0;
     for (tau, _) in taus.iter_mut().zip(hidden).filter(|(tau, was_hidden)| **tau != 0 && **was_hidden != 0) {
@@ -56,7 +58,7 @@ pub fn cull_early(hidden: &[u32], taus: &mut [u32]) -> u32 {
     marked
 }
 
-/// What pass `cull_late` leaves of a patch's taus and of whether it is hidden; and whether it appears.
+/// The result of pass `cull_late` for a patch: its taus, whether it is hidden, and whether it appears.
 pub fn cull_late(tau: u32, lies_behind: bool) -> (u32, u32, bool) {
     let appears = tau & TAU_HIDDEN != 0 && !lies_behind;
     let marked = if appears { tau & !TAU_HIDDEN } else { tau | TAU_HIDDEN };
@@ -67,12 +69,12 @@ pub fn cull_late(tau: u32, lies_behind: bool) -> (u32, u32, bool) {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Farthest {
     size: [u32; 2],
-    /// Of squares of [`SQUARE`] pixels row by row, then of tiles, then of blocks of tiles.
+    /// Depths of squares of [`SQUARE`] pixels, row by row, then of tiles, then of blocks of tiles.
     pub depths: Vec<f32>,
 }
 
 impl Farthest {
-    /// Of a picture of that size, row by row.
+    /// For a picture of this size, row by row.
     pub fn new(size: [u32; 2], depth: &[f32]) -> Self {
         let least = |x: u32, y: u32, side: u32| {
             let columns = x * side..((x + 1) * side).min(size[0]);
@@ -87,7 +89,7 @@ impl Farthest {
         Self { size, depths: of(SQUARE).chain(of(TILE)).chain(of(TILE * BLOCK)).collect() }
     }
 
-    /// Everything in these squares of that side is nearer than `z`.
+    /// Whether all of these squares with this side are nearer than `z`.
     fn all_nearer(&self, columns: RangeInclusive<u32>, rows: RangeInclusive<u32>, side: u32, z: f64) -> bool {
         let count = |side: u32| self.size.map(|pixels| pixels.div_ceil(side));
         let smaller = [SQUARE, TILE].into_iter().filter(|s| *s < side);
@@ -97,14 +99,15 @@ impl Farthest {
     }
 }
 
-/// Whether nothing of the face is in a cell of `n` by `n`, by the bits of [`OUTSIDE_CELLS`] by as many.
+/// Whether no part of the face lies in a cell of `n` by `n`, by the bits of [`OUTSIDE_CELLS`] by [`OUTSIDE_CELLS`]
+/// cells.
 pub fn is_outside(outside: [u32; 2], cell: [u32; 2], n: u32) -> bool {
     let range = |k: u32| k * OUTSIDE_CELLS / n..((k + 1) * OUTSIDE_CELLS / n).max(k * OUTSIDE_CELLS / n + 1);
     let bits = u64::from(outside[0]) | u64::from(outside[1]) << 32;
     range(cell[1]).all(|y| range(cell[0]).all(|x| bits >> (y * OUTSIDE_CELLS + x) & 1 != 0))
 }
 
-/// A patch as the eye sees it.
+/// A patch in the picture.
 struct Seen<'a> {
     frame: &'a Frame,
     view: &'a abi::View,
@@ -114,18 +117,18 @@ struct Seen<'a> {
     segment: DVec2,
 }
 
-/// What a cell covers: pixels, and how near it comes.
+/// The pixels that a cell covers, and its nearest depth.
 struct Cover {
     low: DVec2,
     high: DVec2,
     depth: f64,
-    /// How far beside the pixels it may be.
+    /// Distance that it may extend beside these pixels.
     beside: f64,
 }
 
-/// Whether an item with these taus lies behind everything that `farthest` tells, in double precision. Pixels are widened by
-/// `slack`, of a pixel, and depths by a thousandth of it: single precision says the same where a little more slack and a
-/// little less do.
+/// Whether an item with these taus is hidden behind all depths of `farthest`, in double precision. Pixels are widened
+/// by `slack` pixels, and depths by a thousandth of it: single precision must agree if slightly more and slightly less
+/// slack give the same result.
 pub fn lies_behind(frame: &Frame, scene: &Scene<'_>, item: usize, tau: u32, farthest: &Farthest, slack: f64) -> bool {
     let (placed, face, patch) = scene.item(item);
     let index = (face.first_patch + item as u32 - placed.first_item) as usize;
@@ -164,13 +167,13 @@ impl Seen<'_> {
         })
     }
 
-    /// By how much the surface may leave its tangent within such a step, twice.
+    /// Twice the distance that the surface may have from its tangent within such a step.
     fn bend(&self, step: DVec2) -> f64 {
         let [uu, uv, vv] = self.abi.bend.map(f64::from);
         uu * step.x * step.x + 2.0 * uv * step.x * step.y + vv * step.y * step.y
     }
 
-    /// Bounds `|S_uv|`.
+    /// A bound on `|S_uv|`.
     fn turn(&self) -> f64 {
         let [uu, twist, vv] = self.abi.bend.map(f64::from);
         twist + (uu * vv).sqrt()
@@ -181,8 +184,8 @@ impl Seen<'_> {
         rows.map(|row| DVec4::from_array(row.map(f64::from)).dot(p.extend(w)))
     }
 
-    /// What a cell of `n` by `n` covers, and what is pushed beyond borders, with `all_sides` beyond its sides; `None` where it
-    /// comes before the near plane.
+    /// The cover of a cell of `n` by `n`, including skirts beyond borders, with `all_sides` beyond every side; `None`
+    /// if the cell reaches the near plane.
     fn cover(&self, cell: [u32; 2], n: u32, all_sides: bool) -> Option<Cover> {
         let size = DVec2::splat(1.0 / f64::from(n));
         let chord = self.bend(self.segment) / 8.0;
@@ -222,7 +225,7 @@ impl Seen<'_> {
         (depth >= near).then_some(Cover { low, high, depth, beside })
     }
 
-    /// Units of u and v that take a border twice the gap radius across itself.
+    /// Units of u and v that move a border twice the gap radius across itself.
     fn push(&self, q: [f64; 4], qu: [f64; 4], qv: [f64; 4]) -> DVec2 {
         let w = if self.frame.perspective != 0 { q[3].max(f64::from(self.frame.near)) } else { 1.0 };
         let at = DVec2::new(q[0], q[1]) / w;

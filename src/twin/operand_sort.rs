@@ -1,13 +1,13 @@
-//! Twin of `glsl/operand_sort.comp`: the fragments of each pixel by shell and depth, entering and leaving in
-//! turn.
+//! Twin of `glsl/solids/operand_sort.comp`: sorts the fragments of each pixel by shell and depth, so that entries and
+//! exits alternate.
 //!
 //! ```text
-//!   mesh    E  E     L  L       how often the ray is within counts up and down; it is within where that is
+//!   mesh    E  E     L  L       a counter rises at entries and falls at exits; the ray is within where it is
 //!           E  ·     ·  L       not 0
 //!
-//!   faces   E  ·  L  L          the second L wants an entry: a skirt's fragment E between the two, where the
-//!                 E? L          ray slips through a gap, else it is left out; but where it is left as often
-//!                               as entered, as for a mesh
+//!   faces   E  ·  L  L          the second L lacks an entry: a skirt's fragment E between the two supplies it, if
+//!                 E? L          the ray passes through a gap; otherwise the L is removed. With as many exits as
+//!                               entries: as for a mesh
 //! ```
 
 use crate::abi::constants::scene::FAILED_FRAGMENTS;
@@ -17,19 +17,19 @@ use crate::abi::{
 
 const FLAGS: u32 = FRAGMENT_LEAVES | FRAGMENT_SKIRT | FRAGMENT_PATCH | FRAGMENT_WITHIN;
 
-/// Leaves, their centres seen from the eye, and a leaf of each shell.
+/// Leaves, their centres relative to the eye, and a leaf of each shell.
 #[derive(Clone, Copy, Debug)]
 pub struct Shells<'a> {
-    /// All of the Blist.
+    /// All leaves of the Blist.
     pub leaves: &'a [Leaf],
-    /// Of their boxes.
+    /// Centres of their boxes.
     pub centres: &'a [[f32; 3]],
     /// Indices into `leaves`.
     pub shell_leaves: &'a [u32],
 }
 
-/// Puts the fragments of each pixel of a band in order, and returns how many it keeps of each, first of all. Pixel `n`
-/// has those from `starts[n]` to `starts[n + 1]`.
+/// Sorts the fragments of each pixel of a band, and returns the number that stays of each; these come first. Pixel `n`
+/// has `starts[n]` to `starts[n + 1]`.
 pub fn operand_sort(
     frame: &Frame,
     shells: Shells<'_>,
@@ -38,7 +38,7 @@ pub fn operand_sort(
     counters: &mut Counters,
 ) -> Vec<u32> {
     let wanted = starts[starts.len() - 1];
-    let counted = starts.is_sorted(); // more than 32 bits count otherwise
+    let counted = starts.is_sorted(); // otherwise the count exceeds 32 bits
     counters.fragments = counters.fragments.wrapping_add(wanted);
     counters.band_fragments = counters.band_fragments.max(if counted { wanted } else { u32::MAX });
     if wanted > frame.fragment_capacity || !counted {
@@ -75,7 +75,7 @@ pub fn operand_sort(
             };
             let mut closed = turns.closed;
             if !patches || (!turns.all && sum == number) {
-                // what was tried goes
+                // discard the attempt
                 kept.truncate(before);
                 counters.mended = mended;
                 closed = by_winding(&real, number, &mut kept);
@@ -105,7 +105,7 @@ fn cuts(frame: &Frame, shells: Shells<'_>, shell: u32) -> (bool, bool) {
     (middle - reach < frame.near, middle + reach > frame.far)
 }
 
-/// By how often the ray is within, from `number` on; returns whether that ends with 0.
+/// Counts entries and exits, from `number` on; returns whether the count ends with 0.
 fn by_winding(all: &[Fragment], mut number: i32, kept: &mut Vec<Fragment>) -> bool {
     let start = if number != 0 { FRAGMENT_WITHIN } else { 0 };
     for group in all.chunk_by(|a, b| a.depth == b.depth) {
@@ -126,21 +126,21 @@ fn by_winding(all: &[Fragment], mut number: i32, kept: &mut Vec<Fragment>) -> bo
     number == 0
 }
 
-/// Whether entering and leaving go in turn, mended where a gap is.
+/// Whether entries and exits alternate, with skirts' fragments at gaps.
 struct InTurn {
-    /// What is left out are entries alone, and the ray ends outside.
+    /// Only entries are removed, and the ray ends outside.
     closed: bool,
-    /// Nothing is left out.
+    /// Nothing is removed.
     all: bool,
 }
 
-/// Of faces.
+/// For spline faces.
 fn in_turn(all: &[Fragment], cut: bool, kept: &mut Vec<Fragment>, counters: &mut Counters) -> InTurn {
     let first = all.iter().find(|f| f.shell & FRAGMENT_SKIRT == 0);
     let mut within = cut && first.is_some_and(leaves);
     let start = if within { FRAGMENT_WITHIN } else { 0 };
-    let mut skirts: [Option<Fragment>; 2] = [None; 2]; // entering, leaving
-    let mut lost = [false; 2]; // entering, leaving
+    let mut skirts: [Option<Fragment>; 2] = [None; 2]; // entry, exit
+    let mut lost = [false; 2]; // entry, exit
     let mut mend = |skirt: Fragment, kept: &mut Vec<Fragment>| {
         kept.push(Fragment { shell: skirt.shell & !FRAGMENT_SKIRT | start, ..skirt });
         counters.mended += 1;

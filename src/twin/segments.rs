@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!   n >= sqrt(bend . speed / chord_px)        chords within chord_px of the curve on the screen
-//!   n >= lines that it may cross / 32         threads of equal work in pass `cross`
-//!   n  = 0                                    no scan line where the curve is: nobody sees it, or right of it
+//!   n >= scan lines that it may cross / 32    threads of equal work in pass `cross`
+//!   n  = 0                                    no scan line has a row there: not visible, or right of all visible bins
 //! ```
 
 use super::density::Density;
@@ -18,7 +18,7 @@ pub fn segments(frame: &Frame, scene: &Scene<'_>, density: &Density, strip_start
         .map(|item| {
             let (placed, face, curve) = scene.curve(item);
             let (lo, hi) = strips_of(curve.range_v[0], curve.range_v[1], face.strip_count());
-            // in bins that the curve or what is right of it in its loop reaches
+            // in bins between the curve's lowest u and its loop's highest
             let [from, to] = curve.range_u.map(|u| bin_of(u, face.bin_count()));
             let of_strip = |strip: u32| {
                 let item = (placed.first_bin + strip * face.bin_count()) as usize;

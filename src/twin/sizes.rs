@@ -1,5 +1,5 @@
-//! Twin of the pass `sizes`: where the rows of each v-strip are; rows and segments of the whole trim
-//! table, and the dispatches that follow from them.
+//! Twin of the pass `sizes`: the first row of each v-strip, the numbers of rows and segments in the trim table, and the
+//! dispatches that follow from them.
 
 use super::FAILED_ROWS;
 use super::grid::grid_of;
@@ -8,7 +8,7 @@ pub use crate::abi::constants::sizes::MOST_NUMBERED as MOST_SEGMENTS;
 use crate::abi::constants::sizes::{GROUP, SCAN_BLOCK};
 use crate::abi::{Counters, Frame, StripRows};
 
-/// Where the rows of each strip are, at its first bin.
+/// The rows of each strip, stored at its first bin.
 pub fn strips(strip_starts: &[u32], seen_bins: &[u32]) -> Vec<StripRows> {
     let of_strip = |(pair, &seen): (&[u32], &u32)| {
         let (first_bin, bins) = seen_range(seen);

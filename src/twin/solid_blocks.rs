@@ -1,4 +1,4 @@
-//! Twin of `glsl/solid_blocks.comp`: which leaves each block of tiles may see.
+//! Twin of `glsl/solids/solid_blocks.comp`: lists the leaves that each block of tiles may show.
 
 use super::solid_tiles::{lists_of, meets};
 use crate::abi::{BLOCK, Frame, LEAF_RUN, Rect};
@@ -9,8 +9,8 @@ pub fn block_count(frame: &Frame) -> [u32; 2] {
     tile_count(frame).map(|n| n.div_ceil(BLOCK))
 }
 
-/// Where the list of each block begins (and the last one ends), run after run of [`LEAF_RUN`] leaves; and all lists, leaves in
-/// order.
+/// The start of each block's list (and the end of the last), run after run of [`LEAF_RUN`] leaves; and all lists, with
+/// leaves in order.
 pub fn solid_blocks(frame: &Frame, rects: &[Rect]) -> (Vec<u32>, Vec<u32>) {
     let [across, down] = block_count(frame);
     let leaves = rects.len() as u32;

@@ -1,16 +1,15 @@
-//! Twin of `glsl/solid_fold.comp`: the Blist of each tile, without the leaves that the tile does not see.
+//! Twin of `glsl/solids/solid_fold.comp`: the Blist of each tile, reduced to the leaves that the tile may show.
 //!
 //! ```text
-//!   exit e ──▶ [absent] ──out──▶ [absent] ──out──▶ [present]     the first ancestor of e, or e itself,
-//!                                                                that the tile sees
+//!   exit e ──▶ [absent] ──out──▶ [absent] ──out──▶ [present]     the first of e and its ancestors that is in the
+//!                                                                tile's list
 //! ```
 
 use crate::abi::{EXIT_FALSE, EXIT_TRUE, LEAF_FALLS, Leaf, TILE_LEAF_ENTRY, TILE_LEAF_GATE, TileLeaf};
 
-/// Wires `tile_leaves`, of which tile `n` has those from `tile_starts[n]` to `tile_starts[n + 1]`, to each
-/// other; returns where the walk of each tile begins. A leaf over which no exit leads but to `EXIT_FALSE` is marked as a
-/// gate. From leaf `followed` on lists are items of their own, and where
-/// each begins is marked.
+/// Sets the exits of `tile_leaves`; tile `n` has `tile_starts[n]` to `tile_starts[n + 1]`. Returns the first leaf of
+/// each tile's walk. A leaf is marked as a gate if no exit but `EXIT_FALSE` leads past it. From leaf `followed` on,
+/// lists are items of their own; the start of each is marked.
 pub fn solid_fold(leaves: &[Leaf], followed: u32, tile_starts: &[u32], tile_leaves: &mut [TileLeaf]) -> Vec<u32> {
     let tile = |ends: &[u32]| {
         let (start, end) = (ends[0], ends[1]);

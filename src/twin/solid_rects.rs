@@ -1,4 +1,4 @@
-//! Twin of `glsl/solid_rects.comp`: the tiles that the box around each leaf may cover.
+//! Twin of `glsl/solids/solid_rects.comp`: the tiles that the box around each leaf may cover.
 //!
 //! ```text
 //!        up ▲   ┌────────┐ box in view axes         slopes at the nearest and the farthest depth, widened
@@ -9,7 +9,7 @@
 use crate::abi::constants::solid_rects::MARGIN_PX;
 use crate::abi::{Frame, LEAF_UNBOUNDED, Leaf, Rect, TILE};
 
-/// Of a leaf that no tile sees.
+/// The rect of a leaf outside the picture.
 pub const NOWHERE: Rect = Rect { first: [1; 2], last: [0; 2] };
 
 /// Tiles across and down the picture.
@@ -17,7 +17,7 @@ pub fn tile_count(frame: &Frame) -> [u32; 2] {
     frame.size.map(|side| (side as u32).div_ceil(TILE))
 }
 
-/// One rectangle a leaf; `centres` are seen from the eye.
+/// One rectangle a leaf; `centres` are relative to the eye.
 pub fn solid_rects(frame: &Frame, leaves: &[Leaf], centres: &[[f32; 3]]) -> Vec<Rect> {
     leaves.iter().zip(centres).map(|(leaf, centre)| rect_of(frame, leaf, *centre)).collect()
 }

@@ -1,4 +1,4 @@
-//! Twin of `glsl/solid_tiles.comp`: which leaves each tile may see, of those of its block.
+//! Twin of `glsl/solids/solid_tiles.comp`: lists the leaves of its block that each tile may show.
 
 use crate::abi::{BLOCK, Frame, LEAF_RUN, Rect, TILE};
 use crate::twin::solid_blocks::block_count;
@@ -10,12 +10,12 @@ pub fn band_tiles(frame: &Frame) -> [u32; 2] {
     [tile_count(frame)[0], rows.div_ceil(TILE)]
 }
 
-/// Whether a leaf's rectangle has a tile between `first` and `last`, both counted in.
+/// Whether a leaf's rectangle has a tile from `first` to `last`, inclusive.
 pub fn meets(rect: &Rect, first: [u32; 2], last: [u32; 2]) -> bool {
     (0..2).all(|k| rect.first[k] <= last[k] && rect.last[k] >= first[k] && rect.first[k] <= rect.last[k])
 }
 
-/// `count` lists one after another, and where each begins.
+/// `count` lists one after another, and the start of each.
 pub(super) fn lists_of(count: u32, list: impl Fn(u32) -> Vec<u32>) -> (Vec<u32>, Vec<u32>) {
     let (mut starts, mut all) = (vec![0], Vec::new());
     for n in 0..count {
@@ -25,8 +25,7 @@ pub(super) fn lists_of(count: u32, list: impl Fn(u32) -> Vec<u32>) -> (Vec<u32>,
     (starts, all)
 }
 
-/// Where the list of each tile of the band begins (and the last one ends), and all lists; those of the blocks are
-/// given.
+/// The start of each tile's list in the band (and the end of the last), and all lists; the blocks' lists are given.
 pub fn solid_tiles(frame: &Frame, rects: &[Rect], block_starts: &[u32], block_leaves: &[u32]) -> (Vec<u32>, Vec<u32>) {
     let [across, down] = band_tiles(frame);
     let list = |n: u32| {

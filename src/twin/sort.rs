@@ -1,23 +1,22 @@
-//! Twin of the pass `sort`: each row in order of `u`, reduced to the places where
-//! inside and outside change.
+//! Twin of the pass `sort`: sorts each row by `u`, and reduces it to the places where inside and outside change.
 //!
 //! ```text
 //!   intercepts   ↑  ↑  ↓  ↑  ↓  ↓        winding   0 1 2 1 2 1 0
 //!   flips        |              |        inside    0 1 1 1 1 1 0
 //! ```
 //!
-//! The shader sorts few in registers and many by heap; a sorted list of integers is the same by whatever method. At equal
-//! `u`, where loops touch or coincide, several flips may stand side by side; a look-up passes all of them or none. What a
-//! row holds behind its flips is nobody's.
+//! The shader sorts few intercepts in registers and many by heap sort; the sorted list is the same for any method. At
+//! equal `u`, where loops touch or coincide, several flips may be adjacent; a look-up passes all of them or none. Words
+//! behind a row's flips are unused.
 
 use super::FAILED_INTERCEPTS;
 use crate::abi::{Counters, Frame};
 
-/// Sorts the intercepts of each row, overwrites the first ones with the flips' `u` (float bits), and
-/// returns of each row `flips << 1`, and 1 more where it begins inside: with a winding number that is not 0.
+/// Sorts the intercepts of each row, and overwrites the first ones with the flips' `u` (float bits). Returns for each
+/// row `flips << 1`, plus 1 if it starts inside: with a winding number other than 0.
 ///
-/// `row_total` is the number of intercepts of all rows. A row that does not fit `intercept_capacity`
-/// has no flip: the host grows the table and records again.
+/// `row_total` is the number of intercepts of all rows. A row beyond `intercept_capacity` has no flip: the host
+/// enlarges the table and records again.
 pub fn sort(
     frame: &Frame,
     row_starts: &[u32],
@@ -57,7 +56,7 @@ pub fn sort(
         .collect()
 }
 
-/// The number of [`ordered_bits`](super::cross::ordered_bits).
+/// The number of the given [`ordered_bits`](super::cross::ordered_bits).
 pub fn from_ordered(bits: u32) -> f32 {
     f32::from_bits(if bits & 0x8000_0000 != 0 { bits & 0x7fff_ffff } else { !bits })
 }
@@ -76,8 +75,7 @@ mod tests {
         ascending.iter().for_each(|&u| assert_eq!(from_ordered(ordered_bits(u)).to_bits(), u.to_bits()));
     }
 
-    /// The row of the figure: nested and overlapping loops flip where the winding number leaves and
-    /// reaches zero, and nowhere else.
+    /// The row of the figure: nested and overlapping loops flip only where the winding number leaves or reaches zero.
     #[test]
     fn only_zero_windings_flip() {
         let row: Vec<u32> = [(0.1, 1), (0.2, 1), (0.3, 0), (0.4, 1), (0.5, 0), (0.6, 0)]
@@ -88,7 +86,7 @@ mod tests {
         let mut counters = Counters { rows: 1, ..Default::default() };
         assert_eq!(sort(&frame, &[0], 6, &[0], &mut shuffled, &mut counters), [2 << 1]);
         let flips = [shuffled[0], shuffled[1]].map(f32::from_bits);
-        // the direction's bit costs the last bit of u
+        // the direction's bit replaces the last bit of u
         assert!((flips[0] - 0.1).abs() < 1e-7 && (flips[1] - 0.6).abs() < 2e-7, "{flips:?}");
         assert_eq!(counters.intercepts, 6);
     }

@@ -1,31 +1,29 @@
-//! Twin of the pass `split`: one number of segments per shared side, and as many
-//! sub-patches as keep every number within the hardware's limit.
+//! Twin of the pass `split`: one number of segments for each shared side, and enough sub-patches that no number exceeds
+//! the hardware's limit.
 //!
 //! ```text
 //!    side v = 1:  high.u segments            splits      power of two: the largest factor of the patch and
 //!    ┌───────────┬───────────┐                           of its two neighbours across, over 64
 //!    │           │           │  side         inner       own factor
 //!    ├───────────┼───────────┤  u = 1:       low, high   the larger factor of the two that share the side;
-//!    │           │           │  high.v                   the inner one where nobody else is drawn
-//!    └───────────┴───────────┘               each rounded up to the larger splits of those concerned
+//!    │           │           │  high.v                   the inner one if no other patch is drawn there
+//!    └───────────┴───────────┘               each rounded up to the larger splits of those patches
 //!    side v = 0:  low.u segments
 //! ```
 //!
-//! Where faces share sides ([`Link`](crate::abi::Link)), all that lie on one curve get numbers of segments of the whole
-//! curve: a side that is a quarter of it gets a quarter. A patch at a side of which others are far shorter may have to be
-//! cut finer than 64 sub-patches would do; then its side gets what they allow, and a crack narrower than the deviation may
-//! stay.
+//! If faces share sides ([`Link`](crate::abi::Link)), all sides on one curve get numbers of segments of the whole
+//! curve: a side that is a quarter of it gets a quarter. A patch with a side beside far shorter ones may need more than
+//! 64 sub-patches; then the side gets as many segments as 64 allow, and a crack narrower than the deviation may remain.
 //!
-//! Both patches at a side see the same four factors around it, so they agree without talking; splits
-//! are powers of two, so the larger is a multiple of the smaller; 64 splits is a multiple of every
-//! split count, so rounding up never exceeds 64 segments in a sub-patch.
+//! Both patches at a side use the same four factors around it, so they get the same result independently. Splits are
+//! powers of two, so the larger is a multiple of the smaller. 64 is a multiple of every number of splits, so rounding
+//! up never exceeds 64 segments in a sub-patch.
 //!
-//! Where a side is shared, interior and sides get powers of two. The tessellator joins a side of `n`
-//! segments to an interior of `m` by triangles whose extent along the side is for it to choose, and the
-//! bound of [`factor`](super::factor) holds for extents up to `1 / m`. Measured (`tests/gpu/transition.rs`):
-//! of all pairs up to 64 the powers of two keep to it; 13 and 16 reach 1.7 times as far, 48 and 64 five
-//! times, with up to 25 times the deviation. It costs a third more segments along the axis on average, a
-//! patch without neighbours along it nothing.
+//! If a side is shared, the interior and the sides get powers of two. The tessellator joins a side of `n` segments to
+//! an interior of `m` by triangles whose extent along the side it may choose, and the bound of
+//! [`factor`](super::factor) holds for extents up to `1 / m`. Powers of two stay within it, and other pairs may exceed
+//! it several times (`tests/gpu/transition.rs`). They cost more segments along the axis; a patch without neighbours
+//! along the axis is not affected.
 
 use super::occlusion::is_drawn;
 use super::{MAX_FACTOR, MAX_SPLIT, Scene};
@@ -34,7 +32,7 @@ use crate::abi::{FACE_CLOSED_U, FACE_CLOSED_V, Factors, Frame, Side};
 /// What the pass writes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Split {
-    /// Per item.
+    /// One for each item.
     pub factors: Vec<Factors>,
     /// All items as plain, then all as trimmed.
     pub sub_patch_counts: Vec<u32>,
@@ -60,11 +58,11 @@ pub fn split(frame: &Frame, scene: &Scene<'_>, taus: &[u32]) -> Split {
     out
 }
 
-/// A placed part: its items are numbered as its patches.
+/// A placed part; its items have the order of its patches.
 struct Part<'a> {
     scene: &'a Scene<'a>,
     taus: &'a [u32],
-    /// Of one of its faces.
+    /// First item of one of its faces.
     first_item: u32,
     first_patch: u32,
 }
@@ -86,7 +84,7 @@ impl Part<'_> {
         (!border || closed).then(|| face.first_patch + place[1] * count[0] + place[0])
     }
 
-    /// The other sides that share this one, and how much shorter than the ring's curve they are; and this one itself.
+    /// The other sides that share this one, with their halvings on the ring's curve; and the halvings of this side.
     fn ring(&self, patch: u32, side: u32) -> (Vec<(u32, u32, u32)>, u32) {
         let name = 4 * patch + side;
         let link = |name: u32| self.scene.links.get(name as usize).copied().unwrap_or_default();
@@ -100,8 +98,7 @@ impl Part<'_> {
         (others, own.halvings())
     }
 
-    /// The most that others have along a side, of `value`, which a side of half the length has half of; `least` where
-    /// nobody else is.
+    /// The largest `value` of the other patches along a side, scaled to the side's length; `least` if there are none.
     fn most_beyond(&self, patch: u32, side: u32, least: u32, value: impl Fn(u32, u32) -> u32) -> u32 {
         match self.beyond(patch, side) {
             Some(beyond) => value(beyond, axis_of(side)),
@@ -113,7 +110,7 @@ impl Part<'_> {
         }
     }
 
-    /// The largest tau that others ask for along a side; 0 where nobody else is drawn.
+    /// The largest tau of other patches along a side; 0 if none of them is drawn.
     fn asked_beyond(&self, patch: u32, side: u32) -> u32 {
         self.most_beyond(patch, side, 0, |patch, axis| self.tau(patch, axis))
     }
@@ -157,9 +154,9 @@ impl Part<'_> {
     }
 }
 
-/// The most vertices of a sub-patch that has no side, and no interior, of more segments along each axis.
+/// The most vertices of a sub-patch with at most these segments along each axis.
 fn vertices(most: [u32; 2]) -> u32 {
-    // the tessellator makes two of one along an axis, unless it is one everywhere
+    // the tessellator makes two segments of one along an axis, unless all numbers are one
     let [u, v] = if most == [1, 1] { most } else { most.map(|n| n.max(2)) };
     (u + 1) * (v + 1)
 }
@@ -174,7 +171,7 @@ fn sides_of(axis: u32) -> [u32; 2] {
     [1 - axis, 3 - axis]
 }
 
-/// Sub-patches that keep `most` segments within [`MAX_FACTOR`] each.
+/// Sub-patches such that `most` segments are at most [`MAX_FACTOR`] in each.
 fn splits_for(most: u32) -> u32 {
     most.div_ceil(MAX_FACTOR).max(1).next_power_of_two().min(MAX_SPLIT)
 }

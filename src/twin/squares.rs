@@ -1,10 +1,10 @@
-//! Twin of `glsl/solid_squares.comp` and `glsl/seen_squares.comp`: which squares of tiles are drawn.
+//! Twin of `glsl/solids/solid_squares.comp` and `glsl/shading/seen_squares.comp`: the squares of tiles that are drawn.
 
 use crate::abi::{BLOCK, EXIT_FALSE, TILE};
 use std::ops::Range;
 
-/// Of each tile of a picture of `size` pixels, in which `sees` tells what is to be drawn, the side of the square that begins
-/// there, in tiles, or 0.
+/// For each tile of a picture of `size` pixels: the side, in tiles, of the square that begins there, or 0. `sees`
+/// returns whether a tile is drawn.
 pub fn seen_squares(size: [u32; 2], sees: impl Fn([u32; 2]) -> bool) -> Vec<u32> {
     let tiles = size.map(|pixels| pixels.div_ceil(TILE));
     let pixels = |tile: u32, axis: usize| tile * TILE..(tile * TILE + TILE).min(size[axis]);
@@ -16,8 +16,8 @@ pub fn seen_squares(size: [u32; 2], sees: impl Fn([u32; 2]) -> bool) -> Vec<u32>
     solid_squares(tiles, 0..tiles[1], &entries)
 }
 
-/// Of each tile of a band of rows of a picture of `tiles` across and down, whose walks begin at `entries`, the side of
-/// the square that begins there, in tiles, or 0.
+/// For each tile of a band of rows, in a picture of `tiles` across and down: the side, in tiles, of the square that
+/// begins there, or 0. `entries` are the first leaves of the tiles' walks.
 pub fn solid_squares(tiles: [u32; 2], band: Range<u32>, entries: &[u32]) -> Vec<u32> {
     let is_last = band.end == tiles[1];
     let entries = &entries[(band.start * tiles[0]) as usize..(band.end * tiles[0]) as usize];
@@ -42,7 +42,7 @@ pub fn solid_squares(tiles: [u32; 2], band: Range<u32>, entries: &[u32]) -> Vec<
 mod tests {
     use super::*;
 
-    /// Every tile that sees a solid is in one square, and no other is in any.
+    /// Every tile that shows a solid is in exactly one square, and other tiles are in none.
     #[test]
     fn squares_cover_what_sees_a_solid_once() {
         let tiles = [21, 13];

@@ -6,26 +6,26 @@ use super::u_bins::{bin_of, within_bin};
 pub use crate::abi::constants::along::{ALONG_BEFORE, ALONG_BEHIND, ALONG_INSIDE};
 use crate::abi::{BORDER_BANDS, Face, StripRows};
 
-/// The table as the passes leave it.
+/// The table after the passes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Table<'a> {
-    /// Where the rows of each placed strip are, at its first bin.
+    /// The rows of each placed strip, at its first bin.
     pub strips: &'a [StripRows],
     /// First flip of each row.
     pub row_starts: &'a [u32],
-    /// Flips of each row, twice, and 1 more where it begins inside.
+    /// Number of flips of each row, times two, plus 1 if it starts inside.
     pub row_counts: &'a [u32],
     /// Their `u`, ascending in each row.
     pub flips: &'a [f32],
-    /// Columns of each band of each bin that trim curves pass.
+    /// Columns of each band of each bin that trim curves cross.
     pub border_cells: &'a [[u32; 4]],
-    /// Rows that there is room for.
+    /// Capacity in rows.
     pub row_capacity: u32,
 }
 
 impl Table<'_> {
-    /// Whether the normalised `(u, v)` belongs to the placed `face` whose bin items begin at
-    /// `first_bin`. A point beyond the capacity does: the host grows the table and records again.
+    /// Whether the normalised `(u, v)` is inside the placed `face`, whose bin items begin at `first_bin`. True for a
+    /// row beyond the capacity: the host enlarges the table and records again.
     pub fn inside(&self, first_bin: u32, face: &Face, uv: [f32; 2]) -> bool {
         self.along(first_bin, face, uv, 0.0) & ALONG_INSIDE != 0
     }
@@ -49,7 +49,7 @@ impl Table<'_> {
         let (first, counted) = (self.row_starts[row as usize] as usize, self.row_counts[row as usize]);
         let flips = (counted >> 1) as usize;
         if flips == 0 {
-            return counted & ALONG_INSIDE; // 0 also of a row that found no room
+            return counted & ALONG_INSIDE; // 0 also for a row beyond the capacity
         }
         let flips = &self.flips[first..first + flips];
         let (before, behind) = flips.split_at(flips.partition_point(|&flip| flip <= u));
@@ -59,7 +59,7 @@ impl Table<'_> {
             | is_near(behind.first().is_some_and(|&flip| flip < u + reach), ALONG_BEHIND)
     }
 
-    /// Whether all of the box from `lo` to `hi` is inside or none of it. `false` where that is not easily told.
+    /// Whether the box from `lo` to `hi` is inside or outside as a whole. `false` if this is undecided.
     pub fn same(&self, first_bin: u32, face: &Face, lo: [f32; 2], hi: [f32; 2]) -> bool {
         let (strips, bins) = (face.strip_count() as f32, face.bin_count());
         let (from, to) = (lo[1] * strips, hi[1] * strips);

@@ -3,18 +3,18 @@
 
 use crate::abi::StripRows;
 
-/// The bin of `u`, never less for a larger `u`; what is beyond the face belongs to its outermost bins.
+/// The bin of `u`, monotone in `u`; `u` beyond the face belongs to its outermost bins.
 pub fn bin_of(u: f32, bins: u32) -> u32 {
     let at = u * bins as f32;
     if at >= 1.0 { at.min((bins - 1) as f32) as u32 } else { 0 }
 }
 
-/// `u` as it is in a bin, 0 to 1 within it.
+/// `u` relative to a bin, 0 to 1 within it.
 pub fn within_bin(u: f32, bin: u32, bins: u32) -> f32 {
     u * bins as f32 - bin as f32
 }
 
-/// The first bin that is seen, and how many from there to the last; `seen` has a bit for each that is.
+/// The first visible bin, and the number from there to the last; `seen` has a bit for each visible bin.
 pub fn seen_range(seen: u32) -> (u32, u32) {
     if seen == 0 {
         return (0, 1);
@@ -23,12 +23,12 @@ pub fn seen_range(seen: u32) -> (u32, u32) {
 }
 
 impl StripRows {
-    /// The last bin that is seen.
+    /// The last visible bin.
     pub fn last_bin(&self) -> u32 {
         self.first_bin + self.bins - 1
     }
 
-    /// The row of a scan line in a bin; in the nearest one where it has none in that.
+    /// The row of a scan line in a bin; if it has none there, in the nearest bin that has one.
     pub fn row_of(&self, line: u32, bin: u32) -> u32 {
         self.first + (bin.clamp(self.first_bin, self.last_bin()) - self.first_bin) * self.lines + line
     }

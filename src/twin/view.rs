@@ -20,7 +20,7 @@ pub fn to_pixel(view: &View, p: [f32; 4]) -> [f32; 4] {
     [row_times(view.x, p), row_times(view.y, p), row_times(view.depth, p), row_times(view.w, p)]
 }
 
-/// A box as the picture sees it.
+/// A box in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
     /// The smallest `W` in front of the near plane; 1 in a parallel view.
@@ -33,12 +33,12 @@ pub struct Seen {
     pub high: [f32; 2],
 }
 
-/// The box `lo..hi` (part coordinates) in the picture widened by `margin` pixels, in front of `far`; `None` when
-/// no part of it can be seen.
+/// The box `lo..hi` (part coordinates) in the picture widened by `margin` pixels, in front of `far`; `None` if no part
+/// of it is visible.
 ///
-/// Conservative: a box that passes may still be out of sight, near a corner of the picture. Pixel and slope are quotients
-/// of linear functions, so corners have the largest ones where all are in front of the eye; where one is not, the
-/// picture's slant and no limits stand.
+/// Conservative: a box that passes may still be out of sight, near a corner of the picture. Pixel and slope are
+/// quotients of linear functions, so their extrema are at corners if all corners are in front of the eye. If one is
+/// not, the result has the picture's slant and no limits.
 pub fn see(view: &View, frame: &Frame, lo: [f32; 3], hi: [f32; 3], margin: f32, far: f32) -> Option<Seen> {
     let mut seen = Seen { w: 3.0e38, slant: 0.0, low: [3.0e38; 2], high: [-3.0e38; 2] };
     let mut steepest = 0.0f32;
@@ -75,8 +75,8 @@ pub fn see(view: &View, frame: &Frame, lo: [f32; 3], hi: [f32; 3], margin: f32, 
     })
 }
 
-/// A bound of `W` from below, for what a perspective picture `margin` pixels wider shows of the points `p` with
-/// `low <= n . p <= high`; 0 where the eye is among them. Derived in `glsl/include/view.glsl`.
+/// A lower bound of `W` for the points `p` with `low <= n . p <= high` that a perspective picture, `margin` pixels
+/// wider, shows; 0 if the eye is among them. Derived in `glsl/include/view.glsl`.
 pub fn nearest_in_slab(view: &View, frame: &Frame, n: [f32; 3], (low, high): (f32, f32), margin: f32) -> f32 {
     let [x, y, w] = [view.x, view.y, view.w];
     let cross =
@@ -102,18 +102,18 @@ pub fn nearest_in_slab(view: &View, frame: &Frame, n: [f32; 3], (low, high): (f3
     if steepest + slack > 0.0 { gap / (steepest + slack) } else { 0.0 }
 }
 
-/// Whether the centre of a pixel is within `margin` pixels of what is seen.
+/// Whether the centre of a pixel is within `margin` pixels of the visible box.
 pub fn covers_a_centre(seen: &Seen, margin: f32) -> bool {
     let reach = margin + PIXEL_ROUNDING;
     (0..2).all(|a| (seen.low[a] - reach - 0.5).ceil() <= (seen.high[a] + reach - 0.5).floor())
 }
 
-/// Pixels that one part unit of what is seen can cover; derived in [`factor`](super::factor).
+/// Most pixels that one part unit of a visible surface covers; derived in [`factor`](super::factor).
 pub fn pixels_per_unit(frame: &Frame, instance: &Instance, seen: &Seen) -> f32 {
     frame.focal * seen.slant * instance.scale / seen.w
 }
 
-/// Depth beyond which a face is not seen: those of operands tell a ray's way to the end.
+/// The depth beyond which a face is not drawn; faces of operands are drawn at any depth.
 pub fn far_of(face: &Face, frame: &Frame) -> f32 {
     if face.flags & FACE_OPERAND != 0 { 3.0e38 } else { frame.far }
 }
@@ -126,7 +126,7 @@ mod tests {
 
     const SIZE: [f32; 2] = [640.0, 360.0];
 
-    /// A camera of this focal length in pixels somewhere near the origin; its rows, and its axes and eye.
+    /// A camera of this focal length in pixels near the origin: its rows, axes and eye.
     fn camera(random: &mut Random, focal: f64) -> (View, DMat3, DVec3) {
         let mut next = || random.range(-1.0, 1.0);
         let forward = DVec3::new(next(), next(), next()).normalize();
@@ -144,7 +144,7 @@ mod tests {
         (view, DMat3::from_cols(right, down, forward), eye)
     }
 
-    /// What is seen of a slab is no nearer than its bound; and that is all but reached, by the plane before the eye.
+    /// No visible point of a slab is nearer than the bound, and the plane nearest to the eye almost attains it.
     #[test]
     fn a_slab_is_no_nearer_than_its_bound() {
         let mut random = Random::new(7);
@@ -159,7 +159,7 @@ mod tests {
             let (middle, half) = (2.0 * next(), 0.1 * next().abs());
             let (low, high) = ((middle - half) as f32, (middle + half) as f32);
             let bound = f64::from(nearest_in_slab(&view, &frame, n, (low, high), 2.0));
-            // the near side, at the picture's corners and its middle: linear in between
+            // the near side, at the picture's corners and its middle; linear in between
             let normal = DVec3::from_array(n.map(f64::from));
             let from = normal.dot(eye);
             if f64::from(low) <= from && from <= f64::from(high) {

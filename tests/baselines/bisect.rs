@@ -19,7 +19,7 @@ fn points(count: u32) -> impl Iterator<Item = Vec2> {
     (0..count).map(move |k| Vec2::new(at(k, 0.754_877_666_246_692_7), at(k, 0.569_840_290_998_053_2)))
 }
 
-/// Points on the wrong side, and the farthest of them from a curve, in units of the domain.
+/// The number of points on the wrong side, and the largest distance of one from a curve, in units of the domain.
 fn disagreements(face: &Face, (steps, sorted): (u32, Sorted), count: u32) -> (usize, f64) {
     let mut bisect = Bisect::default();
     bisect.push(face, steps, sorted);
@@ -53,7 +53,7 @@ fn quad(side: f64, corners: [DVec2; 4]) -> TrimLoop {
     TrimLoop::new(curves, DVec2::splat(1e-12)).expect("closed")
 }
 
-/// Level borders within bands part what is above them from what is below.
+/// Horizontal borders within bands separate the points above from the points below.
 #[test]
 fn level_borders_within_bands() {
     let mut model = many_holes(9);
@@ -74,18 +74,18 @@ fn level_borders_within_bands() {
     }
 }
 
-/// A border that rises by less than single precision tells apart, with ends of other pieces at its height: both ways to
-/// sort ask the same pieces about a point.
+/// A border that rises by less than single precision resolves, with ends of other pieces at its height: with both ways
+/// to sort, the same pieces are tested against a point.
 #[test]
 fn nearly_level_borders_are_sorted_as_they_are_rounded() {
     const ULP: f64 = f32::EPSILON as f64 / 2.0; // of a number from 0.5 to 1
     let mut model = many_holes(1);
     let side = model.parts[0].faces[0].surface.domain().0.1;
-    // it lies 0.4 units above where it is rounded to
+    // it lies 0.4 units above its rounded place
     let height = f64::from(0.6f32);
     let top = |x: f64, units: f64| DVec2::new(x, height + units * ULP);
     let mut loops = vec![quad(side, [DVec2::splat(0.1), DVec2::new(0.5, 0.1), top(0.5, 3.4), top(0.1, 0.4)])];
-    // small ones beside it, whose ends end bands at the heights between
+    // small ones beside it, whose ends are ends of bands at the heights between
     for k in [1.0, 2.0] {
         let corner = top(0.6 + 0.1 * k, k);
         loops.push(quad(
@@ -111,8 +111,8 @@ fn nearly_level_borders_are_sorted_as_they_are_rounded() {
 fn each_step_is_worth_its_name() {
     let model = many_holes(2);
     let off = |steps| disagreements(face(&model), (steps, Sorted::Tuned), 200_000).1;
-    // a chord of a quarter circle of radius r bulges by 0.293 r, of a half of it by a quarter of that; equal
-    // steps of the parameter are unequal arcs, so a little more
+    // a chord of a quarter circle of radius r bulges by 0.293 r, of half of it by a quarter of that; equal steps of the
+    // parameter are unequal arcs, so a little more
     let radius = 0.3 / 2.0;
     for steps in 0..4u32 {
         let bulge = radius * 0.35 / 4f64.powi(steps as i32);

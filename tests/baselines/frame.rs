@@ -21,7 +21,7 @@ fn panel() -> Model {
     sample("panel.step")
 }
 
-/// A way to trim, the engine's own or one to compare with.
+/// A way to trim: the engine's own or a baseline.
 #[derive(Clone, Copy, Debug)]
 enum Way {
     Own(TrimWay),
@@ -80,7 +80,7 @@ fn bisection_keeps_half_a_pixel_and_one_step_does_not() {
     assert!(j.wrong > 100 && j.worst_shift_px > 1.0, "{} wrong, {} px", j.wrong, j.worst_shift_px);
 }
 
-/// Whatever the way: a comparison in which some draw what lies behind would be of that, not of trims.
+/// Occlusion culling works with every way to trim; otherwise a comparison would not be one of trims.
 #[test]
 fn baselines_leave_out_what_lies_behind() {
     let one = sample("bracket.step");
@@ -108,7 +108,7 @@ fn baselines_leave_out_what_lies_behind() {
         [TrimMethod::Untrimmed, TrimMethod::Bisect { steps: 16, sorted }, TrimMethod::Texture { eighths: 16 }];
     let ways = methods.map(Way::Baseline).into_iter().chain(TrimWay::ALL.iter().map(|way| Way::Own(*way)));
     for way in ways {
-        // the second frame asks, and the third is told
+        // the second frame tests occlusion, and the third uses the result
         let [first, _, third] = left_out(way);
         assert!(first == 0 && third > 100, "{way:?}: {first}, then {third} patches");
     }
@@ -121,7 +121,7 @@ fn textures_are_off_by_half_a_texel_each_way() {
         let j = baseline(&model, TrimMethod::Texture { eighths: 16 });
         assert_eq!(j.wrong, 0, "{}: {:?}", model.name, j.mismatches);
     }
-    // four pixels a texel: up to two pixels each way, but the density is a bound, and mostly finer
+    // four pixels a texel: up to two pixels in each direction, but the density is a bound, and mostly finer
     let j = baseline(&many_holes(6), TrimMethod::Texture { eighths: 2 });
     assert!(j.wrong > 100 && j.worst_shift_px > 0.7, "{} wrong, {} px", j.wrong, j.worst_shift_px);
 }
@@ -133,7 +133,7 @@ fn meshes_are_off_by_their_deflection() {
         let Projection::Perspective { fov_y } = camera.projection else { panic!("framing makes perspective views") };
         let pixel = 2.0 * (fov_y * 0.5).tan() * camera.depth_range.0 / f64::from(SIZE.1);
         let (mesh, made) = pretessellated(&model, 0.4 * pixel);
-        // what still bulges after the last round is told; a triangle in a thousand does not show
+        // triangles that bulge after the last round are counted; one in a thousand is not visible
         assert_eq!((made.missing, 1000 * made.beyond / made.triangles), (0, 0));
         let j = judged(&mesh, Way::Own(TrimWay::Auto), &model);
         assert_eq!(j.wrong, 0, "{}: {:?}", model.name, j.mismatches);
@@ -142,7 +142,7 @@ fn meshes_are_off_by_their_deflection() {
     }
 }
 
-/// What tests cost is told by the same frame: nobody sees that its patches were also drawn without them.
+/// The same frame measures the cost of tests: its patches are also drawn without tests, which changes no image.
 #[test]
 fn patches_drawn_without_a_test_are_not_seen() {
     let model = panel();
@@ -164,8 +164,8 @@ fn patches_drawn_without_a_test_are_not_seen() {
     }
 }
 
-/// A frame without a test is what the harness calls wrong. Of the pixels in its holes, all of which are, the judge looks at
-/// some: it looks far around each.
+/// A frame without trim tests is judged wrong. The judge checks some of the pixels in its holes, because it searches
+/// far around each.
 #[test]
 fn a_frame_that_is_not_trimmed_is_wrong() {
     let model = many_holes(6);
@@ -179,7 +179,7 @@ fn a_texture_beyond_the_device_is_told_and_the_next_view_drawn() {
     let model = many_holes(3);
     let mut renderer = watched(&model, Way::Baseline(TrimMethod::Texture { eighths: 16 }));
     let whole = camera(&model);
-    // at the border of a hole; closer still, the face would be cut to the view
+    // at the border of a hole; from nearer, the view would be cut out of the model
     let face = model.parts[0].faces.iter().max_by_key(|face| face.loops.len()).unwrap();
     let border = face.loops[1].curves().next().unwrap().points[0];
     let target = face.surface.jet(border.x / border.z, border.y / border.z).point;
@@ -191,7 +191,7 @@ fn a_texture_beyond_the_device_is_told_and_the_next_view_drawn() {
         other => panic!("{:?}", other.map(|picture| picture.stats)),
     }
     let wanted = |camera: &Camera| texture::wanted_bytes(&model, camera, 16).unwrap();
-    // ten thousand times the texels, and a little for the narrower bound of the slant
+    // ten thousand times the texels, and a little for the tighter bound of the slant
     assert!(wanted(&close) > 1e3 * wanted(&whole));
     let picture = renderer.render(&whole, &settings, Outputs::default()).unwrap();
     let words = wanted(&whole) / 4.0;
@@ -201,7 +201,7 @@ fn a_texture_beyond_the_device_is_told_and_the_next_view_drawn() {
     assert_silent(renderer);
 }
 
-/// Slefes divide patches in place of the bound, which such a scene does not have, and otherwise than it would.
+/// Slefes replace the bound in such a scene, and divide patches differently.
 #[test]
 fn slefes_make_a_picture() {
     let model = panel();

@@ -1,5 +1,5 @@
-//! Ways that the engine is compared with: those to trim are each as exact as its own knob says, or a comparison with
-//! it would be worth nothing; slefe tables are derived again.
+//! Baselines: each way to trim is as exact as its parameter promises, so that comparisons are fair; the slefe table is
+//! derived again.
 
 mod bisect;
 mod frame;

@@ -6,8 +6,8 @@ use selvedge::model::Model;
 use selvedge::trim::LoopIndex;
 use std::collections::BTreeMap;
 
-/// Largest distance of a model's triangles from the sheet of [`many_holes`], whose parameters are x and
-/// y, and of their border from its loops.
+/// Largest distance of a model's triangles from the sheet of [`many_holes`], whose parameters are x and y, and of their
+/// border from its loops.
 fn errors(model: &Model, mesh: &Model) -> (f64, f64) {
     let face = &model.parts[0].faces[0];
     let grid = face.surface.patches();
@@ -43,7 +43,7 @@ fn triangles_and_borders_keep_the_deflection() {
         let (off, border) = errors(&model, &mesh);
         assert!(off <= 1.05 * deflection, "{off} at {deflection}"); // the probes are a sample
         assert!(border <= 1.05 * deflection, "{border} at {deflection}");
-        // and it is no finer by far than it was asked to be: a comparison would be unfair
+        // not much finer than requested either, which would be unfair
         assert!(off > 0.2 * deflection && border > 0.2 * deflection, "{off} {border} at {deflection}");
     }
 }

@@ -6,13 +6,13 @@
 //!    L_i ●───────●
 //! ```
 //!
-//! First the least largest gap, then with it the least sum of gaps. Of the endless constraints those that the last
-//! solution breaks worst are added (*cutting planes*); `h_i` is concave, so bisection finds them.
+//! First the smallest largest gap, then with it the smallest sum of gaps. There are infinitely many constraints; those
+//! that the last solution violates most are added (*cutting planes*). `h_i` is concave, so bisection finds them.
 
 use crate::simplex::cover;
 use selvedge::baselines::slefe::{basis, value};
 
-/// Largest violation left, far above the rounding of the programs; it is added to every gap in the end.
+/// Largest remaining violation, far above the rounding of the programs; it is added to every gap at the end.
 const DONE: f64 = 1e-11;
 
 /// One basis function on a number of segments.
@@ -86,7 +86,7 @@ impl Program {
         let mut g = self.solve(&limits, &(0..width).map(|i| f64::from(u8::from(i <= m))).collect::<Vec<_>>());
         g.truncate(m + 1);
         if self.a.iter().eq(self.a.iter().rev()) {
-            // as good as its mirror, and so is what lies between: the constraints are convex
+            // as good as its mirror image, and so is every mean of both: the constraints are convex
             let mirrored: Vec<f64> = g.iter().rev().copied().collect();
             g.iter_mut().zip(mirrored).for_each(|(x, y)| *x = (*x + y) / 2.0);
         }

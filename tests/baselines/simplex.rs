@@ -4,7 +4,7 @@
 //! `x` in the objective row. Bland's rule keeps it from going in circles. Source: V. Chvátal, *Linear Programming*,
 //! 1983, chapters 3 and 5.
 
-/// Below it a reduced cost or pivot is rounding; the programs here have entries of about 1.
+/// A smaller reduced cost or pivot is rounding; the programs here have entries of about 1.
 const ZERO: f64 = 1e-12;
 
 /// `rows`: pairs of a row of `A` and its bound.
@@ -41,7 +41,7 @@ fn small_programs() {
     // the corner of x + 2 y >= 4 and 3 x + y >= 6
     let x = cover(&[(vec![1.0, 2.0], 4.0), (vec![3.0, 1.0], 6.0)], &[1.0, 1.0]);
     assert!((x[0] - 1.6).abs() < 1e-12 && (x[1] - 1.2).abs() < 1e-12, "{x:?}");
-    // y is too dear
+    // y is too expensive
     assert_eq!(cover(&[(vec![1.0, 2.0], 4.0)], &[1.0, 3.0]), [4.0, 0.0]);
     // an upper bound: -x >= -3
     let x = cover(&[(vec![1.0, 1.0], 4.0), (vec![-1.0, 0.0], -3.0)], &[1.0, 2.0]);

@@ -1,4 +1,4 @@
-//! The slefe table: derived again, valid, tight, as the literature has it; and where slefes fail as a guarantee.
+//! The slefe table: derived again, valid, tight, as in the literature; and the cases where slefes fail as a guarantee.
 
 use crate::program::Program;
 use selvedge::baselines::slefe::{MOST_DEGREE, MOST_SEGMENTS, Slefe, TABLE, basis, value};
@@ -11,8 +11,8 @@ fn all() -> impl Iterator<Item = (usize, usize)> {
     (2..=MOST_DEGREE).flat_map(|n| (1..=MOST_SEGMENTS).map(move |m| (n, m)))
 }
 
-/// `SELVEDGE_WRITE_SLEFES=1` writes the table (`tools/slefe_table`); without it the stored one must be the same, to
-/// what rounding may do to the last digits.
+/// `SELVEDGE_WRITE_SLEFES=1` writes the table (`tools/slefe_table`); without it the stored one must be the same, up to
+/// rounding of the last digits.
 #[test]
 fn the_table_is_what_the_program_yields() {
     let mut text =
@@ -41,7 +41,7 @@ fn the_table_is_what_the_program_yields() {
     }
 }
 
-/// `L_j <= a_j <= U_j` everywhere, the widest gap as small as any lower bound's can be, mirrored for `n - j`.
+/// `L_j <= a_j <= U_j` everywhere; the widest gap is as small as possible for a lower bound; mirrored for `n - j`.
 #[test]
 fn each_is_a_valid_tight_symmetric_enclosure() {
     for (n, m) in all() {
@@ -51,7 +51,7 @@ fn each_is_a_valid_tight_symmetric_enclosure() {
             let program = Program::new(n, j, m);
             let mut least = 0.0f64;
             for i in 0..m {
-                // the chord of U lies above a convex function; the deepest point below it is where L must be
+                // the chord of U lies above a convex function; L must be at its deepest point below
                 least = least.max(program.bulge(i, program.farthest(i, 0.0)));
                 let rise = (upper[i + 1] - lower[i + 1]) - (upper[i] - lower[i]);
                 for s in (0..=50).map(|k| f64::from(k) / 50.0).chain([program.farthest(i, rise)]) {
@@ -105,8 +105,8 @@ fn anchors() {
     }
 }
 
-/// Re-parametrising to half the interval divides second differences by four at least, but not the width of the slefe:
-/// a factor from `sqrt(width / tolerance)` may be too small. Numbers: supplement to ETER, 2023.
+/// Reparametrising to half the interval divides second differences by at least four, but not the width of the slefe: a
+/// factor from `sqrt(width / tolerance)` may be too small. Numbers: supplement to ETER, 2023.
 #[test]
 fn the_width_does_not_shrink_with_the_square_of_the_interval() {
     let b = [0.1967, 0.1983, 0.1704, 0.3678];
@@ -119,7 +119,7 @@ fn the_width_does_not_shrink_with_the_square_of_the_interval() {
     assert!(right > whole / 4.0, "{right} is no quarter of {whole}");
 }
 
-/// A twisted bilinear patch is its own slefe: no width, on any number of segments, though two triangles miss it by a
+/// A twisted bilinear patch is its own slefe: its width is 0 for any number of segments, but two triangles miss it by a
 /// quarter of the twist.
 #[test]
 fn a_bilinear_patch_has_no_width_and_triangles_miss_it() {

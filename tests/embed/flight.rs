@@ -1,4 +1,4 @@
-//! Two frames in flight while the host changes its mind: other sizes, other models, larger views.
+//! Two frames in flight while the host changes sizes, models and views.
 
 use crate::host::{Host, SLOTS};
 use crate::picture::renderer;
@@ -12,7 +12,7 @@ use selvedge::renderer::{FrameInput, RenderError, Renderer, Targets as Into};
 
 const FORMAT: vk::Format = vk::Format::R8G8B8A8_UNORM;
 
-/// Colours that a pixel is told by.
+/// Colours by which a pixel's model is recognised.
 const RED: Colour = [0.8, 0.05, 0.05, 1.0];
 const GREEN: Colour = [0.05, 0.8, 0.05, 1.0];
 const BLUE: Colour = [0.05, 0.05, 0.8, 1.0];
@@ -34,7 +34,7 @@ fn record(host: &Host, renderer: &mut Renderer, slot: usize, targets: &Targets, 
     host.submit(slot);
 }
 
-/// The centre of a frame's picture has `channel` as its strongest.
+/// Asserts that `channel` is the strongest at the centre of a frame's picture.
 fn assert_centre(frame: usize, targets: &Targets, channel: usize) {
     let (colour, _) = targets.values();
     let (width, height) = targets.size;
@@ -43,7 +43,7 @@ fn assert_centre(frame: usize, targets: &Targets, channel: usize) {
     assert_eq!(strongest, channel, "frame {frame} has {c:?} in its middle");
 }
 
-/// Twelve frames, alternating between the slots; nothing waits but the next use of a slot.
+/// Twelve frames, alternating between the slots; only the next use of a slot waits.
 #[test]
 fn sizes_and_models_change_in_flight() {
     let host = Host::new();
@@ -53,7 +53,7 @@ fn sizes_and_models_change_in_flight() {
         painted(shapes::cube(), GREEN),
         painted(shapes::sphere(), BLUE),
     ];
-    // an odd and an even frame between the changes: either slot may be the one recorded last
+    // an odd and an even number of frames between the changes: either slot may be the last recorded
     let model_at = |frame: usize| [0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 2][frame];
     let size_at = |frame: usize| if (2..6).contains(&frame) { (96, 64) } else { (160, 120) };
     let mut renderer = renderer(&host, &models[0], FORMAT);
@@ -97,8 +97,8 @@ fn sizes_and_models_change_in_flight() {
     assert_eq!(host.shutdown(), [""; 0]);
 }
 
-/// A sphere goes from left to right, one place a frame, while the other slot's frame is in flight: each frame has it where
-/// it was when that frame was recorded, and where an upload has it.
+/// A sphere moves from left to right, one place a frame, while the other slot's frame is in flight. Each frame shows it
+/// at its place when that frame was recorded, and an upload shows it at its place then.
 #[test]
 fn a_part_moves_while_frames_are_in_flight() {
     let host = Host::new();
@@ -147,20 +147,118 @@ fn a_part_moves_while_frames_are_in_flight() {
     assert_eq!(host.shutdown(), [""; 0]);
 }
 
-/// A view that needs more rows than the first table holds: the report says so, a frame of the other slot
-/// is in flight meanwhile, and the next frame into the slot is whole.
+/// A cube comes and goes, and so do two spheres beside it, while the other slot's frame is in flight: each frame has what
+/// was there when it was recorded, as an upload has it.
+#[test]
+fn models_come_and_go_while_frames_are_in_flight() {
+    let host = Host::new();
+    let at = |mut model: Model, x: f64| {
+        model.instances[0].transform = DAffine3::from_translation(DVec3::X * x);
+        model
+    };
+    let base = painted(shapes::sphere(), RED);
+    let [left, right] = [-9.0, 9.0].map(|x| at(painted(shapes::sphere(), GREEN), x));
+    let cube = at(painted(shapes::cube(), GREEN), 4.0);
+    let size = (120, 60);
+    let eye = DVec3::new(0.0, -40.0, 0.0);
+    let (target, up) = (DVec3::ZERO, DVec3::Z);
+    let projection = selvedge::model::Projection::Perspective { fov_y: 0.4 };
+    let camera = Camera { eye, target, up, projection, depth_range: (1.0, 100.0), size };
+    let targets = [(); SLOTS].map(|()| Targets::new(&host, size, FORMAT));
+    let (mut seen, mut models, mut living) = (Vec::new(), Vec::new(), Vec::new());
+    let mut live = renderer(&host, &base, FORMAT);
+    for frame in 0..12 {
+        let slot = frame % SLOTS;
+        host.wait(slot);
+        if frame >= SLOTS {
+            assert!(live.report(slot).unwrap().unwrap().complete, "frame {frame}");
+            seen.push(targets[slot].values());
+        }
+        match frame % 6 {
+            1 => living.push(live.add(&cube).unwrap()),
+            2 => living.extend([&left, &right].map(|model| live.add(model).unwrap())),
+            4 => live.remove(living.remove(0)).unwrap(),
+            5 => living.drain(..).for_each(|id| live.remove(id).unwrap()),
+            _ => {}
+        }
+        models.push((**live.model().unwrap()).clone());
+        record(&host, &mut live, slot, &targets[slot], &camera, 0.5);
+    }
+    (12 - SLOTS..12).for_each(|frame| {
+        host.wait(frame % SLOTS);
+        seen.push(targets[frame % SLOTS].values());
+    });
+    drop(live);
+    for (frame, pair) in seen.windows(2).enumerate() {
+        assert_eq!(pair[0] != pair[1], models[frame] != models[frame + 1], "frame {frame}");
+    }
+    let mut fresh = renderer(&host, &base, FORMAT);
+    for (frame, (seen, model)) in seen.iter().zip(&models).enumerate() {
+        fresh.upload(model).unwrap();
+        record(&host, &mut fresh, 0, &targets[0], &camera, 0.5);
+        host.wait(0);
+        assert!(*seen == targets[0].values(), "frame {frame}");
+    }
+    drop(fresh);
+    targets.into_iter().for_each(|targets| targets.destroy(&host));
+    assert_eq!(host.shutdown(), [""; 0]);
+}
+
+/// A frame that never reaches the GPU has with it what would have been copied for a model: the next one loads all anew,
+/// with a model that came meanwhile and has moved.
+#[test]
+fn a_discarded_frame_loses_no_model() {
+    let host = Host::new();
+    let base = painted(shapes::sphere(), RED);
+    let cube = painted(shapes::cube(), GREEN);
+    let size = (120, 60);
+    let (eye, target, up) = (DVec3::new(0.0, -40.0, 0.0), DVec3::ZERO, DVec3::Z);
+    let projection = selvedge::model::Projection::Perspective { fov_y: 0.4 };
+    let camera = Camera { eye, target, up, projection, depth_range: (1.0, 100.0), size };
+    let targets = Targets::new(&host, size, FORMAT);
+    let mut live = renderer(&host, &base, FORMAT);
+    record(&host, &mut live, 0, &targets, &camera, 0.5);
+    host.wait(0);
+    live.add(&cube).unwrap();
+    record(&host, &mut live, 0, &targets, &camera, 0.5);
+    host.wait(0);
+    live.discard(0);
+    let second = live.add(&cube).unwrap();
+    let instance = live.instances_of(second).unwrap().start;
+    live.set_transform(instance, DAffine3::from_translation(DVec3::X * 9.0)).unwrap();
+    let third = live.add(&cube).unwrap();
+    live.remove(third).unwrap();
+    let seen = [(); 2].map(|()| {
+        record(&host, &mut live, 0, &targets, &camera, 0.5);
+        host.wait(0);
+        targets.values()
+    });
+    let model = (**live.model().unwrap()).clone();
+    assert_eq!(model.instances.len(), 3);
+    drop(live);
+    let mut fresh = renderer(&host, &model, FORMAT);
+    record(&host, &mut fresh, 0, &targets, &camera, 0.5);
+    host.wait(0);
+    assert!(seen.iter().all(|seen| *seen == targets.values()));
+    drop(fresh);
+    targets.destroy(&host);
+    assert_eq!(host.shutdown(), [""; 0]);
+}
+
+/// A view that needs more rows than the first table has: the report states it while a frame of the other slot is in
+/// flight, and the next frame in the slot is complete.
 #[test]
 fn a_frame_without_room_says_so_and_the_next_is_whole() {
     without_room(16, (560, 420));
 }
 
-/// The frame that keeps such a table says so as well.
+/// A frame that reuses such a table reports it, too.
 #[test]
 fn a_frame_that_keeps_what_had_no_room_says_so() {
     without_room(7, (960, 720));
 }
 
-/// `across` by as many plates: so many, and patches may lie behind others.
+/// `across` by `across` plates, enough for occlusion culling.
 fn without_room(across: u32, size: (u32, u32)) {
     let host = Host::new();
     let mut model = shapes::plate();
@@ -169,7 +267,7 @@ fn without_room(across: u32, size: (u32, u32)) {
     model.instances = (0..across * across).map(placed).collect();
     let camera = Camera::around(model.control_bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, size);
     let mut renderer = renderer(&host, &model, FORMAT);
-    // made for edits, patches are as many as they were
+    // in an editable scene, patches are not split
     renderer.upload_with(&model, SceneSettings { editable: true, ..SceneSettings::default() }).unwrap();
     let targets = [(); SLOTS].map(|()| Targets::new(&host, size, FORMAT));
     assert_eq!(renderer.report(0).unwrap(), None, "no frame has been recorded");
@@ -183,7 +281,7 @@ fn without_room(across: u32, size: (u32, u32)) {
         complete.extend(report.map(|report| report.complete));
         record(&host, &mut renderer, slot, &targets[slot], &camera, 0.125);
     }
-    // the first two were recorded before either could report; rows, then intercepts, may run short
+    // the first two were recorded before either could report; rows, then intercepts, may be too few
     assert_eq!(complete[..2], [false, false], "{complete:?}");
     assert!(complete.last().unwrap(), "{complete:?}");
     assert_eq!((kept[0], kept[1]), (false, across * across < 64), "{kept:?}");
@@ -197,7 +295,7 @@ fn without_room(across: u32, size: (u32, u32)) {
     assert_eq!(host.shutdown(), [""; 0]);
 }
 
-/// What the host gets wrong is told by an error before anything is recorded: the command buffer goes on.
+/// An error reports a host's mistake before anything is recorded, and the command buffer can be used further.
 #[test]
 fn a_target_of_another_size_is_refused() {
     let host = Host::new();

@@ -1,4 +1,4 @@
-//! A host: everything that an engine owns before it meets the renderer, in plain ash.
+//! A host in plain ash, with everything that an engine has before it uses the renderer.
 
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
@@ -97,7 +97,7 @@ impl Host {
         }
     }
 
-    /// A device with wishes of the host's own, in the chain that the host likes, and the engine's added.
+    /// A device with the host's own features, chained in the host's way, and the engine's added.
     unsafe fn device(instance: &ash::Instance, physical: vk::PhysicalDevice, family: u32) -> ash::Device {
         let mut core = vk::PhysicalDeviceFeatures { shader_int64: vk::TRUE, ..Default::default() };
         let mut v12 = vk::PhysicalDeviceVulkan12Features::default().timeline_semaphore(true);
@@ -115,7 +115,7 @@ impl Host {
         unsafe { instance.create_device(physical, &create, None) }.unwrap()
     }
 
-    /// What the renderer borrows.
+    /// The objects that the renderer borrows.
     pub fn lend(&self) -> HostDevice<'_> {
         HostDevice {
             instance: &self.instance,
@@ -130,7 +130,7 @@ impl Host {
         }
     }
 
-    /// Waits until the frame before has left the slot, and begins its command buffer.
+    /// Waits until the previous frame has left the slot, and begins its command buffer.
     pub fn begin(&self, slot: usize) -> vk::CommandBuffer {
         let cmd = self.commands[slot];
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
@@ -158,7 +158,7 @@ impl Host {
         }
     }
 
-    /// Destroys everything; returns what the validation layers said to the end.
+    /// Destroys everything; returns all messages of the validation layers.
     pub fn shutdown(mut self) -> Vec<String> {
         // SAFETY: nothing is in flight, and what was made from the device is gone.
         unsafe {

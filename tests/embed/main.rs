@@ -1,7 +1,7 @@
-//! The renderer in somebody else's engine: a host with its own instance, device, allocator, images,
-//! command buffers, fences and barriers, which never sees `selvedge::headless`.
+//! The renderer in another engine: a host with its own instance, device, allocator, images, command buffers, fences and
+//! barriers, without `selvedge::headless`.
 //!
-//! Needs a Vulkan driver and the validation layers, as the other tests on a device do.
+//! Needs a Vulkan driver and the validation layers, like the other tests on a device.
 
 mod flight;
 mod host;

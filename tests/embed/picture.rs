@@ -1,4 +1,4 @@
-//! The renderer's picture among the host's: what it covers, what covers it, and what it leaves alone.
+//! The renderer's picture in the host's: what it hides, what hides it, and what it leaves unchanged.
 
 use crate::host::Host;
 use crate::shapes;
@@ -12,7 +12,7 @@ use selvedge::renderer::{FrameInput, Renderer, TargetFormats, Targets as Into};
 const SIZE: (u32, u32) = (120, 90);
 const HOST_BLUE: [f32; 4] = [0.0, 0.0, 1.0, 1.0];
 const BLUE: [u8; 4] = [0, 0, 255, 255];
-/// Of the host's middle box, through the sphere.
+/// Depth of the host's middle box, through the sphere.
 const WALL: f64 = 9.0;
 
 /// The renderer on the host's device; the model is uploaded.
@@ -24,7 +24,7 @@ pub fn renderer(host: &Host, model: &Model, colour: vk::Format) -> Renderer {
     renderer
 }
 
-/// The sphere from 10 away.
+/// A camera 10 away from the sphere.
 fn camera() -> Camera {
     Camera {
         eye: DVec3::new(0.0, -10.0, 0.0),
@@ -100,14 +100,14 @@ fn it_stands_among_what_the_host_drew() {
                 z.map(|z| reversed(&camera, z)).filter(|d| *d >= host_depth)
             };
             let centre = wins(0.0, 0.0);
-            // borders may be half a pixel to the side
+            // borders may be half a pixel off
             let around = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)].map(|(dx, dy)| wins(dx, dy));
             if around.iter().any(|a| a.is_some() != centre.is_some()) {
                 continue;
             }
             if let Some(d) = centre {
                 assert_ne!(colour[i], BLUE, "the sphere at {x}, {y}");
-                // a pixel from the outline a hundredth of a pixel is less than this in depth
+                // at a pixel from the outline, a hundredth of a pixel changes the depth by less than this
                 assert!((f64::from(depth[i]) - d).abs() < 1e-4, "depth {} at {x}, {y}, not {d}", depth[i]);
                 seen += 1;
             } else {
@@ -124,9 +124,9 @@ fn it_stands_among_what_the_host_drew() {
     assert_eq!(host.shutdown(), [""; 0]);
 }
 
-/// A background covers the host's picture and depth, and is encoded once: by the format or by the
-/// renderer. Linear 0.5, 0.25 and 0.125 are 187.5, 136.9 and 99.2 in sRGB (IEC 61966-2-1); a device may
-/// round the encoding by 0.6 (Vulkan, section on fixed-point conversion).
+/// A background covers the host's picture and depth, and is encoded once: by the format or by the renderer. Linear 0.5,
+/// 0.25 and 0.125 are 187.5, 136.9 and 99.2 in sRGB (IEC 61966-2-1); a device may round the encoding by 0.6 (Vulkan,
+/// section on fixed-point conversion).
 #[test]
 fn a_background_is_encoded_once() {
     for format in [vk::Format::R8G8B8A8_UNORM, vk::Format::R8G8B8A8_SRGB] {
@@ -148,8 +148,8 @@ fn a_background_is_encoded_once() {
     }
 }
 
-/// Smooth borders let the host's picture through: where it is of one colour, and blended in linear light by the
-/// target's format, the picture is that before a background of this colour, but for the rounding of eight bits, twice.
+/// Smooth borders let the host's picture through. If that has one colour, and the target's format blends in linear
+/// light, the result equals the picture with this colour as background, up to two roundings to eight bits.
 #[test]
 fn smooth_trims_blend_with_what_the_host_drew() {
     let host = Host::new();
@@ -164,7 +164,7 @@ fn smooth_trims_blend_with_what_the_host_drew() {
         targets.values().0
     });
     let mut mixed = 0;
-    // the host's boxes begin at a third
+    // the host's boxes begin at a third of the width
     for i in (0..kept.len()).filter(|i| (*i as u32 % SIZE.0) < SIZE.0 / 3) {
         let (a, b) = (kept[i], before_blue[i]);
         assert!((0..4).all(|k| a[k].abs_diff(b[k]) <= 2), "pixel {i}: {a:?}, not {b:?}");
@@ -177,7 +177,7 @@ fn smooth_trims_blend_with_what_the_host_drew() {
 }
 
 /// A picture in a rectangle of larger targets equals the picture in whole targets, bit for bit: with a background, and
-/// over what the host drew. Outside the rectangle the host's colour and depth stay.
+/// over the host's picture. Outside the rectangle the host's colour and depth stay.
 #[test]
 fn a_rectangle_of_a_larger_target_holds_the_same_picture() {
     let host = Host::new();

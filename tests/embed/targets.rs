@@ -29,7 +29,7 @@ pub struct Targets {
     pub size: (u32, u32),
     images: [(vk::Image, vk::ImageView, Allocation); 2],
     copies: [(vk::Buffer, Allocation); 2],
-    /// The same handles, as the renderer takes them.
+    /// The same handles as the renderer's types.
     pub colour: Image,
     pub depth: Image,
 }
@@ -48,8 +48,8 @@ impl Targets {
         Self { size, images, copies, colour, depth }
     }
 
-    /// The host's own picture: all of it `colour` at depth 0, and boxes `(x, width, depth)` over the whole
-    /// height that differ in depth alone.
+    /// Draws the host's own picture: `colour` at depth 0, and boxes `(x, width, depth)` over the whole height that
+    /// differ only in depth.
     pub fn draw(&self, host: &Host, cmd: vk::CommandBuffer, colour: [f32; 4], boxes: &[(u32, u32, f32)]) {
         self.barriers(host, cmd, (NEW, COLOUR), (NEW, DEPTH));
         let clear =
@@ -72,7 +72,7 @@ impl Targets {
         });
     }
 
-    /// The renderer may draw now.
+    /// Barriers before the renderer draws.
     pub fn hand_over(&self, host: &Host, cmd: vk::CommandBuffer) {
         self.barriers(host, cmd, (COLOUR, COLOUR), (DEPTH, DEPTH));
     }

@@ -15,7 +15,7 @@ const RESULTS: [vk::Result; 3] =
     [vk::Result::ERROR_DEVICE_LOST, vk::Result::ERROR_OUT_OF_DEVICE_MEMORY, vk::Result::ERROR_OUT_OF_HOST_MEMORY];
 
 /// Calls after whose failure the engine may succeed in another way: the allocator tries another kind of memory, the
-/// engine waits for the queue in place of the fence, and pipelines are compiled again by the next device.
+/// engine waits for the queue instead of the fence, and pipelines are compiled again by the next device.
 fn may_be_mended(fault: Fault) -> bool {
     match fault.call {
         "vkAllocateMemory" | "vkMapMemory" | "vkGetPipelineCacheData" => true,

@@ -5,9 +5,8 @@
 //!                                             ╱          distance, so that none passes the surface
 //! ```
 //!
-//! Pixels whose ray passes within a pixel of a silhouette or a border are left out: what they show may
-//! lie half a pixel to the side. Source of the tracing: J. C. Hart, *Sphere tracing*, The Visual
-//! Computer 12, 1996.
+//! Pixels whose ray passes within a pixel of a silhouette or a border are not compared: their surface may lie half a
+//! pixel to the side. Source of the tracing: J. C. Hart, *Sphere tracing*, The Visual Computer 12, 1996.
 
 use crate::shapes::{self, circle_at};
 use crate::support::{assert_silent, orthographic, perspective, render, watched};
@@ -16,26 +15,26 @@ use selvedge::model::{Camera, Model};
 use selvedge::picture::Picture;
 
 const SIZE: (u32, u32) = (240, 180);
-/// Of the polynomial patches, whose tracing takes longer.
+/// Size for polynomial patches, whose tracing takes longer.
 const FIELD_SIZE: (u32, u32) = (128, 96);
-/// Pixels whose view is more grazing than this are judged by the reference renderer, not here: the
-/// errors of depth grow with the tangent.
+/// Pixels seen at a smaller angle are judged by the reference renderer, not here: errors of depth grow with the
+/// tangent.
 const LEAST_COSINE: f64 = 0.1;
-/// The resolve pass stops where the exact point projects this close to the pixel's centre; single
-/// precision adds about as much again at this size.
+/// Pass `resolve` stops when the exact point projects this close to the pixel's centre; single precision adds about as
+/// much again at this size.
 const AIM_PX: f64 = 2e-3;
 
 /// A surface in closed form.
 struct Closed {
-    /// Distance to the surface, or less; negative only within a sphere or a torus.
+    /// Distance to the surface, or less; negative only inside a sphere or a torus.
     distance: fn(DVec3) -> f64,
     /// Unit outward normal near the surface.
     normal: fn(DVec3) -> DVec3,
     /// Point at (u, v).
     point: fn(DVec2) -> DVec3,
-    /// Largest curvature, 1 over the smallest radius, or more.
+    /// Largest curvature, 1 over the smallest radius, or a larger number.
     curvature: f64,
-    /// The face holds the point of the surface, with this much to spare all around.
+    /// Whether the face contains the point of the surface, with this margin all around.
     inside: fn(DVec3, f64) -> bool,
 }
 
@@ -62,7 +61,7 @@ const TORUS: Closed = Closed {
     inside: |_, _| true,
 };
 
-/// The nearest point of the circle that the torus follows.
+/// The nearest point of the torus' central circle.
 fn spine(p: DVec3) -> DVec3 {
     DVec3::new(p.x, p.y, 0.0).normalize() * shapes::TORUS_RADII.0
 }
@@ -112,8 +111,8 @@ fn on_field(uv: DVec2, (n, m): (usize, usize), height: Height) -> DVec3 {
     (3.0 * uv).extend((0..=m).map(|j| bernstein(m, j, uv.y) * row(j)).sum())
 }
 
-/// A distance that the surface certainly keeps, from the largest slopes in x and y. Beside the square
-/// there is nothing; what lies within a thousandth of its sides is skipped.
+/// A lower bound on the distance to the surface, from the largest slopes in x and y. There is no surface beside the
+/// square; points within a thousandth of its sides are skipped.
 fn above(p: DVec3, degrees: (usize, usize), height: Height, slopes: DVec2) -> f64 {
     let inside = p.truncate().clamp(DVec2::ZERO, DVec2::splat(3.0));
     let beside = p.truncate().distance(inside);
@@ -138,7 +137,7 @@ fn on_square(p: DVec3, margin: f64) -> bool {
 impl Closed {
     /// First point of the surface along a ray.
     fn first_hit(&self, (origin, direction): (DVec3, DVec3), far: f64) -> Option<DVec3> {
-        // a thousandth of what single precision tells apart at that depth
+        // a thousandth of the resolution of single precision at that depth
         let close = 1e-10 * far;
         let mut t = 0.0;
         while t < far {
@@ -157,12 +156,12 @@ impl Closed {
 #[derive(Debug, Default)]
 struct Worst {
     judged: usize,
-    /// Depth, over what aiming `AIM_PX` beside the centre makes at this slope.
+    /// Depth error, over the error from aiming `AIM_PX` beside the centre at this slope.
     depth: f64,
-    /// Angle between the normals, over what aiming `AIM_PX` beside the centre makes at this curvature.
+    /// Angle between the normals, over the angle from aiming `AIM_PX` beside the centre at this curvature.
     normal: f64,
     normal_deg: f64,
-    /// Distance from the pixel's centre to where (u, v) says that the point is.
+    /// Distance from the pixel's centre to the point at (u, v).
     uv_px: f64,
 }
 
@@ -174,7 +173,7 @@ fn judge(shape: &Closed, camera: &Camera, picture: &Picture) -> Worst {
     for (i, pixel) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).enumerate() {
         let centre = DVec2::new(f64::from(pixel.0) + 0.5, f64::from(pixel.1) + 0.5);
         let ray = |dx: f64, dy: f64| shape.first_hit(camera.ray(centre + DVec2::new(dx, dy)), far);
-        // the pixel and what surrounds it show one sheet of one face, or nothing
+        // the pixel and its neighbours show one sheet of one face, or nothing
         let around = [(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)].map(|(x, y)| ray(x, y));
         let unit = around[0].map_or(0.0, |p| pixel_size(camera, p));
         let on = |p: &DVec3, margin: f64| (shape.inside)(*p, margin);
@@ -186,7 +185,7 @@ fn judge(shape: &Closed, camera: &Camera, picture: &Picture) -> Worst {
         let cosine = |p: &DVec3| -(shape.normal)(*p).dot(direction);
         let grazing = |p: &DVec3| cosine(p) < LEAST_COSINE;
         let Some(p) = around[0] else { continue };
-        // neighbouring pixels of one sheet are not farther apart, unless it bends away
+        // neighbouring pixels of one sheet are not farther apart, unless the sheet bends away
         let reach = 2.0 * unit / cosine(&p).max(LEAST_COSINE);
         let one_sheet = around.iter().all(|q| q.is_some_and(|q| !grazing(&q) && q.distance(p) < reach));
         if !one_sheet || !on(&p, reach) {
@@ -199,7 +198,7 @@ fn judge(shape: &Closed, camera: &Camera, picture: &Picture) -> Worst {
         let cosine = cosine(&p);
         let depth = (p - camera.eye).dot(forward);
         let slope = (1.0 - cosine * cosine).sqrt() / cosine;
-        // what remains where nothing slopes or bends is the rounding of single precision
+        // without slope or curvature, the rounding of single precision remains
         let bound = AIM_PX * unit * slope + 4.0 * f64::from(f32::EPSILON) * depth;
         worst.depth = worst.depth.max((f64::from(picture.depth[i]) - depth).abs() / bound);
 
@@ -243,7 +242,7 @@ fn cameras(model: &Model) -> [Camera; 2] {
     [perspective(model, SIZE), orthographic(model, SIZE)]
 }
 
-/// Both projections from almost above, where few hills hide others.
+/// Both projections from almost above, where hills hide few others.
 fn from_above(model: &Model) -> [Camera; 2] {
     let tilted = DVec3::new(0.3, -0.4, 1.0).normalize();
     [perspective(model, FIELD_SIZE), orthographic(model, FIELD_SIZE)]

@@ -1,4 +1,4 @@
-//! Ambient occlusion: the share of the sky that a wall hides, and that only lit colours change.
+//! Ambient occlusion: the share of the sky that a wall hides; only lit colours change.
 
 use crate::layers::in_glass;
 use crate::shapes;
@@ -35,8 +35,8 @@ fn hidden_by_wall(x: f64) -> f64 {
 }
 
 /// The floor beside a wall, as solids, from above in both projections. Occlusion fades from three quarters of the
-/// radius to the radius, so the loss of a pixel lies between the losses for rays of these two lengths. The tolerance is
-/// a sixteenth: a pixel looks at four steps and takes the lower of two horizons.
+/// radius to the radius, so a pixel's loss lies between the losses for rays of these two lengths. The tolerance is a
+/// sixteenth: a pixel takes four steps and uses the lower of two horizons.
 #[test]
 fn a_wall_hides_what_it_hides_from_rays() {
     let radius = 1.0;
@@ -73,7 +73,7 @@ fn a_wall_hides_what_it_hides_from_rays() {
     }
 }
 
-/// A floor alone stays as light as before, to a step of eight bits: nothing hides the sky.
+/// A floor alone is as light as before, to a step of eight bits: nothing hides the sky.
 #[test]
 fn a_floor_sees_all_of_the_sky() {
     let model = folded(Op::Union, vec![block([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0])]);

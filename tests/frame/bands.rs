@@ -12,7 +12,7 @@ use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, Samples, Sce
 use selvedge::renderer::RenderError;
 use std::collections::BTreeSet;
 
-/// Ten rows of tiles, the last of which the picture does not fill.
+/// Ten rows of tiles, the last of them only partly in the picture.
 const SIZE: (u32, u32) = (160, 156);
 
 fn draw(renderer: &mut HeadlessRenderer, camera: &Camera, outputs: Outputs) -> Result<Picture, RenderError> {
@@ -34,13 +34,13 @@ fn assert_same(a: &Picture, b: &Picture, what: &str) {
     assert_eq!(told(a), told(b), "{what}");
 }
 
-/// Bytes that the budget is for.
+/// Bytes that the budget limits.
 fn list_bytes(picture: &Picture) -> u64 {
     let lists = picture.stats.solid_bytes.iter().filter(|l| ["tiles", "crossings"].contains(&l.name.as_str()));
     lists.map(|l| l.bytes).sum()
 }
 
-/// What is drawn with less and less room.
+/// A model that is drawn with smaller and smaller budgets.
 struct Case {
     name: &'static str,
     model: Model,
@@ -56,16 +56,16 @@ impl Case {
     }
 }
 
-/// How budgets follow one another.
+/// The steps from one budget to the next.
 #[derive(Clone, Copy, PartialEq)]
 enum Steps {
-    /// From as much as one band takes to as little as ten do, and no more steps than the next number of bands needs.
+    /// From the budget for one band to the budget for ten, in steps that just change the number of bands.
     Wide,
-    /// From `Case::most` on, by 6 % as long as there are fewer than three bands.
+    /// From `Case::most`, by 6 % a step while there are fewer than three bands.
     Narrow,
 }
 
-/// Draws with less and less room, until a row of tiles has too little.
+/// Draws with smaller and smaller budgets, until a row of tiles does not fit.
 fn with_less_and_less(case: &Case, steps: Steps) {
     let Case { name, model, camera, settings, most } = case;
     let settings = *settings;
@@ -76,7 +76,7 @@ fn with_less_and_less(case: &Case, steps: Steps) {
     assert_eq!(whole.stats.bands, 1, "{name}");
     assert!(whole.face.iter().filter(|id| **id != 0).count() * 8 > whole.face.len(), "{name} shows little");
     let mut seen = BTreeSet::new();
-    // lists of a view without a budget have a quarter more than they need
+    // lists of a view without a budget have a quarter of spare room
     let mut budget = if steps == Steps::Wide { most.min(list_bytes(&whole) as f64) } else { *most };
     let refused = loop {
         assert!(budget > 100.0, "{name}: any budget will do");
@@ -99,7 +99,7 @@ fn with_less_and_less(case: &Case, steps: Steps) {
     assert!(few && seen.contains(&10), "{name}: {seen:?}");
     let RenderError::TooMany(error) = refused else { panic!("{name}: {refused}") };
     assert_eq!((error.what, error.most), ("bytes for the lists of one row of tiles", budget as u32), "{name}");
-    // and the renderer goes on
+    // the renderer still works
     renderer.upload_with(model, settings).unwrap();
     assert_same(&whole, &draw(&mut renderer, camera, outputs).unwrap(), name);
     assert_silent(renderer);
@@ -110,7 +110,7 @@ fn of_a_mesh() -> Vec<Case> {
     vec![Case::new(name, model, SceneSettings::default(), 900_000.0)]
 }
 
-/// Trimmed faces, whose gaps are mended, and healed before.
+/// Trimmed faces, with gaps that skirts close, in operands and in placed parts.
 fn of_spline_parts() -> Vec<Case> {
     let (name, mut model) = splines().swap_remove(6);
     model.parts = cube().parts;
@@ -180,7 +180,7 @@ fn samples() {
     of_samples().iter().for_each(|case| with_less_and_less(case, Steps::Wide));
 }
 
-/// By many more budgets, of which most make as many bands as the one before.
+/// By many more budgets, most of which give the same number of bands as the one before.
 #[test]
 #[ignore = "minutes: tools/soak"]
 fn by_small_steps() {
@@ -195,7 +195,7 @@ fn by_small_steps() {
     all.iter().flatten().for_each(|case| with_less_and_less(case, Steps::Narrow));
 }
 
-/// What is told of crossings is told of one drawing of the view, however many there are.
+/// Statistics of crossings are those of one drawing, whatever the number of samples.
 #[test]
 fn samples_are_counted_apart() {
     let (_, model) = meshes().swap_remove(2);
@@ -224,7 +224,7 @@ fn views_change() {
     renderer.upload_with(&model, SceneSettings { solid_budget: Some(budget), ..SceneSettings::default() }).unwrap();
     let mut bands = Vec::new();
     for (view, whole) in views.iter().zip(&whole) {
-        // the second time by what the first one told
+        // the second time uses the counters of the first
         for what in ["at first", "again"] {
             let picture = draw(&mut renderer, view, Outputs::ALL).unwrap();
             assert_same(whole, &picture, &format!("{what} {view:?}"));
@@ -235,7 +235,7 @@ fn views_change() {
     assert_silent(renderer);
 }
 
-/// Lists exist by the way to draw, and are told apart.
+/// Lists exist according to the way to draw, and are reported separately.
 #[test]
 fn each_way_tells_what_it_takes() {
     let (_, of_mesh) = meshes().swap_remove(1);
@@ -269,7 +269,7 @@ fn each_way_tells_what_it_takes() {
                 "crossings" => of(&["operand fragment"]),
                 _ => of(&["blister layer", "blister faces", "blister depth", "blister stencil"]),
             };
-            // memory is taken in steps of some bytes
+            // memory is allocated in steps of some bytes
             assert!(list.bytes <= taken && taken < list.bytes + 1024, "{}: {list:?}, {taken}", solids.name());
         }
     }

@@ -1,4 +1,4 @@
-//! Faces that end where their surfaces end, from many sides.
+//! Faces that end at their surfaces' ends, from many sides.
 //!
 //! ```text
 //!     ╭──╮   drum: a silhouette meets the border, where no step across      ─────┬─────   abutting: two tops in one
@@ -16,7 +16,7 @@ use std::ops::Range;
 
 const SIZE: (u32, u32) = (160, 120);
 
-/// Views that are spread over the sphere on a spiral.
+/// Number of views, spread over the sphere on a spiral.
 const VIEWS: u32 = 100;
 
 fn view(model: &Model, k: u32) -> Camera {
@@ -25,7 +25,7 @@ fn view(model: &Model, k: u32) -> Camera {
     Camera::around(model.control_bounds(), from, DVec3::Z, 35f64.to_radians(), SIZE)
 }
 
-/// Each pixel of these views is within the tolerance of what it should be.
+/// Each pixel of these views is within the tolerance.
 fn keeps_the_promise(model: &Model, views: Range<u32>) {
     keeps_it_by(TrimWay::Table, model, views);
 }
@@ -47,7 +47,7 @@ fn keeps_it_by(way: TrimWay, model: &Model, views: Range<u32>) {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// With borders pushed out by as much as takes them across themselves, view 25 has a pixel 0.8 px off.
+/// If borders were pushed by the distance that moves them across themselves, a pixel of view 25 would be 0.8 px off.
 #[test]
 fn a_silhouette_that_meets_a_border_is_not_drawn_beyond_it() {
     keeps_the_promise(&borders::drum(1.5, 4.0), 15..45);
@@ -58,9 +58,9 @@ fn a_wall_that_two_tops_hide_is_not_seen_between_them() {
     keeps_the_promise(&borders::abutting(), 50..70);
 }
 
-/// Where the mantle and an end meet in a silhouette, the end, which the mantle hides up to there, was drawn beyond it: in
-/// the plane that continues it it is nearer than what continues the mantle. And it was drawn where it is, beside the
-/// mantle's silhouette, which is drawn narrower than it is: no skirt of the mantle's is there.
+/// The mantle and an end meet in a silhouette; the mantle hides the end up to there. Two faults are possible: the end
+/// is drawn beyond the silhouette, because its continued plane is nearer than the continued mantle; or it is drawn
+/// beside the mantle's silhouette, which is drawn narrower than it is and has no skirt.
 #[test]
 fn a_face_hidden_up_to_a_silhouette_is_not_seen_beyond_it() {
     let mut drum = borders::drum(1.5, 0.7);
@@ -70,8 +70,8 @@ fn a_face_hidden_up_to_a_silhouette_is_not_seen_beyond_it() {
     }
 }
 
-/// Nothing says which side of an open shell's face is its front. The end behind was drawn beyond the silhouette, by as much
-/// as a scan line is off, where its normal looked at the viewer.
+/// An open shell's face has no known front. The end behind must not be drawn beyond the silhouette where its normal
+/// points to the viewer.
 #[test]
 fn nor_where_an_open_shell_s_normals_look_inwards() {
     let mut drum = borders::drum(1.5, 0.7);
@@ -82,8 +82,8 @@ fn nor_where_an_open_shell_s_normals_look_inwards() {
     }
 }
 
-/// Both silhouettes are drawn inside of what they are, by less than the tolerance, and pixels' centres lie where they
-/// meet: no crack, but the background shows.
+/// Both silhouettes are drawn narrower than they are, by less than the tolerance, and pixels' centres lie where they
+/// meet: no crack, but background is visible.
 #[test]
 fn no_background_where_two_silhouettes_meet() {
     let size = (161, 121); // its middle column's centre is at x = 0
@@ -103,7 +103,7 @@ fn no_background_where_two_silhouettes_meet() {
     assert_silent(renderer);
 }
 
-/// Continued beyond the pole, the face turned over: pixels there were taken for its back, and shown another face's.
+/// Beyond a pole, a continued face folds over: pixels there must not count as its back.
 #[test]
 fn a_pole_is_not_taken_for_the_face_s_back() {
     let model = borders::seamed_ball();
@@ -112,7 +112,7 @@ fn a_pole_is_not_taken_for_the_face_s_back() {
     for k in 0..12 {
         let tilt = DVec3::new(0.05 * f64::from(k), 0.02 * f64::from(k % 5), 1.0);
         let mut camera = Camera::around(model.control_bounds(), tilt, DVec3::Y, 35f64.to_radians(), SIZE);
-        // nearer, so that the picture holds no outline
+        // so near that the picture contains no outline
         camera.projection = Projection::Perspective { fov_y: 12f64.to_radians() };
         let picture = render(&mut renderer, &camera);
         assert_eq!(picture.stats.gap_candidates, 0, "view {k}");
@@ -122,7 +122,7 @@ fn a_pole_is_not_taken_for_the_face_s_back() {
     assert_silent(renderer);
 }
 
-/// A bar that hides a neighbour says nothing of where the drum ends.
+/// A bar that hides a neighbour is no evidence for the drum's end.
 #[test]
 fn the_floor_is_not_seen_through_a_gap_beside_a_bar() {
     keeps_the_promise(&borders::barred(), 60..100);

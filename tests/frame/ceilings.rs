@@ -42,7 +42,7 @@ fn several_rows_of_workgroups_draw_the_same() {
         let mut whole = watched_with(&model, settings);
         let mut in_rows = limited(FEW_GROUPS);
         in_rows.upload_with(&model, settings).unwrap();
-        // the second picture reuses what the first one found to be hidden
+        // the second picture uses the first one's occlusion test
         for nth in 0..2 {
             let (a, b) = (draw(&mut whole, &camera), draw(&mut in_rows, &camera));
             assert!(a.face.iter().any(|face| *face != 0), "{name} shows nothing");
@@ -93,7 +93,7 @@ fn five_million_patches() {
     assert_eq!(picture.stats.patches, 5_100_001);
     let mut alone = watched_with(&one, SceneSettings::default());
     assert_identical(&picture, &draw(&mut alone, &camera), "alone");
-    // all of it from afar
+    // the whole model from afar
     let whole = perspective(&model, (320, 240));
     assert!(draw(&mut renderer, &whole).face.contains(&2), "nothing is seen of the sheets");
     [renderer, alone].into_iter().for_each(assert_silent);

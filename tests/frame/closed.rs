@@ -1,5 +1,5 @@
-//! Closed surfaces without trims from many sides: nothing behind them shows through where their patches and faces
-//! meet. What is there is the reference's to say: a judgement of every pixel would do, but this way the views can be many.
+//! Closed surfaces without trims from many sides: nothing behind them is visible where their patches and faces meet.
+//! The reference decides what is there. Judging every pixel would also work, but takes too long for many views.
 
 use crate::support::{assert_silent, render, watched};
 use crate::{cages, shapes};
@@ -10,7 +10,7 @@ use selvedge_check::Tracer;
 
 const SIZE: (u32, u32) = (160, 120);
 
-/// Views of each surface: `SELVEDGE_VIEWS`, else 24.
+/// Number of views of each surface: `SELVEDGE_VIEWS`, or 24.
 fn views() -> u32 {
     std::env::var("SELVEDGE_VIEWS").map_or(24, |n| n.parse().expect("SELVEDGE_VIEWS is a number"))
 }
@@ -22,8 +22,7 @@ fn view(model: &Model, k: u32, n: u32) -> Camera {
     Camera { up: DVec3::new(0.3, 0.5, 0.7), ..Camera::around(model.control_bounds(), from, DVec3::Z, 0.6, SIZE) }
 }
 
-/// Pixels that may look through the surface: what they show is the background, or lies behind what is shown on both
-/// sides of them.
+/// Pixels that may show a point behind the surface: background, or deeper than the pixels on both sides.
 fn suspects(picture: &Picture, slack: f32) -> Vec<(u32, u32)> {
     let depth = |x: u32, y: u32| picture.depth[(y * SIZE.0 + x) as usize];
     let behind = |x: u32, y: u32| {
@@ -35,7 +34,8 @@ fn suspects(picture: &Picture, slack: f32) -> Vec<(u32, u32)> {
     all.filter(|&(x, y)| depth(x, y).is_infinite() || behind(x, y)).collect()
 }
 
-/// Every view of the model; pixels that show what lies behind its surface, and how many show it.
+/// Draws every view of the model; returns pixels that show something behind its surface, and the number of pixels that
+/// show it.
 fn cracks(name: &str, model: &Model) -> (Vec<String>, usize) {
     let tracer = Tracer::new(model);
     let mut renderer = watched(model);
@@ -50,7 +50,7 @@ fn cracks(name: &str, model: &Model) -> (Vec<String>, usize) {
             let nearer = |(dx, dy): (f64, f64)| {
                 tracer.first(&camera, DVec2::new(x + dx, y + dy)).is_some_and(|hit| hit.depth < shown - slack)
             };
-            // corners and centre: within half a pixel of the outline anything is right
+            // corners and centre: within half a pixel of the outline, either is right
             if [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (0.5, 0.5)].into_iter().all(nearer) {
                 wrong.push(format!("{name}, view {k}: pixel {x}, {y} shows what is {shown} away"));
             }
@@ -78,7 +78,7 @@ fn nothing_shows_through_one_face() {
     nothing_shows_through([("sphere", &sphere), ("torus", &torus)]);
 }
 
-/// Between faces that share their sides, one to one and in halves.
+/// Between faces that share sides, one to one and in halves.
 #[test]
 fn nothing_shows_through_faces_that_share_sides() {
     let closed = cages::all();

@@ -9,7 +9,7 @@ use selvedge::model::{Camera, Model, Part, Primitive, Solid};
 use selvedge::picture::{FrameSettings, Outputs, SceneSettings, TrimWay};
 use selvedge_check::{JudgeOptions, Tracer, judge};
 
-/// The exact reference takes its time for splines among Boolean solids.
+/// Small, because the exact reference is slow for splines among Boolean solids.
 const SIZE: (u32, u32) = (72, 48);
 
 /// The solid of an expression.
@@ -17,13 +17,13 @@ fn volume(text: &str, primitives: Vec<Primitive>) -> Solid {
     solids::solid(text, primitives).solids.remove(0)
 }
 
-/// The model within the volume, of a size that fits the model.
+/// The model within the volume, scaled to the model.
 fn trimmed(mut model: Model, volume: &Solid) -> Model {
     model.trim_by(volume).unwrap();
     model
 }
 
-/// A volume grown to a model's box: written for one that reaches from -1 to 1.
+/// Scales a volume to a model's box; the expression is for a box from -1 to 1.
 fn around(model: &Model, text: &str, primitives: Vec<Primitive>) -> Solid {
     let bounds = model.control_bounds();
     let size = (bounds.max - bounds.min).max_element() * 0.5;
@@ -31,7 +31,7 @@ fn around(model: &Model, text: &str, primitives: Vec<Primitive>) -> Solid {
     volume(text, primitives.into_iter().map(|p| moved(to, p)).collect())
 }
 
-/// Every pixel is right from two eyes that see all of `whole`, and something is seen and something is not.
+/// Every pixel is right from two eyes that see all of `whole`; some pixels are covered and some are not.
 fn right(renderer: &mut HeadlessRenderer, name: &str, whole: &Model, model: &Model, way: TrimWay) -> Vec<String> {
     let views = [("perspective", perspective(whole, SIZE)), ("parallel", orthographic(whole, SIZE))];
     renderer.upload(whole).unwrap();
@@ -54,7 +54,7 @@ fn right(renderer: &mut HeadlessRenderer, name: &str, whole: &Model, model: &Mod
     wrong
 }
 
-/// Faces without trims, faces with, meshes, and several instances, each within two of four volumes.
+/// Untrimmed faces, trimmed faces, meshes, and several instances, each within two of four volumes.
 #[test]
 fn volumes_trim_faces_and_meshes() {
     let models = [
@@ -87,7 +87,7 @@ fn volumes_trim_faces_and_meshes() {
         for n in 0..2 {
             let (by, text, primitives) = &volumes[(k + n) % volumes.len()];
             let cut = trimmed(model.clone(), &around(model, text, primitives.clone()));
-            // each volume meets both ways to trim
+            // each volume is used with both ways to trim
             let way = if n == 0 { TrimWay::Table } else { TrimWay::Exact };
             wrong.extend(right(&mut renderer, &format!("{name} {by}"), model, &cut, way));
         }
@@ -96,7 +96,7 @@ fn volumes_trim_faces_and_meshes() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// From above, half a sphere is half a disc, to the pixel: neither the reference nor the renderer is asked.
+/// From above, half a sphere is half a disc, to the pixel: computed without the reference and the renderer.
 #[test]
 fn half_a_sphere_is_half_a_disc() {
     let whole = shapes::sphere();
@@ -107,7 +107,7 @@ fn half_a_sphere_is_half_a_disc() {
     for (k, &face) in picture.face.iter().enumerate() {
         let centre = glam::DVec2::new((k % 200) as f64 + 0.5, (k / 200) as f64 + 0.5);
         let (p, _) = camera.ray(centre);
-        let pixel = 1.5 * whole.control_bounds().diagonal() / 150.0; // half of one from the rim, by a corner
+        let pixel = 1.5 * whole.control_bounds().diagonal() / 150.0; // half a pixel from the rim, to a corner
         let r = p.x.hypot(p.y);
         if (r - SPHERE_RADIUS).abs() > pixel && p.x.abs() > 1e-3 {
             assert_eq!(face != 0, p.x < 0.0 && r < SPHERE_RADIUS, "pixel {centre}");
@@ -116,7 +116,7 @@ fn half_a_sphere_is_half_a_disc() {
     assert_silent(renderer);
 }
 
-/// A face that lies in the volume's boundary stays, though every point of it is a matter of rounding.
+/// A face in the volume's boundary stays, although rounding decides each of its points.
 #[test]
 fn faces_in_the_boundary_stay() {
     let mut renderer = watched(&Model::default());
@@ -144,7 +144,7 @@ fn volumes_trim_solids_by_volume() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What the volume cannot be, and a volume that is everywhere or nowhere.
+/// Volumes that are not allowed, and volumes that are everywhere or nowhere.
 #[test]
 fn volumes_need_equations() {
     let cube = shapes::cube();
@@ -162,7 +162,7 @@ fn volumes_need_equations() {
     assert_silent(renderer);
 }
 
-/// A section of each kind of thing: closed parts and solids get caps, shells are open.
+/// Sections of all kinds of things: closed parts and solids get caps, shells are open.
 #[test]
 fn sections_have_caps() {
     let tube = solids::solid("A-B", vec![post(2.0, -1.0, 4.0), post(1.2, -2.0, 6.0)]);
@@ -200,7 +200,7 @@ fn sections_have_caps() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Looked at straight, a section of a sphere is a disc of known radius, depth and normal.
+/// Seen along its normal, a section of a sphere is a disc of known radius, depth and normal.
 #[test]
 fn the_cap_of_a_sphere_is_a_disc() {
     let whole = shapes::sphere();
@@ -231,7 +231,7 @@ fn the_cap_of_a_sphere_is_a_disc() {
     assert_silent(renderer);
 }
 
-/// What is left of a section looks as it did: faces that have colours keep them.
+/// The rest of a section looks as before: faces with colours keep them.
 #[test]
 fn sections_keep_the_colours_of_faces() {
     let mut whole = shapes::cube();

@@ -8,10 +8,10 @@ use selvedge::model::Camera;
 /// Size of the part's features.
 const FEATURE: f64 = 1e-3;
 
-/// The part's control points are relative to its centre and the view is composed in double precision.
-/// What remains at 1e6 is the model's own rounding there, 1e6 * 2^-53 = 1.1e-10 or 1e-7 of the feature,
-/// and a few times that in composing the view: 1e-4 pixels, so only a pixel whose centre lies on a
-/// border may change hands. Depth, 4e-3 from the eye, agrees to single precision there.
+/// The part's control points are relative to its centre, and the view is composed in double precision. At 1e6 the
+/// model's own rounding remains, 1e6 * 2^-53 = 1.1e-10 or 1e-7 of the feature, and a few times that from composing the
+/// view: 1e-4 pixels. So only a pixel whose centre lies on a border may change its face. Depth, 4e-3 from the eye,
+/// agrees to single precision.
 #[test]
 fn a_part_at_a_million_looks_as_at_the_origin() {
     let size = (320, 240);

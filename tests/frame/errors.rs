@@ -1,4 +1,4 @@
-//! What cannot be drawn is refused by an error, and the renderer goes on.
+//! Models that cannot be drawn are rejected with an error, and the renderer still works.
 
 use crate::shapes;
 use crate::support::{assert_identical, assert_silent, perspective, render, watched};
@@ -99,7 +99,7 @@ fn a_model_that_is_none() {
             Err(error) => panic!("{sentence}: another error: {error}"),
             Ok(()) => panic!("{sentence}: uploaded"),
         }
-        assert!(!model.bounds().diagonal().is_nan(), "{sentence}"); // nor does a host that frames it first panic
+        assert!(!model.bounds().diagonal().is_nan(), "{sentence}"); // framing it must not panic, either
     }
     assert_identical(&before, &render(&mut renderer, &camera), "after errors");
     assert_silent(renderer);

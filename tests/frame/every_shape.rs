@@ -1,5 +1,5 @@
-//! Each shape at several sizes, in both projections: not a word from the validation layers, and the
-//! same picture whenever it is asked for.
+//! Each shape at several sizes, in both projections: no message of the validation layers, and the same picture every
+//! time.
 
 use crate::shapes;
 use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, watched};
@@ -13,7 +13,7 @@ fn check(name: &str) {
             let picture = render(&mut renderer, &camera);
             assert_eq!(picture.stats.clamps, 0, "{name} at {size:?}");
             let covered = picture.face.iter().filter(|&&face| face != 0).count();
-            // the only pixel of the smallest picture may look through a hole
+            // the only pixel of the smallest picture may show a hole
             if size != (1, 1) {
                 assert_eq!(covered > 0, !shape.model.parts.is_empty(), "{name} at {size:?} covers {covered} pixels");
             }

@@ -1,5 +1,5 @@
-//! Surfaces and views in which numbers get out of hand, against the exact reference. Others of their kind: `distance`
-//! (far from the origin), `zoom` (parameters that single precision does not resolve), `room` (factors above 64).
+//! Surfaces and views with extreme numbers, against the exact reference. Others of this kind: `distance` (far from the
+//! origin), `zoom` (parameters that single precision does not resolve), `room` (factors above 64).
 
 use crate::shapes::{self, one};
 use crate::support::{assert_silent, render, watched};
@@ -28,7 +28,7 @@ fn view(eye: DVec3, target: DVec3, near: f64) -> Camera {
     Camera { eye, target, up: DVec3::new(0.1, 0.2, 1.0), projection, depth_range: (near, 100.0), size: SIZE }
 }
 
-/// Every pixel right, every number one, nothing clamped; the picture.
+/// Every pixel is right, every number finite, nothing clamped; returns the picture.
 fn draw(model: &Model, camera: &Camera) -> Picture {
     let mut renderer = watched(model);
     let picture = render(&mut renderer, camera);
@@ -48,7 +48,7 @@ fn covered(picture: &Picture) -> usize {
     picture.face.iter().filter(|id| **id != 0).count()
 }
 
-/// The middle pixels look at the pole: the normal there is the axis, though `S_u` vanishes.
+/// The middle pixels show the pole: the normal there is the axis, although `S_u` vanishes.
 #[test]
 fn a_pole_seen_from_above() {
     let picture = draw(&shapes::sphere(), &view(DVec3::new(0.0, 0.0, 7.0), DVec3::ZERO, 0.5));
@@ -56,7 +56,7 @@ fn a_pole_seen_from_above() {
     assert!(middle[2] > 0.9999, "{middle:?}");
 }
 
-/// All control points of one side coincide, and no normal is defined there.
+/// All control points of one side coincide, and the normal there is undefined.
 #[test]
 fn the_apex_of_a_cone() {
     let rim = |i: usize| [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0)][i];
@@ -87,7 +87,7 @@ fn a_folded_patch() {
     assert!(covered(&picture) > 1500);
 }
 
-/// Two triangles, whatever the degree: bicubic, and flat with even control points.
+/// Two triangles for any degree: bicubic, and flat with even control points.
 #[test]
 fn a_flat_patch_is_two_triangles() {
     let point = |i: usize, j: usize| DVec4::new(i as f64, j as f64, 0.5 * i as f64, 1.0);
@@ -126,7 +126,7 @@ fn the_eye_inside_the_hull() {
     assert_eq!(covered(&inside), (SIZE.0 * SIZE.1) as usize, "nothing but the sphere around the eye");
 }
 
-/// The point runs through most of the patch within a thousandth of its parameters: equal segments would be too many.
+/// Most of the patch lies within a thousandth of its parameters: equal segments would be too many.
 #[test]
 fn weights_of_a_thousand_to_one() {
     for weights in [[1.0, 1e3, 1.0], [1.0, 1e-3, 1.0]] {
@@ -161,8 +161,7 @@ fn two_hundred_to_one() {
     assert!(covered(&side) > 50 && covered(&along) > 1000, "{} and {}", covered(&side), covered(&along));
 }
 
-/// Thirty by thirty patches within a few pixels, and placed a hundred times: most are left out, and no pixel
-/// is wrong.
+/// Thirty by thirty patches within a few pixels, and placed a hundred times: most are left out, and no pixel is wrong.
 #[test]
 fn many_patches_below_a_pixel() {
     let n = 30;
@@ -183,8 +182,9 @@ fn many_patches_below_a_pixel() {
     assert!(covered(&picture) > 1000);
 }
 
-/// A thousand plates with a hole, a fifth of a pixel wide: those whose skirts reach no pixel's centre are left out, and about as
-/// many pixels show one as have one at their centres: what borders may be off by is much of such a plate.
+/// A thousand plates with a hole, each a fifth of a pixel wide. Plates whose skirts reach no pixel's centre are left
+/// out. About as many pixels show a plate as have one at their centres; not exactly as many, since the tolerance of
+/// borders is much of such a plate.
 #[test]
 fn many_cut_patches_below_a_pixel() {
     let plate = shapes::plate();

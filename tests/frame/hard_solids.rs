@@ -1,5 +1,5 @@
-//! Boolean solids that break other renderers, every pixel against the exact reference: what `solids` and `operands`
-//! have no shape for.
+//! Boolean solids that are hard for other renderers, every pixel against the exact reference: cases beyond `solids` and
+//! `operands`.
 
 use crate::cages;
 use crate::shapes::operands;
@@ -79,7 +79,7 @@ fn prism(n: u32) -> Mesh {
     Mesh::new(1, positions, (0..n).flat_map(side).chain(caps).collect(), vec![]).unwrap()
 }
 
-/// The same round thing in facets, turned by half of one: ends coincide, sides cross in slivers.
+/// The same cylinder in facets, turned by half a facet: ends coincide, sides cross in slivers.
 #[test]
 fn the_same_cylinder_in_other_facets() {
     let one = || operands::mesh(prism(24));
@@ -97,7 +97,7 @@ fn the_same_cylinder_in_other_facets() {
     right_at((96, 64), cases, false);
 }
 
-/// Subdivision shells, through their limit patches, which share their sides: every ray that enters one leaves it.
+/// Subdivision shells as operands, by their limit patches, which share sides: every ray that enters one leaves it.
 #[test]
 fn a_subdivision_shell_is_an_operand() {
     for closed in [cages::a_box(), cages::tips_of_5()] {
@@ -124,8 +124,8 @@ fn a_subdivision_shell_is_an_operand() {
     }
 }
 
-/// Whether tiles leave leaves out or see them all makes no difference: the same solid from primitives with a box,
-/// and from the very same quadrics without one.
+/// Tiles with reduced lists and tiles with all leaves give the same picture: the same solid from primitives with a box,
+/// and from the same quadrics without one.
 #[test]
 fn leaving_out_what_a_tile_does_not_see_changes_nothing() {
     let row = |boxed: bool| {

@@ -1,8 +1,7 @@
 //! The hard cases of trimming through whole frames, by every way to trim, at several zooms.
 //!
-//! Each case is a plane of its own, the unit square of its (u, v), and the cameras look straight at it: a
-//! pixel's centre is a point whose answer the exact loops know. A pixel may differ only where a loop
-//! passes within the tolerance of its centre.
+//! Each case is a plane, the unit square of its (u, v), and the cameras look straight at it: for a pixel's centre, the
+//! exact loops give the answer. A pixel may differ only if a loop passes within the tolerance of its centre.
 
 use crate::shapes;
 use crate::support::{assert_silent, watched_with};
@@ -28,7 +27,7 @@ fn square(x: f64, id: u32, case: &trims::TrimCase) -> Face {
     Face { id, kind: SurfaceKind::Plane, surface, loops, same_sense: true, colour: None }
 }
 
-/// One part a case, so that each is near its own origin.
+/// One part for each case, so that each is near its own origin.
 fn model(cases: &[trims::TrimCase]) -> Model {
     let mut all = Model::default();
     for (i, case) in cases.iter().enumerate() {
@@ -58,7 +57,7 @@ fn draw(renderer: &mut HeadlessRenderer, camera: &Camera) -> Picture {
     renderer.render(camera, &FrameSettings::default(), outputs).unwrap()
 }
 
-/// Wrong pixels whose centre is farther than the tolerance from every loop, and pixels judged.
+/// The number of wrong pixels whose centre is farther than the tolerance from every loop, and of judged pixels.
 fn judge(picture: &Picture, case: &trims::TrimCase, id: u32, (focus, zoom): (DVec2, f64)) -> (Vec<DVec2>, usize) {
     let index = LoopIndex::new(&case.loops);
     let centre = if zoom == 1.0 { DVec2::splat(0.5) } else { focus };
@@ -69,7 +68,7 @@ fn judge(picture: &Picture, case: &trims::TrimCase, id: u32, (focus, zoom): (DVe
         for x in 0..SIZE {
             let off = DVec2::new(f64::from(x) + 0.5, f64::from(SIZE - y) - 0.5) - 0.5 * f64::from(SIZE);
             let p = centre + off * pixel;
-            // the border of the surface is a border of the picture too
+            // the surface's border is a border in the picture, too
             let beside = p.min(DVec2::ONE - p).min_element();
             if index.distance(p, 1.0) <= tolerance || beside.abs() <= tolerance {
                 continue;
@@ -89,7 +88,7 @@ fn every_case(way: TrimWay, zooms: &[f64]) {
     let cases = trims::all();
     let mut renderer = watched_with(&model(&cases), SceneSettings { trim: way, ..Default::default() });
     for (i, case) in cases.iter().enumerate() {
-        // what the judge knows is what was stated by hand
+        // the judge agrees with the values stated by hand
         let index = LoopIndex::new(&case.loops);
         for &(u, v, winding) in case.rows.iter().filter(|r| index.distance(DVec2::new(r.0, r.1), 1.0) > 1e-6) {
             assert_eq!(index.winding(DVec2::new(u, v)), winding, "{} at ({u}, {v})", case.name);
@@ -106,7 +105,7 @@ fn every_case(way: TrimWay, zooms: &[f64]) {
     assert_silent(renderer);
 }
 
-/// A thousand times closer a strip would need more than its 65,536 rows, which the frame tells as a clamp, and the
+/// A thousand times closer a strip would need more than its 65,536 rows, which the frame counts as a clamp, and the
 /// comb more intercepts than a storage buffer of 128 MiB holds, which is an error.
 #[test]
 fn by_table() {
@@ -118,7 +117,7 @@ fn by_exact_arcs() {
     every_case(TrimWay::Exact, &ZOOMS);
 }
 
-/// The judge sees a case drawn as another.
+/// The judge reports a case that is drawn as another.
 #[test]
 fn a_wrong_case_is_seen() {
     let cases = trims::all();
@@ -131,8 +130,8 @@ fn a_wrong_case_is_seen() {
     assert_silent(renderer);
 }
 
-/// 13: a first frame, a jump of a hundred times closer, and a face seen again after it was out of the picture
-/// are each what a renderer draws that never saw anything else.
+/// 13: a first frame, a jump of a hundred times closer, and a face that returns to the picture are drawn as by a
+/// renderer that has drawn nothing else.
 #[test]
 fn no_frame_depends_on_the_one_before() {
     let cases = trims::all();
@@ -155,11 +154,11 @@ fn no_frame_depends_on_the_one_before() {
     }
 }
 
-/// 14: a loop edited every frame gives, bit for bit, what a fresh upload of the edited model gives; patches come
+/// 14: a loop edited in every frame gives, bit for bit, the picture of a new upload of the edited model; patches come
 /// under the loop and leave it.
 #[test]
 fn an_edited_loop_is_drawn_as_if_uploaded_afresh() {
-    // what one loop of twelve numbers takes, and what an exactly trimmed face of two loops does
+    // bytes of one loop of twelve numbers, and of an exactly trimmed face of two loops
     edited_as_if_uploaded_afresh(TrimWay::Table, 4096);
     edited_as_if_uploaded_afresh(TrimWay::Exact, 16_384);
 }
@@ -200,7 +199,7 @@ fn edited_as_if_uploaded_afresh(trim: TrimWay, most_bytes: u64) {
     assert_silent(edited);
 }
 
-/// What an edit sends hangs on its own face: beside others with many loops the same bytes go.
+/// The cost of an edit depends on its own face: among others with many loops, it sends the same bytes.
 #[test]
 fn an_edit_costs_what_its_face_costs() {
     let named = |name: &&str| trims::all().into_iter().find(|case| case.name == *name).unwrap();
@@ -223,7 +222,7 @@ fn an_edit_costs_what_its_face_costs() {
     }
 }
 
-/// What cannot be edited is told, and leaves the scene as it was.
+/// Edits that are not possible are errors, and leave the scene unchanged.
 #[test]
 fn edits_that_cannot_be() {
     use selvedge::renderer::EditError;

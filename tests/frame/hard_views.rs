@@ -1,5 +1,5 @@
-//! Hard cases of Boolean solids in views whose every pixel is known beforehand, by all ways to draw: gaps, shells and
-//! layers that are told by counting rows and columns.
+//! Hard cases of Boolean solids in views whose pixels are all known beforehand, by all ways to draw: the size of gaps,
+//! shells and layers follows from counting rows and columns.
 
 use crate::shapes::solids::{self, at, ball, below, block, moved, post, ring, turned};
 use crate::solids::{faults, right_at};
@@ -11,13 +11,13 @@ use selvedge::model::{Bounds, Camera, Model, Primitive, Projection, Solid, Surfa
 use selvedge::picture::{Picture, Samples, SceneSettings, SolidWay};
 use selvedge_check::Tracer;
 
-/// A parallel view along y, `height` high, whose middle is `target`.
+/// A parallel view along y of height `height`, with `target` in the middle.
 fn along_y(target: DVec3, height: f64, size: (u32, u32)) -> Camera {
     let projection = Projection::Orthographic { height };
     Camera { eye: target - DVec3::Y * 3.0, target, up: DVec3::Z, projection, depth_range: (1.0, 10.0), size }
 }
 
-/// By every way each pixel (column, row) shows the face that is expected, twice.
+/// With every way, each pixel (column, row) shows the expected face, twice.
 fn shows(
     renderer: &mut HeadlessRenderer,
     name: &str,
@@ -51,9 +51,9 @@ fn gaps_stay_open() {
     assert_silent(renderer);
 }
 
-/// Half a hollow ball, its rim from above: the shell is eight columns wide, whatever it measures. Below the share of the
-/// model that its faces may be apart and yet be one it is nothing: for rounded coordinates 4e-6, for others as
-/// `Model::coincident` says.
+/// Half a hollow ball, its rim from above: the shell is eight columns wide at any scale. A shell thinner than the
+/// distance at which faces count as one is empty: a share of 4e-6 of the model for rounded coordinates, else that of
+/// `Model::coincident`.
 #[test]
 fn shells_are_as_thick_as_they_are() {
     let mut renderer = watched(&Model::default());
@@ -77,8 +77,8 @@ fn shells_are_as_thick_as_they_are() {
     assert_silent(renderer);
 }
 
-/// Rays of the middle row lie in the face that two cubes share: they are within exactly one of them, so the union has no
-/// slit. Which one depends on who states the plane first: it is not within that one.
+/// Rays of the middle row lie in the face that two cubes share: they are within exactly one cube, so the union has no
+/// slit. The order of the expression decides which: they are not within the cube that states the plane first.
 #[test]
 fn rays_in_a_face_are_on_one_side_of_it() {
     let mut renderer = watched(&Model::default());
@@ -96,19 +96,19 @@ fn rays_in_a_face_are_on_one_side_of_it() {
     assert_silent(renderer);
 }
 
-/// How the cut through a row of balls is said.
+/// The place of the cut in the expression for a row of balls.
 #[derive(Clone, Copy, Debug)]
 enum Cut {
-    /// Asked before the balls.
+    /// Before the balls.
     First,
-    /// After them.
+    /// After the balls.
     Last,
-    /// After them, as the union of what is kept and of a ball that is nowhere: out of the one a point may be in the other,
-    /// so no gate is shut.
+    /// After the balls, as the union of a bounding part and an empty ball: a point outside the one may be inside the
+    /// other, so no gate is shut.
     OfTwo,
 }
 
-/// So many balls in a row, all but the last of them cut away.
+/// A row of balls, all but the last of them cut away.
 fn row_of_balls(count: u32, cut: Cut) -> Model {
     let mut all: Vec<Primitive> = (0..count).map(|k| ball(0.4, f64::from(k))).collect();
     all.push(below(DVec3::NEG_X, 1.5 - f64::from(count)));
@@ -128,8 +128,8 @@ fn row_of_balls(count: u32, cut: Cut) -> Model {
     Model { solids: vec![Solid::new(all, b.finish(root).unwrap()).unwrap()], ..Model::default() }
 }
 
-/// 255 and more faces lie before the one that is seen. Where nothing says beforehand that none of them counts, each is an
-/// event of its ray, and a driver may end such a ray's loop: it goes on in another segment. Tiles see hundreds of leaves.
+/// At least 255 faces lie before the visible one. If no gate excludes them, each is an event of its ray, and a driver
+/// may end such a ray's loop: it resumes in another segment. Tiles show hundreds of leaves.
 #[test]
 fn what_lies_behind_255_faces_is_seen() {
     let mut renderer = watched(&Model::default());
@@ -153,7 +153,7 @@ fn what_lies_behind_255_faces_is_seen() {
         all_are(&picture, count, &what);
         assert_identical(&picture, &render(&mut renderer, &view(count)), &what);
         let in_segments = picture.stats.solid_bytes.iter().any(|list| list.name == "resume points");
-        // such a driver ends loops; where a gate is shut none is long
+        // such a driver ends loops; with a shut gate no loop is long
         if picture.stats.device.contains("llvmpipe") {
             assert_eq!(in_segments, matches!(cut, Cut::OfTwo), "{what}");
         }
@@ -188,13 +188,13 @@ fn what_lies_behind_255_faces_is_seen() {
     assert_silent(renderer);
 }
 
-/// Balanced trees of sums of products of sums: those that need most labels.
+/// Balanced trees of sums of products of sums, which need the most labels.
 #[test]
 fn trees_that_need_many_labels() {
     let tree = |n: u32| {
         let mut b = Builder::new();
         let mut k = 0f64;
-        // multiples of the golden ratio: spread evenly, and none like another
+        // multiples of the golden ratio: evenly spread and all different
         let mut place = || {
             k += 1.0;
             (k * 0.618_033_988_749_895).fract() * 0.5 - 0.25
@@ -211,7 +211,7 @@ fn trees_that_need_many_labels() {
         Model { solids: vec![Solid::new(all, tree).unwrap()], ..Model::default() }
     };
     right_at((48, 32), vec![("15 leaves", tree(15)), ("46 leaves", tree(46))], false);
-    // of 255, each of hundreds of layers asks all: not by layers
+    // 255 leaves in hundreds of layers, each of which tests all of them: not by layers
     let model = tree(255);
     let (tracer, camera) = (Tracer::new(&model), perspective(&model, (48, 32)));
     let mut renderer = watched(&model);
@@ -222,7 +222,7 @@ fn trees_that_need_many_labels() {
     assert_silent(renderer);
 }
 
-/// The solid and the eye moved together: the same picture, but for pixels at edges.
+/// The solid and the eye move together: the picture stays, except for pixels at edges.
 #[test]
 fn rigid_motions_move_the_picture() {
     let still = solids::solid(

@@ -1,5 +1,5 @@
-//! Patches that lie behind others are left out, and no picture shows it: whatever was seen before, every image is the
-//! same bit for bit as in a frame that draws everything.
+//! Hidden patches are left out, which changes no picture: after any earlier view, every image is the same, bit for bit,
+//! as in a frame that draws everything.
 
 use crate::shapes;
 use crate::support::{assert_identical, assert_silent, render, watched_with};
@@ -10,7 +10,7 @@ use selvedge::picture::{Picture, SceneSettings, TrimWay};
 
 const SIZE: (u32, u32) = (200, 150);
 
-/// So far that none meets another: where two are at the same depth to the bit, the one that is drawn first is seen.
+/// So far apart that no two meet: at exactly equal depths, the first drawn would be visible.
 const APART: f64 = 7.0;
 
 /// Plates with a hole, cubes, cylinders beside a plate, waves and ripples, in rows one behind the other.
@@ -35,7 +35,7 @@ fn from(model: &Model, direction: DVec3) -> Camera {
     Camera::around(model.control_bounds(), direction, DVec3::Z, 35f64.to_radians(), SIZE)
 }
 
-/// The picture of a renderer that knows nothing of any other.
+/// The picture of a renderer that has drawn nothing else.
 fn alone(renderer: &mut HeadlessRenderer, model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
     renderer.upload_with(model, settings).unwrap();
     let picture = render(renderer, camera);
@@ -43,7 +43,7 @@ fn alone(renderer: &mut HeadlessRenderer, model: &Model, settings: SceneSettings
     picture
 }
 
-/// Views one after the other, each twice; the most patches that were left out at a view's first and second picture.
+/// Views one after the other, each twice; the most patches left out at a view's first and second picture.
 fn same_as_alone(model: &Model, trim: TrimWay, views: &[Camera]) -> [u64; 2] {
     let settings = SceneSettings { trim, ..SceneSettings::default() };
     let mut renderer = watched_with(model, settings);
@@ -66,7 +66,7 @@ fn same_as_alone(model: &Model, trim: TrimWay, views: &[Camera]) -> [u64; 2] {
 #[test]
 fn nothing_shows_that_patches_are_left_out() {
     let model = crowd();
-    // around the rows, in small steps and in leaps; in parallel; and from among them
+    // around the rows, in small steps and in jumps; in parallel; and from among them
     let turned = |angle: f64| DVec3::new(angle.sin(), -angle.cos(), 0.25);
     let mut views: Vec<Camera> = [0.0, 0.05, 1.6, 3.0, 3.05].map(|angle| from(&model, turned(angle))).to_vec();
     let parallel = Camera { projection: Projection::Orthographic { height: 30.0 }, ..views[0] };
@@ -79,11 +79,11 @@ fn nothing_shows_that_patches_are_left_out() {
     }
 }
 
-/// What is behind a hole appears in the frame in which the hole comes.
+/// A thing behind a new hole is visible in the frame of the edit.
 #[test]
 fn an_edit_shows_what_lay_behind() {
     let mut model = shapes::plate();
-    // a plate before many others, which are small and lie behind the border of its hole
+    // a plate before many small others, which lie behind the border of its hole
     let small = DAffine3::from_scale(DVec3::splat(0.04));
     for k in 0..80 {
         let place = DVec3::new(0.3 * f64::from(k % 9) - 1.5, 0.3 * f64::from(k / 9) - 1.5, -1.0);

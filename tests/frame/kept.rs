@@ -1,6 +1,6 @@
-//! A still camera keeps what each pixel sees, and one that turns around the model its trim table. No picture shows it: every
-//! image is the same bit for bit as that of a renderer that has drawn nothing before, and every count as in a frame of all
-//! passes.
+//! A still camera reuses the visibility of each pixel, and one that turns around the model its trim table. This changes
+//! no picture: every image is the same, bit for bit, as that of a renderer that has drawn nothing before, and every
+//! count as in a frame of all passes.
 
 use crate::hidden::crowd;
 use crate::layers::in_glass;
@@ -15,7 +15,7 @@ use selvedge::picture::{
 
 const SIZE: (u32, u32) = (96, 80);
 
-/// Few patches, none of which is left out: plates with a hole, waves, a cube.
+/// Few patches, all of them drawn: plates with a hole, waves, a cube.
 fn few() -> Model {
     let mut model = crowd();
     model.instances = model.instances.into_iter().step_by(9).collect();
@@ -27,7 +27,7 @@ fn from(model: &Model, angle: f64) -> Camera {
     Camera::around(model.control_bounds(), direction, DVec3::Z, 35f64.to_radians(), SIZE)
 }
 
-/// A renderer, and one that begins anew with every picture.
+/// A renderer, and one that starts again for every picture.
 struct Pair {
     scene: SceneSettings,
     viewer: HeadlessRenderer,
@@ -39,7 +39,7 @@ impl Pair {
         Self { scene, viewer: watched_with(model, scene), fresh: watched_with(model, scene) }
     }
 
-    /// The first picture of a view finds what is seen; those that follow come to keep it, and are the same.
+    /// The first picture of a view computes the visibility; later ones reuse it and are the same.
     fn stands(&mut self, model: &Model, camera: &Camera, settings: FrameSettings, what: &str) {
         self.fresh.upload_with(model, self.scene).unwrap();
         let expected = self.fresh.render(camera, &settings, Outputs::ALL).unwrap();
@@ -51,13 +51,13 @@ impl Pair {
         };
         let first = drawn(0, false);
         assert!(!first.stats.reused || first.stats.retries > 0, "{what}: something changed");
-        // where patches may lie behind others, a view is told of them, and then draws once more without
+        // with occlusion culling, a view's test changes its next frame, and the frame after that reuses
         let kept = [1, 2, 3].map(|nth| drawn(nth, false))[2].clone();
         let whole = drawn(4, true);
         let again = drawn(5, false);
         assert_eq!((kept.stats.reused, whole.stats.reused, again.stats.reused), (true, false, true), "{what}");
         let kept_passes: &[&str] = if self.scene.samples == Samples::One { &SEEN_BY } else { &SEEN_BY[..2] };
-        // of samples, tessellation and trim table alone, which a scene without patches has not
+        // with samples, only tessellation and trim table, which a scene without patches does not have
         let has = passes(&whole).iter().any(|pass| kept_passes.contains(pass));
         assert!(has || whole.stats.patches == 0, "{what}: {:?}", passes(&whole));
         for picture in [&kept, &again] {
@@ -72,21 +72,22 @@ impl Pair {
     }
 }
 
-/// Passes that find out what is seen; the first two serve all samples.
+/// Passes that compute the visibility; the first two serve all samples.
 const SEEN_BY: [&str; 7] = ["tessellation", "trim table", "mesh", "solids", "visibility", "occlusion", "gaps"];
 
 fn passes(picture: &Picture) -> Vec<&str> {
     picture.stats.passes.iter().map(|pass| pass.name.as_str()).collect()
 }
 
-/// All that a frame tells but its time, and what was drawn anew.
+/// All statistics of a frame except times and the reuse itself.
 fn counts(picture: &Picture) -> FrameStats {
     let mut stats = picture.stats.clone();
     (stats.passes, stats.reused, stats.triangles) = (Vec::new(), false, 0);
     stats
 }
 
-/// Whether the next picture of a viewer makes a trim table. It is as a fresh renderer draws it, of as many rows.
+/// Whether a viewer's next picture makes a trim table. It equals a new renderer's picture, with the same number of
+/// rows.
 fn makes_a_table(pair: &mut Pair, model: &Model, camera: &Camera, settings: FrameSettings, what: &str) -> bool {
     pair.fresh.upload_with(model, pair.scene).unwrap();
     let expected = pair.fresh.render(camera, &settings, Outputs::ALL).unwrap();
@@ -151,7 +152,7 @@ fn views_from_about_as_far_and_from_near_by_share_a_trim_table() {
     pair.ends();
 }
 
-/// Everything that a view is made of, changed and changed back.
+/// Everything that a view depends on, changed and changed back.
 fn made_anew(model: &Model, trim: TrimWay) {
     let mut pair = Pair::new(model, SceneSettings { trim, ..SceneSettings::default() });
     let settings = FrameSettings::default();
@@ -174,7 +175,7 @@ fn few_patches_are_made_anew() {
     made_anew(&few(), TrimWay::Exact);
 }
 
-/// So many that some may be left out, which takes a view two frames more.
+/// So many patches that occlusion culling delays reuse by two frames.
 #[test]
 fn many_patches_are_made_anew() {
     made_anew(&crowd(), TrimWay::Table);
@@ -198,7 +199,7 @@ fn an_edit_is_seen() {
     }
 }
 
-/// Other models of as many patches, in the same view.
+/// Other models with the same number of patches, in the same view.
 #[test]
 fn another_scene_is_seen() {
     let model = few();
@@ -216,7 +217,7 @@ fn another_scene_is_seen() {
     pair.ends();
 }
 
-/// With so little room for lists that a view takes several bands.
+/// With so little room for lists that a view needs several bands.
 fn in_bands(model: &Model) -> SceneSettings {
     let mut renderer = watched_with(model, SceneSettings::default());
     let camera = from(model, 0.3);
@@ -235,8 +236,8 @@ fn in_bands(model: &Model) -> SceneSettings {
     SceneSettings { solid_budget: Some(all * (8 - part) / 8), ..SceneSettings::default() }
 }
 
-/// What comes after it, with lists and counts of its own: samples, bands, a sun, smooth trims, layers of what is seen
-/// through, marks; operands of splines; every way to draw solids.
+/// Later passes with lists and counts of their own: samples, bands, a sun, smooth trims, transparent layers,
+/// highlights; spline operands; every way to draw solids.
 #[test]
 fn whatever_follows_draws_what_is_kept() {
     let default = SceneSettings::default();

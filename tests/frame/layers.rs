@@ -1,4 +1,4 @@
-//! What is seen through, against the exact reference, every pixel.
+//! Transparent solids against the exact reference, every pixel.
 
 use crate::shapes::operands::{mesh, part};
 use crate::shapes::solids::{ball, block, moved, post, turned};
@@ -12,15 +12,15 @@ use selvedge_check::solids::LayerTracer;
 use selvedge_check::{JudgeOptions, Tracer, judge};
 
 pub const SIZE: (u32, u32) = (160, 120);
-/// Colours of eight bits, one step off: roundings of lit colours and of what is laid over what.
+/// Allowed steps of eight-bit colours: roundings of lit colours and of blending.
 const STEPS: f64 = 1.0;
-/// Rays this far beside the pixel's centre meet other faces: the pixel is at an edge. A ray's direction and a surface's
-/// place are rounded to 1e-7 of a picture 160 pixels wide, so the drawn edge is nearer than a thousandth.
+/// A pixel is at an edge if rays this far beside its centre meet other faces. A ray's direction and a surface's place
+/// are rounded to 1e-7 of a picture 160 pixels wide, so the drawn edge is within a thousandth.
 pub const EDGE_PX: f64 = 0.01;
-/// The same of spline parts, whose silhouettes are drawn up to a twelfth of the tolerance of half a pixel off, and some
+/// The same for spline parts, whose silhouettes may be off by a twelfth of the tolerance of half a pixel, plus
 /// rounding.
 const SPLINE_EDGE_PX: f64 = 0.5 / 12.0 + EDGE_PX;
-/// Most pixels of a picture that may lie at edges, one in so many.
+/// Largest share of a picture's pixels that may lie at edges: one in so many.
 const EDGES: usize = 12;
 
 const GREEN: Colour = [0.1, 0.7, 0.2, 0.3];
@@ -32,7 +32,7 @@ pub fn painted(colour: Colour, p: Primitive) -> Primitive {
     Primitive { colour, ..p }
 }
 
-/// One solid of primitives under an operation.
+/// One solid that combines primitives by an operation.
 fn of(op: Op, all: Vec<Primitive>) -> Solid {
     let mut b = Builder::new();
     let leaves: Vec<u32> = (0..all.len() as u32).map(|p| b.leaf(p)).collect();
@@ -40,7 +40,7 @@ fn of(op: Op, all: Vec<Primitive>) -> Solid {
     Solid::new(all, b.finish(root).unwrap()).unwrap()
 }
 
-/// Solids, whose primitives are numbered in order.
+/// A model of solids whose primitives are numbered in order.
 pub fn model(solids: Vec<Solid>) -> Model {
     let mut id = 0;
     let solids = solids.iter().map(|solid| {
@@ -85,7 +85,7 @@ fn encoded(c: f64) -> f64 {
     255.0 * if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// What a ray meets: which faces, in which order.
+/// The faces that a ray meets, in order.
 fn faces(layers: &LayerTracer, camera: &Camera, pixel: DVec2) -> Vec<(usize, u32, bool)> {
     let (o, d) = camera.ray(pixel);
     let (_, _, forward) = camera.axes();
@@ -98,7 +98,7 @@ pub fn centre(i: usize, size: (u32, u32)) -> DVec2 {
     DVec2::new((i as u32 % size.0) as f64 + 0.5, (i as u32 / size.0) as f64 + 0.5)
 }
 
-/// Sides of a pixel.
+/// The four sides of a pixel.
 pub const AROUND: [DVec2; 4] = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
 
 pub fn is_at_edge(layers: &LayerTracer, camera: &Camera, at: DVec2, far: f64) -> bool {
@@ -106,7 +106,7 @@ pub fn is_at_edge(layers: &LayerTracer, camera: &Camera, at: DVec2, far: f64) ->
     AROUND.iter().any(|d| faces(layers, camera, at + *d * far) != here)
 }
 
-/// Colours of every pixel, but for those at edges; returns how many pixels show something.
+/// Compares the colour of every pixel except those at edges; returns the number of pixels that show something.
 fn assert_colours(model: &Model, camera: &Camera, picture: &Picture, background: Colour, what: &str) -> usize {
     let layers = tracer(model);
     let has_splines = model.solids.iter().flat_map(Solid::primitives).any(|p| matches!(p.shape, Shape::Part(_)));
@@ -125,7 +125,7 @@ fn assert_colours(model: &Model, camera: &Camera, picture: &Picture, background:
         let truth = truly(at);
         let differs = |other: [f64; 4]| truth.iter().zip(other).map(|(t, d)| (t - d).abs()).fold(0.0, f64::max);
         let off = differs(drawn.map(f64::from));
-        // what is that near may as well be seen: another triangle, a face that turns away
+        // so near, another triangle or a face that turns away may be visible instead
         let near = AROUND.map(|d| differs(truly(at + d * edge_px))).into_iter().fold(0.0, f64::max);
         assert!(
             off <= STEPS + near,
@@ -138,13 +138,13 @@ fn assert_colours(model: &Model, camera: &Camera, picture: &Picture, background:
     seen
 }
 
-/// The same as if the faces of clear solids were judged as all others are.
+/// Judges faces of transparent solids like all others.
 fn assert_judged(model: &Model, camera: &Camera, picture: &Picture, what: &str) {
     let j = judge(&Tracer::new(model), camera, &picture.images(), &JudgeOptions::default());
     assert_eq!((j.wrong, j.given_up), (0, 0), "{what}: {:?}", j.mismatches.first());
 }
 
-/// Everything of a scene of solids, in both kinds of view.
+/// All images of scenes of solids, in both projections.
 fn all_right(cases: Vec<(&str, Model)>) {
     right_at(SIZE, cases);
 }
@@ -173,7 +173,7 @@ pub fn in_glass() -> Model {
 #[test]
 fn a_gear_in_a_glass_block_is_seen_through_it() {
     all_right(vec![("gear in glass", in_glass())]);
-    // and of opaque glass nothing is
+    // opaque glass is not transparent
     let camera = perspective(&in_glass(), SIZE);
     let mut model = in_glass();
     let mut renderer = watched(&model);
@@ -187,7 +187,7 @@ fn a_gear_in_a_glass_block_is_seen_through_it() {
     assert_silent(renderer);
 }
 
-/// A file's union of both is no other scene: operands are told apart by what is seen through.
+/// The union of both in a file is not another scene: operands are distinguished by their transparency.
 #[test]
 fn an_operand_of_glass_swallows_nothing() {
     let apart = in_glass();
@@ -275,7 +275,7 @@ fn shells_opacities_and_operations() {
     ]);
 }
 
-/// More items than spans are kept of, and more layers than any count of bits.
+/// More items than stored spans, and more layers than bits in a word.
 #[test]
 fn a_hundred_plates() {
     let plate = |i: u32| {
@@ -285,7 +285,7 @@ fn a_hundred_plates() {
     right_at((48, 36), vec![("plates", model((0..100).map(plate).collect()))]);
 }
 
-/// Operands without equations, of one colour each, for the reference has no colours of faces.
+/// Operands without equations, of one colour each, because the reference has no colours of faces.
 #[test]
 fn meshes_and_spline_parts() {
     let round = || painted(RED, mesh(ball_mesh(3)));
@@ -329,7 +329,7 @@ fn the_near_plane_cuts() {
     assert_silent(renderer);
 }
 
-/// A background that is seen through, too.
+/// With a transparent background, too.
 #[test]
 fn opacity_is_kept() {
     let m = in_glass();
@@ -343,7 +343,7 @@ fn opacity_is_kept() {
     assert_silent(renderer);
 }
 
-/// The mean of four samples, away from edges of any of them.
+/// The mean of four samples, away from edges of each of them.
 #[test]
 fn samples_are_averaged() {
     let m = in_glass();
@@ -374,7 +374,7 @@ fn samples_are_averaged() {
     assert_silent(renderer);
 }
 
-/// The order of solids changes no bit, unless faces of two that look the same way coincide.
+/// The order of solids changes no bit, unless faces of two with the same orientation coincide.
 #[test]
 fn solids_may_be_swapped() {
     let forth = vec![
@@ -397,14 +397,14 @@ fn solids_may_be_swapped() {
     assert_silent(renderer);
 }
 
-/// Closed parts that are painted with glass are seen through; open ones are drawn, and counted.
+/// Closed parts with transparent colours are transparent; open ones are drawn opaque, and counted.
 #[test]
 fn parts_of_glass() {
     let placed = sphere();
     let mut m = model(vec![one(painted(STEEL, ball(0.4, 0.3)))]);
     (m.parts, m.instances) = (placed.parts, placed.instances);
     m.instances[0].colour = Some(RED);
-    // what the reference sees of it is a primitive of that colour
+    // for the reference, the part is a primitive of that colour
     let as_solid = model(vec![m.solids[0].clone(), one(painted(RED, part(sphere())))]);
     let camera = perspective(&m, SIZE);
     let mut renderer = watched(&m);

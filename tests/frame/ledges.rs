@@ -1,11 +1,11 @@
-//! Walls narrower than a pixel one behind the other: what a skirt hides must not be lost.
+//! Walls narrower than a pixel, one behind the other: a skirt hides a face, which must not be lost.
 //!
 //! ```text
 //!            4                  skirt of the nearest wall's back: a quarter of a pixel
 //!   ──────────────── 0.75       above the edge, so before the centre
 //!            3
 //!   ──────────────── 0.31
-//!            2      ∙ centre    no other pixel sees face 2
+//!            2      ∙ centre    no other pixel shows face 2
 //!   ════════════════ 0 ┄┄┄┄┄
 //!            1
 //! ```
@@ -20,9 +20,9 @@ const SIZE: u32 = 12;
 /// The pixel centres' height above whole units.
 const CENTRE: f64 = 0.17;
 
-/// Each row has the wall that is at its centres' height.
+/// Each row shows the wall at the height of its centres.
 #[test]
-fn a_wall_behind_a_ring_is_seen() {
+fn a_wall_behind_a_skirt_is_seen() {
     let model = shapes::ledges();
     let mut renderer = watched(&model);
     let up = DVec3::Z * (CENTRE - 0.5);

@@ -1,4 +1,4 @@
-//! What the way through solids is measured for: lengths, contacts, overlaps; and what that takes.
+//! Measurements along rays through solids: lengths, contacts, overlaps; and the resources that they need.
 
 use crate::layers::{
     AROUND, BLUE, EDGE_PX, SIZE, STEEL, centre, gear, glass, in_glass, is_at_edge, model, one, painted, tracer,
@@ -12,7 +12,7 @@ use selvedge::model::{Model, Solid};
 use selvedge::picture::{FrameSettings, Highlight, Outputs, SceneSettings};
 use selvedge_check::solids::LayerTracer;
 
-/// Lengths within solids, and none where there is none. Parts that are closed count, too.
+/// Lengths within solids; 0 outside. Closed parts count, too.
 #[test]
 fn thickness() {
     let mut solid = in_glass();
@@ -52,10 +52,10 @@ fn thickness() {
                     if m.solids.is_empty() { 0.0 } else { trace() }
                 };
                 let exact = length(at);
-                // an outline of splines may be half a pixel off, and so may what is seen of the part there
+                // a spline's outline may be half a pixel off, and so may the visible part of the surface
                 let far = if name == "a part" { 0.5 } else { EDGE_PX };
                 let beside = AROUND.map(|d| (length(at + d * far) - exact).abs()).into_iter().fold(0.0, f64::max);
-                // some roundings of a depth, which is a few times the model's size; or as truly is that near
+                // some roundings of a depth, which is a few times the model's size; or the true length nearby
                 let bound = 2e-6 * size + beside;
                 assert!((exact - f64::from(*drawn)).abs() < bound, "{name} at {at}: {drawn}, truly {exact}");
                 assert!(exact > 0.0 || drawn.to_bits() == 0, "{name} at {at}: {drawn}");
@@ -67,7 +67,7 @@ fn thickness() {
     assert_silent(renderer);
 }
 
-/// Who touches and who overlaps is marked, and counted.
+/// Solids that touch and solids that overlap are marked and counted.
 #[test]
 fn contacts_and_overlaps() {
     let steel = |x: f64, to: f64| glass(STEEL, [x, -0.98, -0.48], [to, 0.98, 0.48]);
@@ -107,7 +107,7 @@ fn contacts_and_overlaps() {
         );
         assert!(stats.overlap_pixels.abs_diff(overlaps) <= edges, "{name}: {} of {overlaps}", stats.overlap_pixels);
         assert!(edges < 120, "{name}: {edges}");
-        // those that overlap have sides in common planes
+        // solids that overlap have sides in common planes
         assert_eq!(contacts > 300, name != "apart", "{name}: {contacts}");
         assert_eq!(overlaps > 300, name.contains("overlapping"), "{name}: {overlaps}");
         // blue, red or both
@@ -117,7 +117,7 @@ fn contacts_and_overlaps() {
     assert_silent(renderer);
 }
 
-/// An opaque scene has nothing of this, and each wish what it needs.
+/// An opaque scene has none of these resources, and each setting adds its own.
 #[test]
 fn only_who_is_followed_has_what_that_needs() {
     let opaque = model(vec![gear()]);

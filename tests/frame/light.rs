@@ -1,4 +1,4 @@
-//! Which side of a surface the light falls on.
+//! The side of a surface that is lit.
 
 use crate::shapes;
 use crate::support::{assert_silent, render, watched};
@@ -6,11 +6,11 @@ use glam::{DVec2, DVec3};
 use selvedge::model::{Camera, Projection};
 
 const SIZE: (u32, u32) = (160, 120);
-/// Cosine between ray and normal above which rounding does not decide which side is seen.
+/// Cosine between ray and normal above which rounding does not change the visible side.
 const CLEARLY: f64 = 0.02;
 
-/// A sphere near the eye and beside the view's axis: along its outline on the side of the axis, normals that look
-/// at the eye look away from the picture. As a shell, lit on the side that is seen, it is as bright as a solid, lit on
+/// A sphere near the eye and beside the view's axis: along its outline on the side of the axis, normals that point to
+/// the eye point away from the picture plane. As a shell, lit on the visible side, it is as bright as a solid, lit on
 /// its outside.
 #[test]
 fn the_side_that_the_eye_sees_is_lit() {

@@ -1,12 +1,15 @@
-//! What pictures look like: styles, and what is laid under them.
+//! The look of pictures: styles and backgrounds.
 
 use crate::layers::in_glass;
 use crate::shapes;
 use crate::support::{assert_silent, perspective, watched_with};
 use glam::{DVec2, DVec3};
-use selvedge::model::{Camera, srgb};
+use selvedge::glam::DAffine3;
+use selvedge::headless::HeadlessError;
+use selvedge::model::{Camera, GREY, Model, Primitive, Shape, Solid, srgb};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, Style};
-use selvedge_check::light::{Key, studio};
+use selvedge::renderer::RenderError;
+use selvedge_check::light::{Key, curvature_scale, studio};
 use std::f64::consts::PI;
 
 const SIZE: (u32, u32) = (160, 120);
@@ -26,7 +29,7 @@ fn facing(picture: &Picture, camera: &Camera, pixel: usize) -> (DVec3, DVec3) {
     (view(n), view(ray))
 }
 
-/// The colour of a style in linear light; `None` where a stripe ends within the rounding of normals.
+/// The colour of a style in linear light; `None` if a stripe ends within the rounding of normals.
 fn expected(style: Style, v: DVec3, ray: DVec3, n: DVec3, camera: &Camera) -> Option<DVec3> {
     match style {
         Style::Normals => Some((0.5 + 0.5 * v).map(srgb::decoded)),
@@ -43,11 +46,24 @@ fn expected(style: Style, v: DVec3, ray: DVec3, n: DVec3, camera: &Camera) -> Op
             let light = if stripe < 0.5 { 0.9 * (0.35 + 0.65 * v.z.max(0.0)) } else { 0.02 };
             (!is_edge).then(|| DVec3::splat(light))
         }
+        Style::Isophotes => {
+            let angle = v.dot(DVec3::new(-0.42, 0.57, 0.71).normalize()).clamp(-1.0, 1.0).acos();
+            let band = (18.0 * angle / PI).fract();
+            let is_edge = band.min((band - 0.5).abs()).min(1.0 - band) < 1e-3;
+            let light = if band < 0.5 { 0.9 } else { 0.02 };
+            (!is_edge).then(|| DVec3::splat(light * lean(v)))
+        }
+        Style::Technical => Some(DVec3::splat(lean(v))),
         _ => None,
     }
 }
 
-/// Each colour is that of the style's formula at the normal of the picture's own image; no other image changes.
+/// The share of light on a surface that is turned from the viewer.
+fn lean(v: DVec3) -> f64 {
+    0.7 + 0.3 * v.z.max(0.0)
+}
+
+/// Each colour is the style's formula at the normal of the picture's own image; no other image changes.
 #[test]
 fn a_style_changes_colours_alone() {
     let model = shapes::torus();
@@ -58,7 +74,7 @@ fn a_style_changes_colours_alone() {
         renderer.render(&camera, &settings, Outputs::ALL).unwrap()
     };
     let shaded = draw(Style::Shaded);
-    for &style in &Style::ALL[1..] {
+    for &style in Style::ALL[1..].iter().filter(|style| !style.is_curvature()) {
         let picture = draw(style);
         assert!(picture.depth == shaded.depth && picture.face == shaded.face, "{style:?}");
         assert!(picture.normal == shaded.normal, "{style:?}");
@@ -70,7 +86,7 @@ fn a_style_changes_colours_alone() {
             let Some(light) = expected(style, v, ray, n, &camera) else { continue };
             let drawn = picture.colour[pixel];
             for (light, drawn) in light.to_array().into_iter().zip(drawn) {
-                // rounding to eight bits, and a step for that of single precision
+                // rounding to eight bits, and one step for single precision
                 let off = (255.0 * srgb::encoded(light) - f64::from(drawn)).abs();
                 assert!(off <= 1.5, "{style:?}, pixel {pixel}: {drawn} is off by {off}");
             }
@@ -81,7 +97,107 @@ fn a_style_changes_colours_alone() {
     assert_silent(renderer);
 }
 
-/// A picture on nothing, laid over white in linear light, is the picture on white.
+/// The torus's principal curvatures at a point, both positive where it bulges, from its own equations.
+fn of_torus((major, minor): (f64, f64), point: DVec3) -> (f64, f64) {
+    let rho = point.truncate().length();
+    let out = (rho - major) / minor; // cosine of the angle about the tube
+    (1.0 / minor, out / rho)
+}
+
+/// Compares the colours of a picture of curvature with closed forms; `of` returns the principal curvatures of a visible
+/// point, positive where the surface bulges towards the eye.
+fn check_curvature(name: &str, model: &Model, range: f64, of: impl Fn(DVec3) -> (f64, f64)) {
+    let camera = perspective(model, SIZE);
+    let mut renderer = watched_with(model, SceneSettings { curvature: true, ..SceneSettings::default() });
+    for style in [Style::MeanCurvature, Style::GaussianCurvature] {
+        let settings = FrameSettings { style, curvature_range: range, ..FrameSettings::default() };
+        let picture = renderer.render(&camera, &settings, Outputs::ALL).unwrap();
+        let mut compared = 0;
+        let mut shares = (f64::INFINITY, f64::NEG_INFINITY);
+        for pixel in (0..picture.face.len()).filter(|i| picture.face[*i] != 0) {
+            let (v, _) = facing(&picture, &camera, pixel);
+            let (x, y) = (pixel as u32 % SIZE.0, pixel as u32 / SIZE.0);
+            let (from, ray) = camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
+            let (_, _, forward) = camera.axes();
+            let point = from + ray * (f64::from(picture.depth[pixel]) / ray.dot(forward));
+            let (k1, k2) = of(point);
+            let share = match style {
+                Style::MeanCurvature => 0.5 * (k1 + k2) / range,
+                _ => k1 * k2 / (range * range),
+            };
+            shares = (shares.0.min(share), shares.1.max(share));
+            // a closed part shows its outside, also in a fold's pixel whose ray passes it
+            let outside = DVec3::from(picture.normal[pixel].map(f64::from)).dot(ray) <= 0.0;
+            let leant = lean(if outside { v } else { -v });
+            let light = curvature_scale(share).to_array().map(|c| srgb::decoded(c) * leant);
+            for (light, drawn) in light.into_iter().zip(picture.colour[pixel]) {
+                // rounding to eight bits; half a step for single precision, whose curvatures are good to a thousandth
+                let off = (255.0 * srgb::encoded(light) - f64::from(drawn)).abs();
+                assert!(off <= 1.0, "{name}, {style:?}, pixel {pixel}: {drawn} is off by {off}");
+            }
+            compared += 1;
+        }
+        assert!(compared > 1500, "{name}, {style:?}: {compared}");
+        if name.contains("torus") {
+            assert!(shares.1 > shares.0 + 0.2, "{name}, {style:?}: the scale is used: {shares:?}");
+        }
+    }
+    assert_silent(renderer);
+}
+
+/// Patches and the sides of Boolean solids show the curvature of closed forms.
+#[test]
+fn curvature_is_that_of_closed_forms() {
+    let (radius, torus) = (shapes::SPHERE_RADIUS, shapes::TORUS_RADII);
+    check_curvature("sphere", &shapes::sphere(), 2.0 / radius, |_| (1.0 / radius, 1.0 / radius));
+    check_curvature("torus", &shapes::torus(), 1.5 / torus.1, |p| of_torus(torus, p));
+    let solid = |shape| {
+        let primitive = Primitive { shape, transform: DAffine3::IDENTITY, colour: GREY, id: 7 };
+        Model { solids: vec![Solid::of(primitive).unwrap()], ..Model::default() }
+    };
+    check_curvature("ball", &solid(Shape::Sphere { radius: 3.0 }), 0.5, |_| (1.0 / 3.0, 1.0 / 3.0));
+    let (major, minor) = (5.0, 2.0);
+    check_curvature("solid torus", &solid(Shape::Torus { major, minor }), 0.6, |p| of_torus((major, minor), p));
+    // flat ends, round mantle
+    let rod = solid(Shape::Cylinder { radius: 2.0, height: 4.0 });
+    check_curvature("rod", &rod, 0.4, |p| if p.truncate().length() > 2.0 - 1e-4 { (0.5, 0.0) } else { (0.0, 0.0) });
+}
+
+/// A part stretched along one axis shows the curvature of the stretched surface.
+#[test]
+fn curvature_is_that_of_the_placed_part() {
+    let radius = shapes::SPHERE_RADIUS;
+    let mut model = shapes::sphere();
+    let stretch = DVec3::new(1.0, 1.0, 1.5);
+    model.instances[0].transform = DAffine3::from_scale(stretch);
+    let axes = radius * stretch;
+    check_curvature("ellipsoid", &model, 3.0 / radius, |p| {
+        // of the ellipsoid x²/a² + y²/b² + z²/c² = 1, h the distance of the tangent plane from the middle
+        let h = 1.0 / (p / (axes * axes)).length();
+        let gaussian = h.powi(4) / (axes.x * axes.y * axes.z).powi(2);
+        let mean = h.powi(3) * (axes.dot(axes) - p.dot(p)) / (2.0 * (axes.x * axes.y * axes.z).powi(2));
+        let half = (mean * mean - gaussian).max(0.0).sqrt();
+        (mean + half, mean - half)
+    });
+}
+
+/// Curvature needs a scene made for it, and a positive range; otherwise the frame is an error.
+#[test]
+fn curvature_needs_its_scene_and_a_scale() {
+    let model = shapes::torus();
+    let camera = perspective(&model, SIZE);
+    let mut renderer = watched_with(&model, SceneSettings::default());
+    let mean = FrameSettings { style: Style::MeanCurvature, ..FrameSettings::default() };
+    let refused = renderer.render(&camera, &mean, Outputs::default()).unwrap_err();
+    assert!(matches!(refused, HeadlessError::Render(RenderError::NoCurvature)), "{refused}");
+    for curvature_range in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let refused = renderer.render(&camera, &FrameSettings { curvature_range, ..mean }, Outputs::default());
+        assert!(matches!(refused, Err(HeadlessError::Render(RenderError::CurvatureRange(_)))), "{curvature_range}");
+    }
+    assert_silent(renderer);
+}
+
+/// A picture with an empty background, blended over white in linear light, equals the picture on white.
 #[test]
 fn what_is_drawn_on_nothing_can_be_laid_over_anything() {
     let samples = |samples| SceneSettings { samples, ..SceneSettings::default() };

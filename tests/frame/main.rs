@@ -1,5 +1,5 @@
-//! The whole frame on a real driver, watched by the validation layers: silent, repeatable, as exact as
-//! promised, and no larger than its scene.
+//! The whole frame on a real driver with the validation layers: no messages, repeatable, as exact as promised, and only
+//! with the resources that its scene needs.
 //!
 //! Needs a Vulkan driver and the validation layers; on Debian: `apt install libvulkan1
 //! mesa-vulkan-drivers vulkan-validationlayers`. Without them these tests fail and say so.
@@ -32,6 +32,7 @@ mod light;
 mod living;
 mod look;
 mod meshes;
+mod models;
 mod narrow;
 mod objects;
 mod off_centre;

@@ -8,12 +8,12 @@ use selvedge::model::{Camera, Mesh, Model};
 use selvedge_check::{JudgeOptions, Judgement, Tracer, judge};
 
 const SIZE: (u32, u32) = (320, 240);
-/// What single precision leaves of a flat normal: corners are off by 2^-24 of the part's size, and the
-/// triangles here are not smaller than a hundredth of that.
+/// Error of a flat normal in single precision: corners are off by 2^-24 of the part's size, and the triangles here are
+/// at least a hundredth of that.
 const NORMAL_DEG: f64 = 2e-3;
 
-/// Draws from above and from a low angle, in both projections; every pixel's boundary within half a
-/// pixel, none at a wrong depth.
+/// Draws from above and from a low angle, in both projections. Every pixel's boundary is within half a pixel, and no
+/// depth is wrong.
 fn keeps_the_promise(model: &Model, normal_deg: f64) -> Vec<Judgement> {
     let tracer = Tracer::new(model);
     let mut renderer = watched(model);
@@ -62,8 +62,8 @@ fn trimmed_solids_and_shells_before_meshes() {
     keeps_the_promise(&shapes::floor(), 0.1);
 }
 
-/// Where the torus hides itself by less than the rasteriser's 1/256 pixel, a normal is the other sheet's:
-/// the mean tells of all others. Most triangles are smaller than a pixel.
+/// Where the torus hides itself by less than the rasteriser's 1/256 pixel, a normal may be the other sheet's, so the
+/// mean is tested. Most triangles are smaller than a pixel.
 #[test]
 fn a_closed_mesh_of_200_000_triangles() {
     let judged = keeps_the_promise(&shapes::whole_mesh("torus", shapes::torus_mesh(316)), 180.0);
@@ -76,7 +76,7 @@ fn normals_between_corners() {
     keeps_the_promise(&shapes::ball(), 0.01);
 }
 
-/// The near plane passes through the middle, the far one behind it: the inside is seen, and its end.
+/// The near plane passes through the middle, the far one behind it: the inside and its end are visible.
 #[test]
 fn a_mesh_that_the_near_and_the_far_plane_cut() {
     let model = shapes::whole_mesh("torus", shapes::torus_mesh(24));
@@ -89,7 +89,7 @@ fn a_mesh_that_the_near_and_the_far_plane_cut() {
     assert_silent(renderer);
 }
 
-/// Features of 1e-3 at 1e6, by the vertices and by the instance: 1e-7 of them is lost in the model itself.
+/// Features of 1e-3 at 1e6, by the vertices and by the instance: the model itself rounds them by 1e-7.
 #[test]
 fn a_small_mesh_a_million_away() {
     let torus = shapes::torus_mesh(24);

@@ -1,5 +1,5 @@
-//! Depth and normal are the exact surface's where patches are narrow, and small beside the part they belong to, and where
-//! pixels' centres lie just beside an edge between patches.
+//! Depth and normal are exact where patches are narrow, where they are small beside their part, and where pixels'
+//! centres lie just beside an edge between patches.
 
 use crate::shapes::one;
 use crate::support::{assert_silent, render, watched};
@@ -15,7 +15,7 @@ fn uniform(spans: usize) -> Vec<f64> {
     [0.0; 4].into_iter().chain(inner).chain([1.0; 4]).collect()
 }
 
-/// Uniform knots, between 0 and 1, each of them with another one so little after it.
+/// Uniform knots between 0 and 1, each followed by another one at the distance `apart`.
 fn paired(spans: usize, apart: f64) -> Vec<f64> {
     let inner = (1..spans).map(|k| k as f64 / spans as f64).flat_map(|k| [k, k + apart]);
     [0.0; 4].into_iter().chain(inner).chain([1.0; 4]).collect()
@@ -42,7 +42,7 @@ fn sheet(far: f64, knots_u: Vec<f64>) -> Model {
     one("sheet", false, vec![face(1, SurfaceKind::BSpline, sheet), face(2, SurfaceKind::Plane, flat)])
 }
 
-/// So far from `target`, to which 35 degrees are open.
+/// A camera in the direction `from` of `target`, with a field of view of 35 degrees.
 fn view(target: DVec3, from: DVec3) -> Camera {
     Camera {
         eye: target + from,
@@ -54,7 +54,7 @@ fn view(target: DVec3, from: DVec3) -> Camera {
     }
 }
 
-/// Every pixel, of which at least so many are regular.
+/// Judges every pixel; at least `regular` are on regular surface.
 fn judged_exact(model: &Model, camera: &Camera, regular: u64) {
     let mut renderer = watched(model);
     let picture = render(&mut renderer, camera);
@@ -73,20 +73,20 @@ fn assert_exact(far: f64, knots_u: Vec<f64>) {
     judged_exact(&sheet(far, knots_u), &view(target, DVec3::new(300.0, -900.0, 1500.0)), 150_000);
 }
 
-/// Of each two patches one is 2 mm wide, and the surface turns otherwise behind it than before it.
+/// Every second patch is 2 mm wide, and the surface behind it turns differently than the surface before it.
 #[test]
 fn a_pixel_sees_its_own_patch_where_others_are_narrow() {
     assert_exact(0.0, paired(12, 1e-3));
 }
 
-/// Patches of 40 mm in a part as long as an aircraft, where single precision tells 2e-3 mm from nothing.
+/// Patches of 40 mm in a part as long as an aircraft, where single precision resolves 2e-3 mm.
 #[test]
 fn normals_of_small_patches_far_from_the_part_s_middle() {
     assert_exact(18_000.0, uniform(50));
 }
 
-/// The side of a sheet that is drawn together to a fifth of a millimetre, as far from the middle. Pixels are 0.65 mm wide: any
-/// less, and the view would be cut out of the part, about a centre of its own.
+/// A side drawn together to a fifth of a millimetre, as far from the middle. Pixels are 0.65 mm wide: in a closer view,
+/// the sheet would be cut out of the part, with a centre of its own.
 #[test]
 fn normals_beside_a_side_that_is_drawn_together() {
     let far = 18_000.0;
@@ -103,8 +103,8 @@ fn normals_beside_a_side_that_is_drawn_together() {
     judged_exact(&model, &view(tip + DVec3::Y * 50.0, DVec3::new(100.0, -200.0, 300.0)), 5_000);
 }
 
-/// A row of flat patches, each turned by a fifth of a degree, with edges a thousandth of a pixel or less beside pixels'
-/// centres, to either side.
+/// A row of flat patches, each turned by a fifth of a degree, with edges at most a thousandth of a pixel beside pixels'
+/// centres, on either side.
 #[test]
 fn a_pixel_sees_the_right_side_of_a_slight_edge() {
     const EDGES: usize = 40;

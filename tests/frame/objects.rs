@@ -10,7 +10,7 @@ use selvedge::picture::{FrameSettings, Outputs, Samples, SceneSettings, SolidWay
 /// Pipelines of the trim table.
 const TRIM_PASSES: [&str; 7] = ["density", "lines", "segments", "sizes", "cross", "sort", "scan add (counted)"];
 
-/// Names of what exists after one frame.
+/// Names of the objects that exist after one frame.
 fn objects(model: &Model, outputs: Outputs) -> (HeadlessRenderer, Vec<String>) {
     objects_with(model, SceneSettings::default(), outputs)
 }
@@ -77,8 +77,8 @@ fn has_what_it_needs(way: TrimWay, needed: &[&str], others: &[&str]) {
     }
 }
 
-/// Pipelines, buffers and the image of meshes exist for meshes only; the image apart only where faces are
-/// trimmed as well.
+/// Pipelines, buffers and the image of meshes exist only with meshes; the separate image only if faces are trimmed as
+/// well.
 #[test]
 fn only_a_scene_with_meshes_has_what_they_need() {
     let needed = ["mesh", "meshes", "mesh instances", "mesh positions", "mesh triangles", "resolve (mesh)"];
@@ -96,16 +96,16 @@ fn only_a_scene_with_meshes_has_what_they_need() {
     }
 }
 
-/// Links and what reads them exist only where faces share sides.
+/// Occlusion culling exists only in scenes with many patches.
 #[test]
 fn only_a_scene_of_many_patches_knows_which_lie_behind_others() {
     let of_hiding = ["hidden patches", "farthest depths", "patches outside"];
     let passes = ["cull early", "depth pyramid", "cull late", "reset (draws)"];
     let is_of_hiding = |name: &str| of_hiding.contains(&name) || passes.contains(&name);
-    // four treads have 24 patches, all of the stair 144
+    // four treads have 24 patches, the whole stair 144
     let (mut few, many) = (shapes::stair(), shapes::stair());
     few.instances.truncate(4);
-    few.instances[3].transform.translation.x += 1e4; // none of them is cut
+    few.instances[3].transform.translation.x += 1e4; // none of them is split
     let default = SceneSettings::default();
     let samples = SceneSettings { samples: Samples::Four, ..default };
     for (model, settings, is_asked) in [(&few, default, false), (&many, default, true), (&many, samples, false)] {
@@ -118,7 +118,7 @@ fn only_a_scene_of_many_patches_knows_which_lie_behind_others() {
     }
 }
 
-/// Cones of normals exist where a part is closed, none of its faces is trimmed, and all sides of them meet others.
+/// Cones of normals exist if a part is closed, none of its faces is trimmed, and all of their sides are linked.
 #[test]
 fn only_closed_parts_without_trims_have_cones() {
     for shape in shapes::all() {
@@ -149,8 +149,8 @@ fn only_faces_that_share_sides_have_links() {
     assert_silent(renderer);
 }
 
-/// Pipelines and buffers of Boolean solids exist for those only, and nothing of patches, trims or meshes for a
-/// scene of solids alone.
+/// Pipelines and buffers of Boolean solids exist only with solids; a scene of solids alone has none of patches, trims
+/// or meshes.
 #[test]
 fn only_a_scene_with_solids_has_what_they_need() {
     let needed = ["solid rects", "solid fold", "solid leaves", "solid sides", "solid surfaces", "resolve (solid)"];
@@ -171,8 +171,8 @@ fn only_a_scene_with_solids_has_what_they_need() {
     assert_silent(renderer);
 }
 
-/// Each way to draw solids has its own passes and none of the others'; with a mesh among the operands, layers are
-/// peeled without tiles and without a list of crossings.
+/// Each way to draw solids has its own passes and no others. With mesh operands, layers are peeled without tiles and
+/// without a list of crossings.
 #[test]
 fn a_way_to_draw_solids_has_its_own_passes() {
     let of = |way: SolidWay, model: &Model| {
@@ -207,10 +207,10 @@ fn only_a_rational_scene_has_rational_pipelines() {
     }
 }
 
-/// A scene whose every patch is cut by a trim curve has no pipeline for whole ones, and the reverse.
+/// If a trim curve crosses every patch of a scene, there is no pipeline for untrimmed patches, and vice versa.
 #[test]
 fn a_kind_of_patch_that_no_face_has_gets_no_pipeline() {
-    // so small in its scene that its patches are not cut
+    // so small in its scene that its patches are not split
     let mut plate = shapes::plate();
     plate.instances.push(shapes::placed(DAffine3::from_translation(1e4 * DVec3::X), None));
     for (model, has, lacks) in [(plate, "table", "plain"), (shapes::wave(), "plain", "table")] {
@@ -221,7 +221,7 @@ fn a_kind_of_patch_that_no_face_has_gets_no_pipeline() {
     }
 }
 
-/// Trimmed faces of a solid that is all of its scene are of more patches than those of one that is small in it.
+/// Trimmed faces of a solid that fills its scene have more patches than those of a solid that is small in it.
 #[test]
 fn large_faces_are_cut() {
     let mut tread = shapes::stair();
@@ -254,7 +254,7 @@ fn images_beside_the_colour_exist_when_asked_for() {
     }
 }
 
-/// Memory follows the scene: another model's buffers go when their frame has gone.
+/// Memory follows the scene: buffers of a replaced model are freed after their last frame.
 #[test]
 fn a_replaced_model_leaves_nothing_behind() {
     let (mut renderer, before) = objects(&shapes::wave(), Outputs::default());
@@ -267,7 +267,7 @@ fn a_replaced_model_leaves_nothing_behind() {
     assert!(renderer.objects().iter().any(|name| is_of_trimming(name)));
     renderer.upload(&shapes::wave()).unwrap();
     draw(&mut renderer);
-    draw(&mut renderer); // the second frame into the slot frees what the first one replaced
+    draw(&mut renderer); // the second frame in the slot frees what the first one replaced
     let sorted = |mut names: Vec<String>| {
         names.retain(|name| !name.starts_with("staging"));
         names.sort();
@@ -277,7 +277,7 @@ fn a_replaced_model_leaves_nothing_behind() {
     assert_silent(renderer);
 }
 
-/// Buffers and pipelines of a volume that trims, where there is one; that others have none is looked at above.
+/// Buffers and pipelines exist for a volume that trims the scene; the tests above show that other scenes have none.
 #[test]
 fn a_scene_that_a_volume_trims_has_what_that_needs() {
     let mut model = shapes::beside();
@@ -289,7 +289,7 @@ fn a_scene_that_a_volume_trims_has_what_that_needs() {
     for name in buffers {
         assert!(objects.iter().any(|o| o == name), "{name}: {objects:?}");
     }
-    // beside them visibility and heal, which are told of by their ends
+    // in addition visibility and gap_fill, whose names end differently
     assert!(objects.iter().filter(of_volume).count() >= buffers.len() + 2, "{objects:?}");
     assert!(!objects.iter().any(|o| o.contains("solid")), "{objects:?}");
     assert_silent(renderer);

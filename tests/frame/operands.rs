@@ -8,7 +8,7 @@ use selvedge::model::{Camera, Model, Projection};
 use selvedge::picture::{SceneSettings, SolidWay};
 use selvedge_check::{JudgeOptions, Tracer, judge};
 
-/// The exact reference takes its time for meshes and splines.
+/// Small, because the exact reference is slow for meshes and splines.
 const SIZE: (u32, u32) = (96, 64);
 
 #[test]
@@ -21,7 +21,7 @@ fn spline_parts() {
     right_at(SIZE, operands::splines(), false);
 }
 
-/// Near a silhouette fragments of a squeezed torus change places, behind a near plane that cuts its box.
+/// Near a silhouette fragments of a squeezed torus are interchanged, behind a near plane that cuts its box.
 #[test]
 fn a_squeezed_torus_in_a_mesh() {
     right_at(SIZE, vec![("a mesh less a torus", operands::squeezed_torus())], false);
@@ -32,7 +32,7 @@ fn unclean_meshes() {
     right_at(SIZE, operands::unclean(), false);
 }
 
-/// A part that is inside out shows its near walls, though nothing touches the mesh, whatever the way.
+/// A part that is inside out shows its near walls with every way, although nothing touches the mesh.
 #[test]
 fn meshes_that_are_partly_inside_out() {
     let mut renderer = watched(&Model::default());
@@ -45,7 +45,7 @@ fn meshes_that_are_partly_inside_out() {
         for way in SolidWay::ALL {
             renderer.upload_with(&model, SceneSettings { solids: *way, ..Default::default() }).unwrap();
             for camera in [whole, cutting] {
-                // a far wall is the same face as the near one: normals tell
+                // a far wall is the same face as the near one: normals distinguish them
                 let fault = faults(&mut renderer, &tracer, &camera, false);
                 wrong.extend(fault.map(|f| format!("{name}, by {}: {f}", way.name())));
             }
@@ -55,7 +55,7 @@ fn meshes_that_are_partly_inside_out() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What is not closed is told of, and the rest of the picture stands.
+/// Open meshes are counted, and the rest of the picture is right.
 #[test]
 fn open_meshes_are_counted() {
     let open = operands::open_mesh();
@@ -70,7 +70,7 @@ fn open_meshes_are_counted() {
     assert_silent(renderer);
 }
 
-/// The eye within operands, the near plane through them, the far plane before their ends.
+/// The eye inside operands, the near plane through them, the far plane before their ends.
 #[test]
 fn the_camera_stands_within_operands() {
     let rock = || operands::mesh(shapes::torus_mesh(24));
@@ -97,9 +97,10 @@ fn the_camera_stands_within_operands() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Meshes that nothing touches need no lists: seen from outside and from within, mirrored, beside what stays a solid.
+/// Meshes that nothing touches need no lists: seen from outside and from inside, mirrored, beside a solid that stays a
+/// solid.
 #[test]
-fn lone_meshes() {
+fn isolated_meshes() {
     let rock = || operands::mesh(shapes::torus_mesh(24));
     let mirror = DAffine3::from_scale(DVec3::new(-1.0, 0.7, 1.2));
     let model = solids::solid(
@@ -136,7 +137,7 @@ fn lone_meshes() {
     assert_silent(renderer);
 }
 
-/// More than 255 layers of one mesh behind a pixel; all of them are taken from a block, and then repeat.
+/// More than 255 layers of one mesh in a pixel; all of them are subtracted from a block. The picture repeats.
 #[test]
 fn deep_meshes_repeat() {
     let model = solids::solid("A-B", vec![solids::block([-0.1; 3], [1.1; 3]), operands::mesh(operands::comb(150))]);
@@ -147,13 +148,13 @@ fn deep_meshes_repeat() {
     let tracer = Tracer::new(&model);
     let j = judge(&tracer, &camera, &picture.images(), &JudgeOptions::default());
     assert_eq!((j.wrong, picture.stats.clamps, picture.stats.unpaired), (0, 0, 0), "{:?}", j.mismatches.first());
-    // 300 walls behind each of a hundred pixels at least
+    // at least 300 walls in each of a hundred pixels
     assert!(picture.stats.fragments > 300 * 100, "{}", picture.stats.fragments);
     assert_identical(&picture, &render(&mut renderer, &camera), "again");
     assert_silent(renderer);
 }
 
-/// Expressions that are equal show the same faces at the same depths, bit for bit.
+/// Equivalent expressions show the same faces at the same depths, bit for bit.
 #[test]
 fn equal_expressions_are_equal_pictures() {
     let one = |text: &str| {
@@ -178,8 +179,8 @@ fn equal_expressions_are_equal_pictures() {
     assert_silent(renderer);
 }
 
-/// Tens of thousands of triangles in planes of their own, less three bores: by events and by layers; and each takes but
-/// its corners: 12 bytes, and half a vertex of 12.
+/// Tens of thousands of triangles in planes of their own, less three bores: by events and by layers. Each triangle
+/// takes only its corners: 12 bytes, and half a vertex of 12.
 #[test]
 fn many_triangles() {
     let mut ripple = shapes::tetra();

@@ -1,4 +1,4 @@
-//! What a frame shows at a pixel, against exact rays: the same face, and the same point in double precision.
+//! The hit of a pick, against exact rays: the same face, and the same point in double precision.
 
 use crate::hidden::crowd;
 use crate::room::plates;
@@ -13,8 +13,8 @@ use selvedge_check::Tracer;
 const SIZE: (u32, u32) = (60, 48);
 const ALL: Outputs = Outputs { part: true, instance: true, ..Outputs::ALL };
 
-/// What was picked: pixels that see the background; the same face as the ray through their centre, the same point; or
-/// another face, beside a border.
+/// Results of picks: background; the face and the point of the ray through the pixel's centre; or another face, beside
+/// a border.
 #[derive(Debug, Default)]
 struct Picks {
     none: usize,
@@ -48,7 +48,8 @@ fn picks(renderer: &mut HeadlessRenderer, model: &Model, camera: &Camera) -> Pic
             found.beside += 1;
             continue;
         };
-        // a millionth of a pixel; depths of solids are those of the image, of meshes among their operands the rasteriser makes them
+        // a millionth of a pixel; depths of solids are those of the image, and those of their mesh operands are the
+        // rasteriser's
         let (unit, off) = if hit.instance.is_some() { (1e-8, 1e-6) } else { (1e-5, 1e-3) };
         assert!(hit.point.distance(exact.point) <= unit * hit.depth, "{x}, {y}: {hit:?} {exact:?}");
         if let Some(normal) = hit.normal.filter(|_| model.parts.iter().all(|part| part.meshes.is_empty())) {
@@ -98,7 +99,7 @@ fn triangles_and_solids_are_picked() {
     }
 }
 
-/// Close up, where what a view sees is cut out of the model, (u, v) are those of the whole face.
+/// In a close view, which draws a cut of the model, (u, v) are those of the whole face.
 #[test]
 fn a_face_is_picked_close_up() {
     let model = shapes::ripple();
@@ -110,7 +111,8 @@ fn a_face_is_picked_close_up() {
     check("close", &model, &[camera]);
 }
 
-/// The hit is that of the frame, whatever moves later; there is none without a call, beside the picture, of another model.
+/// The hit is that of the frame, whatever moves later. No hit without a call, beside the picture, or after another
+/// model.
 #[test]
 fn a_pick_is_of_its_frame() {
     let model = shapes::sphere();
@@ -171,7 +173,7 @@ fn a_hit_has_the_edge_whose_line_is_there() {
                 (0, None) => away += 1,
                 (0, Some(_)) => assert!(beside().any(|edge| edge != 0), "{x}, {y}: {hit:?}"),
                 (number, Some(found)) if number == found as u32 + 1 => same += 1,
-                // of two lines, or of a neighbour's line that stands over this face
+                // of two lines, or of a neighbour's line over this face
                 (_, Some(_)) => other += 1,
                 (number, None) => {
                     let (part, face) = (hit.part.unwrap(), hit.face.unwrap());
@@ -186,7 +188,7 @@ fn a_hit_has_the_edge_whose_line_is_there() {
     }
 }
 
-/// The first frame has more scan lines than its table and is drawn again, by a renderer made for its images.
+/// The first frame has more scan lines than its table and is drawn again, by a new renderer for its images.
 #[test]
 fn a_frame_that_is_drawn_again_picks_again() {
     let (model, camera) = plates();

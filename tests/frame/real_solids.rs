@@ -1,8 +1,8 @@
 //! Closed solids of real files, as a whole and closer to where two faces meet: no background within their outline, and
 //! no pixel changed where there was no crack.
 //!
-//! Asked for by name, with `SELVEDGE_MODELS` set to a folder of STEP and IGES files; each that holds nothing but closed
-//! parts is drawn. Many minutes.
+//! Run by name, with `SELVEDGE_MODELS` set to a folder of STEP and IGES files; files with closed parts only are drawn.
+//! Takes many minutes.
 
 use crate::support::render;
 use glam::{DVec2, DVec3};
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 const SIZE: (u32, u32) = (320, 180);
 const ZOOMS: [f64; 3] = [1.0, 8.0, 64.0];
 
-/// STEP and IGES files of a folder and those within it.
+/// STEP and IGES files of a folder and of its subfolders.
 fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     let entries = std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     for path in entries.map(|entry| entry.expect("an entry of the folder").path()) {
@@ -34,7 +34,7 @@ fn is_closed(model: &Model) -> bool {
     !model.instances.is_empty() && model.solids.is_empty() && model.instances.iter().all(|i| closed(i.part))
 }
 
-/// So many times closer to where the face changes nearest to the picture's middle.
+/// A view this many times closer to the change of faces nearest to the picture's middle.
 fn closer(whole: &Camera, picture: &Picture, times: f64) -> Camera {
     let (w, h) = (SIZE.0 as usize, SIZE.1 as usize);
     let seen = |i: usize| picture.face[i] != 0 && picture.depth[i].is_finite();

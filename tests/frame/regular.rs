@@ -1,5 +1,5 @@
-//! What the judge says of regular surface: a tenth of a pixel of depth and a hundredth of a degree, and nothing where a
-//! face ends beside the pixel. The picture is the true one, put wrong on purpose.
+//! The judge on regular surface: a tenth of a pixel of depth and a hundredth of a degree, and no verdict where a face
+//! ends beside the pixel. The picture is the true one, changed on purpose.
 
 use crate::shapes::borders;
 use crate::support::perspective;
@@ -20,7 +20,7 @@ fn what_is_not_exact_is_told_where_the_surface_is_regular() {
     assert_eq!(before.beyond, 0);
     assert!(before.depth_px.count > 1000 && before.depth_px.worst < 1e-4, "{before:?}");
 
-    // the flat end: where it is all around, and where it ends
+    // the flat end: surrounded by itself, and at its border
     let w = SIZE.0 as usize;
     let beside = |i: usize, face: u32| [i - 1, i + 1, i - w, i + w].iter().all(|&k| truth.face[k] == face);
     let of_end = |i: &usize| truth.face[*i] == 2;
@@ -49,7 +49,7 @@ fn what_is_not_exact_is_told_where_the_surface_is_regular() {
     assert_eq!((counts(depth), counts(normal)), ((0, 1, 0), (0, 1, 0)));
     assert!((depth.depth_px.worst / EXACT_DEPTH_PX - 1.5).abs() < 1e-3, "{depth:?}");
     assert!((normal.normal_deg.worst / EXACT_NORMAL_DEG - 1.5).abs() < 1e-2, "{normal:?}");
-    // beside another face nothing is said
+    // beside another face there is no verdict
     let end = deeper(border, 1.5 * EXACT_DEPTH_PX);
     assert_eq!((end.depth_px.count + 1, end.beyond), (before.depth_px.count, 0));
     assert_eq!(end.irregular, before.irregular + 1);

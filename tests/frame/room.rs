@@ -1,4 +1,4 @@
-//! Views that need larger buffers than a scene begins with: drawn again until all of it is there.
+//! Views that need larger buffers than a scene begins with: drawn again until the picture is complete.
 
 use crate::shapes;
 use crate::support::{assert_identical, assert_silent, watched_with};
@@ -17,6 +17,7 @@ const BY_TABLE: SceneSettings = SceneSettings {
     samples: Samples::One,
     smooth: Smooth::None,
     ambient: None,
+    curvature: false,
     thickness: false,
     highlight: None,
     sun: None,
@@ -29,8 +30,8 @@ fn draw(renderer: &mut HeadlessRenderer, camera: &Camera, tolerance_px: f64) -> 
     renderer.render(camera, &settings, Outputs::ALL).unwrap()
 }
 
-/// Draws a view for which the first buffers are too small. The picture must be the one that buffers
-/// large enough from the start give, which a small view at first does not have.
+/// Draws a view for which the first buffers are too small. The picture equals that of buffers that are large enough
+/// from the start, which the first, small view does not have.
 fn check(model: &Model, camera: &Camera, tolerance_px: f64) -> Picture {
     let mut renderer = watched_with(model, BY_TABLE);
     let grown = draw(&mut renderer, camera, tolerance_px);
@@ -94,7 +95,7 @@ fn with_little(model: &Model, settings: SceneSettings) -> HeadlessRenderer {
     renderer
 }
 
-/// A stack of plates. A close view has more scan lines than the table has room for; a view of the whole stack has few.
+/// A stack of plates. A close view has more scan lines than fit into the table; a view of the whole stack has few.
 fn stack() -> Model {
     let mut model = shapes::plate();
     let place = |i: u32| DVec3::new(0.0, 0.0, -1e-3 * f64::from(i));
@@ -102,7 +103,7 @@ fn stack() -> Model {
     model
 }
 
-/// The whole stack from above, and a part of it so many times closer.
+/// The whole stack from above, and a part of it `closer` times closer.
 fn onto(model: &Model, closer: f64) -> Camera {
     let above = Camera::around(model.control_bounds(), DVec3::Z, DVec3::Y, 0.6, (64, 64));
     let height = model.control_bounds().diagonal() / closer;
@@ -113,7 +114,7 @@ fn finely(renderer: &mut HeadlessRenderer, camera: &Camera) -> Result<Picture, H
     renderer.render(camera, &FrameSettings { tolerance_px: 0.1, ..FrameSettings::default() }, Outputs::ALL)
 }
 
-/// What asks for the table alone is told what to ask for instead; what asks for no way gets that, and goes on with it.
+/// A request for the table fails with advice; a request without a way switches to the exact way and stays with it.
 #[test]
 fn a_view_beyond_the_table_is_trimmed_exactly() {
     let model = stack();
@@ -137,7 +138,7 @@ fn a_view_beyond_the_table_is_trimmed_exactly() {
     [by_table, auto, exact].into_iter().for_each(assert_silent);
 }
 
-/// Loops that were edited before are where they were put, and may be edited further.
+/// Loops keep their edits, and may be edited further.
 #[test]
 fn edits_outlive_the_table() {
     let mut model = stack();

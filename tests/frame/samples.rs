@@ -1,5 +1,5 @@
-//! The committed samples against the exact reference, every pixel of two small views each: what a
-//! golden image would hold, measured in pixels of shift instead of bits.
+//! The committed samples against the exact reference, every pixel of two small views each: like golden images, but
+//! measured in pixels of shift instead of bits.
 
 use crate::support::{assert_silent, render, watched};
 use crate::watched::sample;
@@ -8,7 +8,7 @@ use selvedge::model::{Camera, Model};
 use selvedge::picture::Picture;
 use selvedge_check::{JudgeOptions, Judgement, Tracer, judge};
 
-/// Small, so that features of a pixel and below are met often.
+/// Small, so that features of about a pixel are frequent.
 const SIZE: (u32, u32) = (480, 300);
 /// From above and beside, and from a low angle.
 const VIEWS: [DVec3; 2] = [DVec3::new(1.0, -1.6, 1.1), DVec3::new(-1.2, -1.0, 0.35)];
@@ -21,9 +21,9 @@ fn judged(tracer: &Tracer, camera: &Camera, picture: &Picture) -> Judgement {
     judge(tracer, camera, &picture.images(), &JudgeOptions::default())
 }
 
-/// Draws both views and asserts the promise: no pixel off by more than half a pixel, no clamp. From the
-/// low angle `slivers` pixels are excused: borders narrower than a pixel seen edge-on, the exception
-/// that the README names. Fewer is an improvement, and then the number here goes down.
+/// Draws both views and asserts the promise: no pixel off by more than half a pixel, no clamp. From the low angle
+/// `slivers` pixels are allowed: borders narrower than a pixel seen edge-on, the exception that the README names. If
+/// there are fewer, lower the number here.
 fn keeps_the_promise(name: &str, slivers: u64) {
     let model = sample(name);
     let tracer = Tracer::new(&model);
@@ -55,8 +55,8 @@ fn zoo() {
     keeps_the_promise("zoo.step", 1);
 }
 
-/// Along the axes, as CAD users look most: walls lie in the line of sight, and faces that have grown before their
-/// borders are right.
+/// Along the axes, as CAD users often look: walls lie in the line of sight, and faces that have grown are right before
+/// their borders.
 #[test]
 fn walls_seen_edge_on() {
     let model = sample("assembly.step");
@@ -71,7 +71,7 @@ fn walls_seen_edge_on() {
     assert_silent(renderer);
 }
 
-/// All that is seen of the solid is from behind, and its other arms lie behind its gaps.
+/// The eye within a solid: all visible faces show their backs, and other arms lie behind gaps.
 #[test]
 fn the_eye_within_a_solid() {
     let model = sample("zoo.step");
@@ -87,7 +87,7 @@ fn the_eye_within_a_solid() {
     let picture = render(&mut renderer, &camera);
     let j = judged(&tracer, &camera, &picture);
     assert_eq!((j.wrong, j.given_up), (0, 0), "{:?}", j.mismatches);
-    assert!(picture.stats.gap_candidates < j.sampled / 2, "{:?}", picture.stats); // few are asked about
+    assert!(picture.stats.gap_candidates < j.sampled / 2, "{:?}", picture.stats); // few candidates
     assert_silent(renderer);
 }
 

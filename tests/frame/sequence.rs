@@ -31,7 +31,7 @@ fn sequence(
     pictures
 }
 
-/// Everything agrees but what the frames cost.
+/// Compares everything except costs.
 fn assert_same(in_flight: &Picture, alone: &Picture, what: &str) {
     assert_identical(in_flight, alone, what);
     let beside = |p: &Picture| {
@@ -102,7 +102,7 @@ fn every_image() {
     assert!(pictures.iter().all(|p| p.thickness.iter().any(|length| *length > 0.0)));
 }
 
-/// A view that stays reuses what the frame before saw; other sizes have images of their own.
+/// A view that stays reuses the previous frame's visibility; other sizes have images of their own.
 #[test]
 fn views_that_stay_and_sizes_that_change() {
     let model = crowd();
@@ -127,8 +127,8 @@ fn no_picture_at_all() {
     assert_silent(renderer);
 }
 
-/// The fourth view has more scan lines than the first table holds, as have those in flight with it. Two of them are the
-/// same view, so one reuses a table that lacks rows.
+/// The fourth view has more scan lines than the first table, and so have the views in flight with it. Two of them are
+/// the same view, so one reuses a table that lacks rows.
 #[test]
 fn a_frame_that_lacks_room_is_drawn_again_in_its_turn() {
     let (model, all) = plates();
@@ -164,7 +164,7 @@ fn near_and_far_views_in_turn() {
     assert_ne!(pictures[0].stats.patches, pictures[1].stats.patches, "nothing was cut out");
 }
 
-/// The sixth of eight views has more scan lines than a device has room for that binds 16 MiB.
+/// The sixth of eight views has more scan lines than a device with a limit of 16 MiB allows.
 #[test]
 fn an_error_in_the_middle_ends_the_sequence() {
     let mut model = shapes::plate();
@@ -193,7 +193,7 @@ fn an_error_in_the_middle_ends_the_sequence() {
     assert_silent(renderer);
 }
 
-/// What a caller of `render_sequence` may end with.
+/// Ways in which a caller of `render_sequence` may end.
 #[derive(Debug)]
 enum Ended {
     Enough,
@@ -206,7 +206,7 @@ impl From<HeadlessError> for Ended {
     }
 }
 
-/// An error or a panic of the caller's: frames in flight finish, and the next picture is right.
+/// After an error or a panic of the caller, frames in flight finish, and the next picture is right.
 #[test]
 fn a_caller_ends_the_sequence() {
     let model = shapes::pair();
@@ -242,7 +242,7 @@ fn a_caller_ends_the_sequence() {
     assert_silent(renderer);
 }
 
-/// A pixel to be picked waits for a picture by itself.
+/// A pixel to be picked applies to the next single picture.
 #[test]
 fn a_pick_waits_for_the_next_picture() {
     let model = shapes::pair();

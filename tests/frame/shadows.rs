@@ -1,5 +1,5 @@
-//! Shadows, against the exact reference and against closed forms, every pixel: those that Boolean solids cast, and in
-//! `parts` those of spline faces and meshes.
+//! Shadows against the exact reference and against closed forms, every pixel: of Boolean solids here; of spline faces
+//! and meshes in `parts`.
 
 mod parts;
 
@@ -16,21 +16,20 @@ use selvedge_check::light::{Key, studio};
 use selvedge_check::{JudgeOptions, SunJudgement, SunTracer, Tracer, judge, judge_sun};
 
 const SIZE: (u32, u32) = (120, 90);
-/// From the model towards the sun: shadows fall towards the eye.
+/// Direction from the model to the sun: shadows fall towards the eye.
 const SUN: DVec3 = DVec3::new(-0.5, 0.4, 0.9);
 
 fn sunny(towards: DVec3) -> SceneSettings {
     SceneSettings { sun: Some(towards), ..SceneSettings::default() }
 }
 
-/// A plate with a hole above a block, and what lies between.
+/// A plate with a hole above a block.
 fn holed() -> Model {
     let (ground, plate) = (block([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]), block([-2.0, -2.0, 2.0], [2.0, 2.0, 2.5]));
     solids::solid("A+(B-C)", vec![ground, plate, post(1.0, 1.0, 3.0)])
 }
 
-/// Each with shade within view: through holes, of the solid on itself, of tori, stretched, without bounds, on and in
-/// each other.
+/// Solids with visible shadows: through holes, on themselves, of tori, stretched, unbounded, on and in each other.
 fn cases() -> Vec<solids::Named> {
     let stretched = DAffine3::from_scale(DVec3::new(2.5, 0.6, 1.2)) * turned(0.4, 0.9, 0.2);
     let floor = || below(DVec3::Z, 0.0);
@@ -88,7 +87,7 @@ fn cases() -> Vec<solids::Named> {
     ]
 }
 
-/// What the judges say of the light, and of the faces, which must be right.
+/// Verdicts about the light, and about the faces, which must be right.
 fn judged(
     renderer: &mut HeadlessRenderer,
     (tracer, sun): (&Tracer, &SunTracer),
@@ -103,7 +102,7 @@ fn judged(
     Ok((light, picture))
 }
 
-/// Pixels that look at the sun, and how many of them are lit.
+/// Number of pixels that face the sun, and of lit ones.
 fn facing(picture: &Picture, camera: &Camera, towards: DVec3) -> (usize, usize) {
     let looks = |i: &usize| {
         let n = DVec3::from(picture.normal[*i].map(f64::from));
@@ -118,7 +117,7 @@ fn facing(picture: &Picture, camera: &Camera, towards: DVec3) -> (usize, usize) 
 fn every_pixel_is_lit_or_shaded_as_in_truth() {
     let mut renderer = watched(&Model::default());
     let mut wrong = Vec::new();
-    // what has no end is looked at near the origin
+    // unbounded solids are viewed near the origin
     let near = solids::folded(selvedge::csg::Op::Union, vec![ball(2.5, 0.0)]);
     for (name, m) in cases() {
         let tracer = Tracer::new(&m);
@@ -160,8 +159,8 @@ fn light(grey: f64, n: DVec3, camera: &Camera, key: Key) -> f64 {
     255.0 * srgb::encoded(studio(DVec3::splat(grey), n, camera, key).x)
 }
 
-/// Of a plate's shadow, which falls on a leaning floor: a ray to the sun passes the plate's lower face and its upper
-/// face within the hole's circle, so the light in the shadow lies within two ellipses. Its colours are the lamps'.
+/// A plate's shadow on a leaning floor: a ray to the sun passes the plate's lower face and its upper face within the
+/// hole's circle, so the light in the shadow lies within two ellipses. The colours are those of the lamps.
 #[test]
 fn light_falls_through_a_hole() {
     let lean = turned(0.3, -0.2, 0.0);
@@ -180,7 +179,7 @@ fn light_falls_through_a_hole() {
     let mut renderer = watched_with(&m, sunny(SUN));
     let picture = render(&mut renderer, &camera);
     assert_silent(renderer);
-    // None: the plate hides the floor there
+    // `None`: the plate hides the floor there
     let truth = |at: DVec2| {
         let (o, d) = camera.ray(at);
         let on_floor = |t: f64| o + d * t;
@@ -192,7 +191,7 @@ fn light_falls_through_a_hole() {
         }
         let [low, high] = [3.0, 3.4].map(|z| q + s * ((z - q.z) / s.z));
         let within = |p: DVec3| p.truncate().length() < 1.1;
-        // where between the two the ray is above the plate, from one share of the way to another
+        // or the ray is above the plate between the two, over a range of its length
         let (from, along) = (low.truncate(), (high - low).truncate());
         let (a, b) = ((DVec2::splat(-2.5) - from) / along, (DVec2::splat(2.5) - from) / along);
         let (first, last) = (a.min(b).max_element().max(0.0), a.max(b).min_element().min(1.0));
@@ -234,7 +233,7 @@ fn in_plate(camera: &Camera, at: DVec2, n: DVec3, s: DVec3) -> bool {
     p.x.abs().max(p.y.abs()) < 2.5
 }
 
-/// Spline faces, trimmed ones, open ones and meshes are shaded, by others and by themselves.
+/// Spline faces, trimmed ones, open ones and meshes receive shadows, from others and from themselves.
 #[test]
 fn every_kind_of_face_is_shaded() {
     let cases = [
@@ -270,8 +269,8 @@ fn every_kind_of_face_is_shaded() {
     assert_silent(renderer);
 }
 
-/// Operands that are meshes cast shadows, on themselves and on a slab below: whole ones, mirrored and coincident ones,
-/// inverted and doubled ones.
+/// Mesh operands cast shadows, on themselves and on a slab below: whole, mirrored, coinciding, inverted and doubled
+/// ones.
 #[test]
 fn meshes_cast_shadows() {
     let mut renderer = watched(&Model::default());
@@ -303,7 +302,7 @@ fn meshes_cast_shadows() {
     assert_silent(renderer);
 }
 
-/// The eye within a solid, within a hole of one; the near plane through the middle: the light is not cut.
+/// The eye within a solid or within its hole; the near plane through the middle: neither cuts the light.
 #[test]
 fn the_eye_may_be_anywhere() {
     let m = solids::solid(
@@ -332,8 +331,8 @@ fn the_eye_may_be_anywhere() {
     assert_silent(renderer);
 }
 
-/// Solids that are nothing leave everything lit that faces the sun, as does a ball its own light; with no sun there is
-/// nothing of it.
+/// Empty solids leave everything that faces the sun lit, and so does a ball for itself. Without a sun there are no
+/// resources for it.
 #[test]
 fn only_who_casts_shadows_has_what_that_takes() {
     let nothing = solids::solid("A*B", vec![ball(0.5, 0.0), ball(0.5, 3.0)]);
@@ -362,7 +361,7 @@ fn only_who_casts_shadows_has_what_that_takes() {
         let (names, picture) = objects(&m, SceneSettings::default());
         assert!(names.is_empty() && picture.sunlit.is_empty(), "{names:?}");
     }
-    // what is seen through has none
+    // transparent solids have none
     let mut clear = shapes::sphere();
     clear.instances[0].colour = Some([0.5; 4]);
     let (names, picture) = objects(&clear, sunny(SUN));
@@ -370,7 +369,7 @@ fn only_who_casts_shadows_has_what_that_takes() {
     assert_eq!(picture.stats.shadowless, 1);
 }
 
-/// What is seen through is shaded, face by face, and lets the light through; its samples are lit each by itself.
+/// Transparent solids receive shadows, face by face, and cast none; each sample is lit by itself.
 #[test]
 fn among_layers_and_samples() {
     let steel = holed();
@@ -383,7 +382,7 @@ fn among_layers_and_samples() {
         assert!(light.lit > 1000 && light.compared - light.lit > 500, "{light:?}");
         assert_eq!(picture.stats.shadowless, 1);
     }
-    // the same without glass, with samples: colours in between at the edges of shadows, and nowhere else
+    // the same without glass, with samples: intermediate colours at the edges of shadows only
     let camera = orthographic(&steel, SIZE);
     let pictures = [Samples::One, Samples::Four].map(|samples| {
         renderer.upload_with(&steel, SceneSettings { samples, ..sunny(SUN) }).unwrap();
@@ -411,8 +410,8 @@ fn among_layers_and_samples() {
     assert_silent(renderer);
 }
 
-/// Cut by a plane or a volume, what stays catches shadows; solids cast them, and parts that a volume cuts do not, which
-/// is told.
+/// Cut by a plane or a volume, the rest receives shadows. Solids cast them; parts that a volume cuts do not, and are
+/// counted.
 #[test]
 fn cut_open() {
     let cut = holed().section(DVec3::new(0.3, 1.0, 0.1), 0.4).unwrap();
@@ -436,7 +435,7 @@ fn cut_open() {
     assert_silent(renderer);
 }
 
-/// Pictures repeat bit for bit, whatever the order of operands that look alike.
+/// Pictures repeat bit for bit, for any order of equal operands.
 #[test]
 fn shadows_repeat_and_operands_commute() {
     let one = |text: &str| {
@@ -464,7 +463,7 @@ fn shadows_repeat_and_operands_commute() {
     assert_silent(renderer);
 }
 
-/// A sun that is nowhere is an error, and the scene before stays.
+/// A sun without a direction is an error, and the scene before stays.
 #[test]
 fn a_sun_has_a_direction() {
     let m = holed();
@@ -476,7 +475,7 @@ fn a_sun_has_a_direction() {
         let refused = renderer.upload_with(&m, sunny(bad));
         assert!(matches!(refused, Err(HeadlessError::Render(RenderError::Sun(_)))), "{bad}: {refused:?}");
     }
-    // so small or large that its square is no number
+    // so small or large that its square is not finite
     for scale in [1e-200, 1e200] {
         renderer.upload_with(&m, sunny(SUN * scale)).unwrap();
         let after = renderer.render(&camera, &settings, Outputs::default()).unwrap();

@@ -1,10 +1,9 @@
 //! Pixels of four and eight samples, against exact coverage and against the same frame sixteen times as large.
 //!
-//! An edge that is straight within a pixel covers `a` of it, and `k` of its `n` samples. Over all edges that meet the
-//! pixel `k / n - a` has a root mean square that the places of the samples decide: [`expected`] integrates it, for one
-//! sample 0.247, for four 0.092, for eight 0.057 of the contrast. Beside that, fronts of trimmed solids are drawn an
-//! eighth of the tolerance too large ([`GROWTH_PX`]). The two together are the bound, and [`MORE`] what is granted
-//! beyond.
+//! An edge that is straight within a pixel covers `a` of it, and `k` of its `n` samples. Over all edges that cross the
+//! pixel, `k / n - a` has a root mean square that depends on the places of the samples: [`expected`] integrates it, for
+//! one sample 0.247, for four 0.092, for eight 0.057 of the contrast. In addition, fronts of trimmed solids are drawn
+//! an eighth of the tolerance too large ([`GROWTH_PX`]). The bound is the sum of both, times [`MORE`].
 
 use crate::edges::{blocks, contrast_errors, coverage_errors, covered, root_mean_square};
 use crate::shapes::{self, solids};
@@ -16,10 +15,10 @@ use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings}
 use selvedge_check::Tracer;
 
 const SIZE: (u32, u32) = (64, 48);
-/// By how much the faces of solids grow over their borders: a quarter of the gap radius, which is half the tolerance.
+/// Growth of solids' faces over their borders: a quarter of the gap radius, which is half the tolerance.
 const GROWTH_PX: f64 = 0.5 * 0.5 * 0.25;
-/// Granted beyond the expected error: corners and curves within a pixel, eight bits of colour, and that the edges of
-/// one picture are a few hundred, in few directions.
+/// Factor on the expected error, for corners and curves within a pixel, eight bits of colour, and because one picture
+/// has only a few hundred edges in few directions.
 const MORE: f64 = 1.15;
 const ALL: [Samples; 3] = [Samples::One, Samples::Four, Samples::Eight];
 
@@ -32,8 +31,8 @@ fn places(samples: Samples) -> &'static [[i32; 2]] {
     }
 }
 
-/// Root mean square of covered samples less covered area, over straight edges through a pixel, equally dense in angle
-/// and distance.
+/// Root mean square of covered samples less covered area, over straight edges through a pixel, with equal density in
+/// angle and distance.
 fn expected(samples: Samples) -> f64 {
     let places = places(samples);
     let (mut sum, mut weight) = (0.0, 0.0);
@@ -52,12 +51,13 @@ fn expected(samples: Samples) -> f64 {
     (sum / weight).sqrt()
 }
 
-/// With what the frame itself is off by.
+/// The bound, with the frame's own error.
 fn bound(samples: Samples) -> f64 {
     MORE * expected(samples).hypot(GROWTH_PX)
 }
 
-/// Of the unit square around the origin, what lies within `offset` along `normal`, whose coordinates are not negative.
+/// Area of the part of the unit square around the origin within `offset` along `normal`, whose coordinates are not
+/// negative.
 fn area(normal: DVec2, offset: f64) -> f64 {
     let (small, large) = (normal.min_element(), normal.max_element());
     let from_corner = 0.5 * (small + large) - offset.abs();
@@ -79,8 +79,8 @@ fn draw(renderer: &mut HeadlessRenderer, camera: &Camera, outputs: Outputs) -> P
     renderer.render(camera, &FrameSettings::default(), outputs).unwrap()
 }
 
-/// A plate of one colour with a round hole, trimmed: how much of a pixel it covers is seen in its colour, and known
-/// from 16 x 16 exact rays.
+/// A plate of one colour with a round hole, trimmed: a pixel's colour shows its coverage, which 16 x 16 exact rays
+/// give, too.
 #[test]
 fn coverage_is_as_right_as_so_many_samples_can_be() {
     let model = shapes::plate();
@@ -103,8 +103,8 @@ fn coverage_is_as_right_as_so_many_samples_can_be() {
     assert!(errors[1] < 0.5 * errors[0] && errors[2] < 0.8 * errors[1], "{errors:?}");
 }
 
-/// Silhouettes, creases and trims of every kind of thing: against the frame at 16 x 16 its size, averaged in linear
-/// colour.
+/// Silhouettes, creases and trims of all kinds of things: against the frame at 16 x 16 times its size, averaged in
+/// linear colour.
 #[test]
 fn as_the_frame_sixteen_times_as_large() {
     let ball = solids::solid("A - B", vec![solids::ball(2.0, 0.0), solids::block([-3.0, -3.0, 0.3], [3.0, 3.0, 3.0])]);
@@ -127,7 +127,7 @@ fn as_the_frame_sixteen_times_as_large() {
     }
 }
 
-/// What is not colour is the centre's, bit for bit; and nothing of samples exists where there is one.
+/// Images other than colour are the centre's, bit for bit; with one sample there are no objects of samples.
 #[test]
 fn other_images_are_the_centres() {
     let model = shapes::beside();

@@ -1,7 +1,8 @@
 //! Smooth trims: coverage of pixels at trim curves, against exact rays and against the same frame sixteen times as large.
 //!
-//! The share is exact but for what `src/twin/coverage.rs` says, so what is left is the colours' eight bits, the
-//! reference's own 16 x 16 points, and pixels in which more meets than one border of what a centre sees.
+//! The share is exact except for the errors that `src/twin/coverage.rs` states. The remaining error is that of
+//! eight-bit colours, of the reference's own 16 x 16 points, and of pixels with more than one border of the face at
+//! their centre.
 
 use crate::edges::{blocks, contrast_errors, coverage_errors, covered, linear, root_mean_square};
 use crate::shapes;
@@ -26,6 +27,7 @@ const fn plain() -> SceneSettings {
         samples: Samples::One,
         smooth: Smooth::None,
         ambient: None,
+        curvature: false,
         thickness: false,
         highlight: None,
         sun: None,
@@ -56,7 +58,7 @@ fn holes(holes: &[(DVec2, f64)]) -> Model {
     model
 }
 
-/// From above, from the side, from near, and in a parallel view.
+/// Views from above, from the side, from near, and in parallel.
 fn views(model: &Model) -> Vec<(&'static str, Camera)> {
     let above = perspective(model, SIZE);
     let moved = |by: DVec3| Camera { eye: above.eye + by, ..above };
@@ -69,7 +71,7 @@ fn views(model: &Model) -> Vec<(&'static str, Camera)> {
     ]
 }
 
-/// A plate with a round hole, straight and bent borders: of samples, eight are off by 0.06 (`smooth.rs`).
+/// A plate with a round hole, straight and curved borders. For comparison, eight samples are off by 0.06 (`smooth.rs`).
 #[test]
 fn a_plates_borders_cover_what_exact_rays_say() {
     let model = shapes::plate();
@@ -87,7 +89,7 @@ fn a_plates_borders_cover_what_exact_rays_say() {
     }
 }
 
-/// Faces of a solid that meet at an edge, each of a colour of its own; what has no trim curve at its border stays as it is.
+/// Faces of a solid that meet at an edge, each with its own colour; borders without a trim curve stay as they are.
 #[test]
 fn solids_are_as_the_frame_sixteen_times_as_large() {
     let mut cube = shapes::cube();
@@ -112,7 +114,7 @@ fn solids_are_as_the_frame_sixteen_times_as_large() {
     }
 }
 
-/// Holes of half a pixel to one and a half, 5 x 5 of each: those that no centre sees through are not seen at all.
+/// Holes of half a pixel to one and a half, 5 x 5 of each size; holes without a pixel's centre are not visible.
 #[test]
 fn small_holes() {
     for (radius, bound) in [(0.5, 0.15), (1.0, 0.08), (1.5, 0.08)] {
@@ -136,8 +138,8 @@ fn small_holes() {
     }
 }
 
-/// Images but the colour are as without, bit for bit, and so is the colour of pixels farther than 1.5 px from what another
-/// pixel sees: those whose eight neighbours see the same face.
+/// Images other than colour are as without smoothing, bit for bit, and so is the colour of pixels farther than 1.5 px
+/// from another face: pixels whose eight neighbours show the same face.
 #[test]
 fn nothing_else_changes() {
     for shape in shapes::all() {
@@ -170,7 +172,7 @@ fn nothing_else_changes() {
     }
 }
 
-/// Image, pass and pipeline exist where trims are smoothed, and there are some.
+/// Image, pass and pipeline exist if trims are smoothed and there are some.
 #[test]
 fn only_smooth_trims_have_what_they_need() {
     let camera = |model: &Model| perspective(model, SIZE);
@@ -182,7 +184,7 @@ fn only_smooth_trims_have_what_they_need() {
         let objects = renderer.objects();
         let of_coverage: Vec<_> =
             objects.iter().filter(|o| *o == "coverage" || *o == "resolved" || o.contains("unmixed")).collect();
-        // the pass, its image, and the pipeline that draws into that
+        // the pass, its image, and the pipeline that draws into it
         assert_eq!(of_coverage.len(), if has { 3 } else { 0 }, "{}: {of_coverage:?}", model.name);
         assert_silent(renderer);
     }

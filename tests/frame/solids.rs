@@ -10,12 +10,12 @@ use selvedge::picture::{SceneSettings, SolidWay};
 use selvedge_check::{JudgeOptions, Judgement, Tracer, judge};
 
 const SIZE: (u32, u32) = (240, 160);
-/// Single precision of a root on a tube a twentieth of its ring, grazed at a cosine of 0.1: a place off by
-/// 1e-7 of the ring over 0.05 over 0.1, and some roundings of the quartic. Other sides are far better.
+/// Single precision of a root on a tube a twentieth of its ring, grazed at a cosine of 0.1: a place off by 1e-7 of the
+/// ring over 0.05 over 0.1, and some roundings of the quartic. Other sides are far more accurate.
 const NORMAL_DEG: f64 = 0.2;
 
-/// Rays past the silhouette of a mesh that enter and leave it within the rounding of a depth, in a picture: one was
-/// seen. Layers see one of the two sides, or none; what they see is judged.
+/// Most rays of a picture that pass a mesh's silhouette, entering and leaving within the rounding of a depth. Layers
+/// show one of the two sides, or none; the shown side is judged.
 const TIED: usize = 2;
 
 fn has_mesh(model: &Model) -> bool {
@@ -23,7 +23,7 @@ fn has_mesh(model: &Model) -> bool {
     shapes.into_iter().any(|shape| matches!(shape, Shape::Mesh(_)))
 }
 
-/// What is wrong with a picture, or nothing.
+/// The faults of a picture.
 pub fn faults(renderer: &mut HeadlessRenderer, tracer: &Tracer, camera: &Camera, blank: bool) -> Option<String> {
     let picture = render(renderer, camera);
     let j = judge(tracer, camera, &picture.images(), &JudgeOptions::default());
@@ -40,7 +40,7 @@ pub fn faults(renderer: &mut HeadlessRenderer, tracer: &Tracer, camera: &Camera,
     (j.normal_deg.worst > NORMAL_DEG).then(|| format!("normals {:?}", j.normal_deg))
 }
 
-/// Faces nearer to each other than a tie are an excuse of few pixels.
+/// Faces nearer to each other than a tie excuse few pixels.
 fn few_ties(j: &Judgement) -> bool {
     j.ties * 100 <= j.sampled
 }
@@ -107,7 +107,7 @@ fn empty_results_are_blank() {
     all_right(solids::nothing(), true);
 }
 
-/// More leaves in one tile than spans are kept of, than 64, and than 255.
+/// More leaves in one tile than stored spans, than 64, and than 255.
 #[test]
 fn many_primitives() {
     let row = |n: u32| {
@@ -120,7 +120,7 @@ fn many_primitives() {
     all_right(cases, false);
 }
 
-/// Holes that make a tile see more than 1024 leaves, and 10 001 of them: few pixels, whose truth takes long.
+/// Holes that give a tile more than 1024 leaves, and 10 001 of them: few pixels, because the reference is slow.
 #[test]
 fn thousands_of_primitives() {
     let far_out = solids::holes_by(100, &solids::post(3.0, -5.0, 15.0));
@@ -132,7 +132,7 @@ fn thousands_of_primitives() {
     right_at((48, 32), cases, false);
 }
 
-/// A ray that needs more steps than the driver allows is counted, not drawn wrongly in silence.
+/// A ray that needs more steps than the driver allows is counted, not silently drawn wrong.
 #[test]
 fn rays_without_an_end_are_counted() {
     let mut all: Vec<Primitive> = (0..1500).map(|i| solids::ball(0.5, f64::from(i) * 1e-4)).collect();
@@ -177,7 +177,7 @@ fn the_near_plane_cuts() {
     assert_silent(renderer);
 }
 
-/// Pictures repeat bit for bit, and do not depend on the order of operands where colours do not.
+/// Pictures repeat bit for bit, and do not depend on the order of operands, except for colours.
 #[test]
 fn pictures_repeat_and_operands_commute() {
     let one = |text: &str| {
@@ -198,14 +198,14 @@ fn pictures_repeat_and_operands_commute() {
         renderer.upload(&other).unwrap();
         let drawn = render(&mut renderer, &camera);
         assert!(drawn.face == picture.face, "faces of {text}");
-        // a surface is drawn by the formula of the primitive that names it first
+        // a surface uses the formula of the primitive that names it first
         let differ = drawn.depth.iter().zip(&picture.depth).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
         assert_eq!(differ, 0, "depths of {text}");
     }
     assert_silent(renderer);
 }
 
-/// Solids before and behind whole patches, trimmed faces and meshes.
+/// Solids before and behind untrimmed patches, trimmed faces and meshes.
 #[test]
 fn solids_among_patches_and_meshes() {
     let through = |model: Model| {

@@ -1,9 +1,9 @@
-//! Faces without trims beside trimmed ones: `gap_fill` moves their surfaces to the gap candidates next to them, and a
-//! surface goes on where its face ends.
+//! Untrimmed faces beside trimmed ones: `gap_fill` evaluates their surfaces at neighbouring gap candidates, and a
+//! surface continues beyond its face's end.
 //!
 //! ```text
 //!        ─────────┐ 1, trimmed
-//!   ══════════════╪ ─ ─ ─ ─   3, without trims: its surface reaches the pixels beyond the corner
+//!   ══════════════╪ ─ ─ ─ ─   3, untrimmed: its surface reaches the pixels beyond the corner
 //!        ─────────┘ 2
 //! ```
 
@@ -13,7 +13,7 @@ use glam::DVec3;
 use selvedge::model::Camera;
 use selvedge_check::{JudgeOptions, Tracer, judge};
 
-/// Sides seen nearly edge-on, thinner than a pixel at their far ends: none may be drawn beyond its end.
+/// Sides nearly parallel to the rays, thinner than a pixel at their far ends: none may be drawn beyond its end.
 #[test]
 fn a_face_without_trims_ends_where_its_surface_ends() {
     let model = shapes::stair();
@@ -24,7 +24,7 @@ fn a_face_without_trims_ends_where_its_surface_ends() {
         let picture = render(&mut renderer, &camera);
         let judgement = judge(&tracer, &camera, &picture.images(), &JudgeOptions::default());
         assert_eq!((judgement.wrong, judgement.given_up), (0, 0), "from {from}: {:?}", judgement.mismatches);
-        assert!(picture.stats.gap_candidates > 100, "from {from}: nothing was healed");
+        assert!(picture.stats.gap_candidates > 100, "from {from}: there are few gap candidates");
     }
     assert_silent(renderer);
 }

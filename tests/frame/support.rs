@@ -35,7 +35,7 @@ pub fn orthographic(model: &Model, size: (u32, u32)) -> Camera {
     Camera { projection: Projection::Orthographic { height }, ..perspective(model, size) }
 }
 
-/// Everything of two pictures agrees bit for bit, but what they cost.
+/// Everything in two pictures agrees bit for bit, except costs.
 pub fn assert_identical(a: &Picture, b: &Picture, what: &str) {
     fn bits<const N: usize>(values: &[[f32; N]]) -> Vec<[u32; N]> {
         values.iter().map(|v| v.map(f32::to_bits)).collect()

@@ -1,4 +1,4 @@
-//! Other tolerances than half a pixel, from the least that the engine takes, are kept like it.
+//! Tolerances other than half a pixel, from the least allowed one, are held as well.
 
 use crate::shapes;
 use crate::support::{assert_silent, perspective, watched};
@@ -6,7 +6,7 @@ use selvedge::model::Model;
 use selvedge::picture::{FrameSettings, Outputs};
 use selvedge_check::{JudgeOptions, Judgement, Tracer, judge};
 
-/// Pictures of the model at each tolerance, every pixel of the face's changes judged by that of `limits`.
+/// Pictures of the model at each tolerance; every pixel at a change of faces is judged by the tolerance in `limits`.
 fn judged(model: &Model, tolerances: &[f64], limits: &[f64]) -> Vec<Judgement> {
     let mut renderer = watched(model);
     let (tracer, camera) = (Tracer::new(model), perspective(model, (320, 240)));
@@ -32,7 +32,7 @@ fn every_tolerance_is_kept() {
     }
 }
 
-/// The same judge finds fault with a picture that was asked for less.
+/// The same judge reports faults in a picture with a larger tolerance.
 #[test]
 fn a_coarse_picture_does_not_keep_the_least_tolerance() {
     let j = judged(&shapes::plate(), &[4.0], &[FrameSettings::LEAST_TOLERANCE_PX]);

@@ -1,11 +1,11 @@
-//! A front just before another solid's back: every pixel above the strip is a candidate, and most of them have
-//! candidates as neighbours only.
+//! A front just before another solid's back: every pixel above the strip is a candidate, and most of them have only
+//! candidates as neighbours.
 //!
 //! ```text
 //!        eye
 //!         │
-//!   ══════╪══════════ 1, looks up         the gap is a fiftieth of a pixel, and fronts stand back by a
-//!        ─▼──         2, looks down       twelfth: the strip wins every pixel that it covers
+//!   ══════╪══════════ 1, faces up         the gap is a fiftieth of a pixel, and fronts are moved back by a
+//!        ─▼──         2, faces down       twelfth: the strip wins every pixel that it covers
 //! ```
 
 use crate::shapes::{self, PLATE_HALF, TOUCHING_END, TOUCHING_GAP, TOUCHING_STRIP};
@@ -29,20 +29,20 @@ fn from_straight_above(model: &Model) -> Picture {
         depth_range: (5.0, 15.0),
         size: (SIZE, SIZE),
     };
-    const { assert!(TOUCHING_GAP < PIXEL / 24.0, "the strip must win before it is healed") };
+    const { assert!(TOUCHING_GAP < PIXEL / 24.0, "the strip must win before gaps are filled") };
     let picture = render(&mut renderer, &camera);
     assert_silent(renderer);
     picture
 }
 
-/// Pixels of a face, and those between two x across the plate; all borders run between pixel centres.
+/// Number of pixels of a face, and between two x across the plate; all borders run between pixel centres.
 fn counts<const N: usize>(picture: &Picture, widths: [(u32, f64); N]) -> [(usize, usize); N] {
     let side = |length: f64| (length / PIXEL).round() as usize;
     let count = |id: u32| picture.face.iter().filter(|&&f| f == id).count();
     widths.map(|(id, width)| (count(id), side(width) * side(2.0 * PLATE_HALF)))
 }
 
-/// Nothing of the strip is seen: face 1 has each pixel whose centre is above it.
+/// The strip is not visible: face 1 has each pixel whose centre is above it.
 #[test]
 fn a_strip_just_below_a_face_is_not_seen() {
     const { assert!(TOUCHING_STRIP > 2.0 * PIXEL, "some gap candidate must have no other neighbour") };
@@ -52,7 +52,8 @@ fn a_strip_just_below_a_face_is_not_seen() {
     }
 }
 
-/// Where face 1 ends with it, pixels have the floor beside them, which the strip hides, and face 1 farther away.
+/// Where face 1 ends with the strip, neighbouring pixels show the floor, which the strip hides, and face 1 is farther
+/// away.
 #[test]
 fn nor_is_the_floor_below_it() {
     let picture = from_straight_above(&shapes::touching_at_its_end());

@@ -1,5 +1,5 @@
-//! Patches of closed parts without trims that look away are left out, and no picture shows it: it is the same as that of the
-//! same surface around a speck, whose sides are nobody else's, so that nothing is left out.
+//! Patches of closed parts without trims that are turned away are left out, which changes no picture: it equals that of
+//! the same surface around a speck whose sides are not linked, so that nothing is left out.
 
 use crate::support::{assert_silent, perspective, render, watched};
 use crate::{cages, shapes};
@@ -47,8 +47,8 @@ fn pixel(model: &Model, camera: &Camera) -> f64 {
     }
 }
 
-/// The same face in every pixel, as deep within `slack`: a side that is shared with a patch that is left out may have fewer
-/// segments, and beside a silhouette the point under a pixel depends on them.
+/// The same face in every pixel, at the same depth within `slack`: a side shared with a patch that is left out may have
+/// fewer segments, and beside a silhouette the point under a pixel depends on them.
 fn assert_same(a: &Picture, b: &Picture, slack: f64, what: &str) {
     assert!(a.face == b.face, "face {what}");
     for (i, (a, b)) in a.depth.iter().zip(&b.depth).enumerate() {
@@ -56,7 +56,7 @@ fn assert_same(a: &Picture, b: &Picture, slack: f64, what: &str) {
     }
 }
 
-/// Pictures of both in all views; the triangles of the one, and of the other.
+/// Compares pictures of both in all views; returns the numbers of their triangles.
 fn same(name: &str, model: &Model, views: &[Camera]) -> [u64; 2] {
     let (mut closed, mut loose) = (watched(model), watched(&with_a_speck(model)));
     let mut triangles = [0; 2];
@@ -84,7 +84,7 @@ fn no_picture_shows_it() {
     assert!(shares.iter().filter(fine).all(|&(_, share)| share < 0.8), "shares of the triangles: {shares:?}");
 }
 
-/// Mirrored, stretched and moved.
+/// The same with mirrored, stretched and moved parts.
 #[test]
 fn nor_where_the_part_is_placed_otherwise() {
     let mut model = cages::a_box().model;
@@ -94,7 +94,7 @@ fn nor_where_the_part_is_placed_otherwise() {
     assert!(drawn * 10 < others * 9, "{drawn} triangles, {others} with a speck");
 }
 
-/// The inside is seen where the near plane cuts what is before it away, and by an eye that is within.
+/// The inside is visible if the near plane cuts the nearer part away, and from an eye inside.
 #[test]
 fn the_inside_is_seen() {
     let model = cages::a_box().model;
@@ -111,7 +111,7 @@ fn the_inside_is_seen() {
     assert_silent(renderer);
 }
 
-/// Parts that say that they are closed, and err.
+/// Parts that are declared closed, and are not.
 #[test]
 fn what_only_says_that_it_is_closed_stays() {
     let (whole, mut inverted) = (cages::a_box().model, cages::a_box().model);
@@ -125,7 +125,7 @@ fn what_only_says_that_it_is_closed_stays() {
             drawn <= others && others <= drawn + 2 * views(model).len() as u64,
             "{name}: {drawn}, {others} with a speck"
         );
-        // who does not say so has nothing left out, whatever becomes of the speck
+        // nothing of a part that is not declared closed is left out, with or without the speck
         let mut open = model.clone();
         open.parts[0].closed = false;
         let mut renderer = watched(&open);

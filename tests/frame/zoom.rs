@@ -1,5 +1,5 @@
-//! Deep zoom against the exact reference: a thousand and a million times closer, at the origin and far from it; and
-//! an eye close beside a bent face.
+//! Deep zoom against the exact reference: a thousand and a million times closer, at the origin and far from it; and an
+//! eye close to a curved face.
 
 use crate::off_centre::through;
 use crate::shapes::borders;
@@ -12,7 +12,7 @@ use selvedge_check::{JudgeOptions, Tracer, judge};
 
 const SIZE: (u32, u32) = (160, 120);
 
-/// `times` closer to the point of a face at (u, v), shares of its domain; or to where its first loop starts.
+/// A view `times` closer to the point of a face at (u, v), shares of its domain; or to the start of its first loop.
 fn closer(model: &Model, face: usize, at: Option<DVec2>, times: f64) -> Camera {
     let mut camera = Camera::around(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, SIZE);
     let instance = &model.instances[0];
@@ -57,7 +57,7 @@ fn keeps_it_through(model: &Model, times: f64, lens: impl Fn(Camera) -> Camera) 
             }
             let camera = lens(closer(model, face, at, times));
             let picture = render(&mut renderer, &camera);
-            // what is a tie at the whole model's scale is not one here
+            // a tie at the whole model's scale is not a tie here
             let options = JudgeOptions { tie: 1e-6 / times, ..JudgeOptions::default() };
             let j = judge(&tracer, &camera, &picture.images(), &options);
             assert_eq!((j.wrong, j.given_up), (0, 0), "face {face}, {at:?}: {:?}", j.mismatches);
@@ -66,7 +66,8 @@ fn keeps_it_through(model: &Model, times: f64, lens: impl Fn(Camera) -> Camera) 
         }
     }
     assert!(seen > 3 * 160 * 120, "only {seen} pixels show a face");
-    // known: a million times closer to where face 0 begins, one strip of its trim table wants more lines than there are
+    // known exception: a million times closer to the start of face 0, one strip of its trim table needs more lines than
+    // possible
     assert!(clamps <= u64::from(times > 1e5), "{clamps} clamps");
     assert_silent(renderer);
 }
@@ -81,7 +82,7 @@ fn bracket_a_million_times_closer() {
     keeps_the_promise(&sample("bracket.step"), 1e6);
 }
 
-/// Close views whose axis lies in a corner of the picture, and outside of it.
+/// Close views whose axis lies in a corner of the picture, and outside it.
 #[test]
 fn bracket_closer_through_lenses_off_centre() {
     let bracket = sample("bracket.step");
@@ -95,7 +96,7 @@ fn bracket_a_million_times_closer_and_a_million_units_away() {
     keeps_the_promise(&moved(sample("bracket.step"), 1e6), 1e6);
 }
 
-/// While a view hardly moves nothing is cut, uploaded or made into a table; its picture is that of a fresh renderer.
+/// While a view hardly moves, nothing is cut, uploaded or made into a table; its picture is that of a new renderer.
 #[test]
 fn a_view_from_near_by_shares_what_was_cut() {
     let model = sample("bracket.step");
@@ -120,8 +121,8 @@ fn a_view_from_near_by_shares_what_was_cut() {
     assert_silent(viewer);
 }
 
-/// An eye beside the side of a drum, within the boxes of its pieces but not at it, that looks along it and across. Rows of
-/// the trim table follow how near the side is, not the box.
+/// An eye beside the side of a drum, within the boxes of its pieces but not at it, that looks along it and across. Rows
+/// of the trim table follow the distance of the side, not of the box.
 #[test]
 fn an_eye_beside_a_bent_face_is_near_no_more_than_that() {
     let model = borders::drum(20.0, 50.0);

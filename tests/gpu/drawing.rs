@@ -1,4 +1,4 @@
-//! A tessellated sheet through a graphics pipeline: attachments, push constants, times and counts.
+//! A tessellated sheet drawn by a graphics pipeline: attachments, push constants, times and statistics.
 
 use crate::support::{assert_silent, upload, watched};
 use ash::vk;
@@ -88,7 +88,7 @@ fn a_sheet_covers_half_of_the_picture() {
         })
         .unwrap();
 
-    // The sheet ends at y = 0, on the edge between two rows of pixels.
+    // the sheet ends at y = 0, on the edge between two rows of pixels
     let (upper, lower) = (vec![LABEL; PIXELS / 2], vec![0; PIXELS / 2]);
     assert_eq!(faces.values::<u32>(PIXELS), [upper, lower].concat());
     let (near, far) = (vec![0.25f32; PIXELS / 2], vec![1.0; PIXELS / 2]);
@@ -99,7 +99,7 @@ fn a_sheet_covers_half_of_the_picture() {
     assert!(scopes[0].gpu_ms > 0.0 && scopes[0].gpu_ms < 10_000.0, "{scopes:?}");
     assert_eq!(scopes[1].statistics, None);
     if let Some(counted) = scopes[0].statistics {
-        // Equal spacing: factor² quads of two triangles.
+        // equal spacing: factor² quads of two triangles
         assert_eq!((counted.triangles, counted.patches), (2 * 8 * 8, 1), "{counted:?}");
         assert!(counted.fragments >= PIXELS as u64 / 2, "{counted:?}");
     }

@@ -1,4 +1,4 @@
-//! What lives, what is counted, and what was forgotten.
+//! Lifetimes of objects, the count of their bytes, and leaks.
 
 use crate::support::{assert_silent, watched};
 use ash::vk;
@@ -34,7 +34,7 @@ fn bytes_are_counted_in_their_pool() {
     let info =
         ImageInfo { name: "depth", size: (640, 480), format: vk::Format::D32_SFLOAT, usage, pool: Pool::Transient };
     let depth = Image::new(device.device(), &info).unwrap();
-    // A driver may round up for alignment, by far less than a tenth at this size.
+    // a driver may round up for alignment, by far less than a tenth at this size
     assert!((1 << 20..(1 << 20) + 100_000).contains(&bytes(Pool::Persistent)));
     assert!((640 * 480 * 4..640 * 480 * 4 * 11 / 10).contains(&bytes(Pool::Transient)));
     assert_eq!(bytes(Pool::Ring), 0);
@@ -43,19 +43,19 @@ fn bytes_are_counted_in_their_pool() {
     assert_silent(device);
 }
 
-/// A handle that nobody destroys: the layers say so when the device goes.
+/// A handle that is not destroyed: the layers report it when the device is destroyed.
 #[test]
 fn a_leaked_handle_is_reported() {
     let device = watched();
     let info = vk::BufferCreateInfo::default().size(64).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
-    // SAFETY: the device is alive. The leak is what is tested.
+    // SAFETY: the device is alive. The test leaks on purpose.
     unsafe { device.device().raw().create_buffer(&info, None) }.unwrap();
     let messages = device.shutdown();
     let leak = messages.iter().find(|m| m.id.contains("vkDestroyDevice"));
     assert_eq!(leak.map(|m| m.severity), Some(Severity::Error), "{messages:?}");
 }
 
-/// A wrapper that outlives its device: named, and the device stays for it.
+/// A wrapper that outlives its device is named, and the device stays for it.
 #[test]
 fn a_forgotten_buffer_is_named() {
     let device = watched();
@@ -96,7 +96,7 @@ fn an_unknown_device_is_answered_with_those_there_are() {
     }
 }
 
-/// A machine without a driver, played by a child process whose loader is pointed at none.
+/// A machine without a driver, simulated by a child process whose loader finds none.
 #[test]
 fn a_missing_driver_is_answered_with_what_to_install() {
     let output = std::process::Command::new(std::env::current_exe().unwrap())
@@ -109,7 +109,8 @@ fn a_missing_driver_is_answered_with_what_to_install() {
     assert!(said.contains("apt install mesa-vulkan-drivers"), "{said}");
 }
 
-/// Pipelines of one description are one Vulkan object, which lives as long as the last of them; the driver makes it once.
+/// Pipelines with one description are one Vulkan object, which exists as long as the last of them; the driver makes it
+/// once.
 #[test]
 fn pipelines_of_one_description_are_one() {
     let watched = watched();
@@ -132,7 +133,7 @@ fn pipelines_of_one_description_are_one() {
     assert!(other.handle() != first.handle() && device.pipeline_time() > once);
     drop(first);
     assert_eq!(named("twice"), 1);
-    // the validation layer tells whether it was freed too early, twice or never
+    // the validation layer reports it if it is freed too early, twice or never
     let third = Pipeline::compute(device, &info).unwrap();
     assert_eq!(third.handle(), second.handle());
     drop((second, third));
@@ -190,7 +191,7 @@ fn what_no_heap_has_is_refused() {
     drop(watched);
 }
 
-/// Compiled pipelines are stored in a file; a file that is cut off or holds something else is replaced.
+/// Compiled pipelines are stored in a file; a truncated or invalid file is replaced.
 #[test]
 fn pipelines_are_kept_in_a_file() {
     let folder = std::env::temp_dir().join(format!("selvedge-lifetimes-{}", std::process::id()));

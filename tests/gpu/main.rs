@@ -1,4 +1,4 @@
-//! The Vulkan layer and its passes on a real driver, watched by the validation layers.
+//! The Vulkan layer and its passes on a real driver, with the validation layers.
 //!
 //! Needs a Vulkan driver and the validation layers; on Debian: `apt install libvulkan1
 //! mesa-vulkan-drivers vulkan-validationlayers`. Without them these tests fail and say so.

@@ -60,7 +60,7 @@ fn parity_around_lanes_and_blocks() {
     assert_silent(device);
 }
 
-/// From `BLOCK²` elements on, the sums of the blocks fill more than one block themselves.
+/// From `BLOCK²` elements on, the sums of the blocks fill more than one block.
 #[test]
 fn parity_where_the_sums_are_many() {
     let device = watched();
@@ -101,7 +101,7 @@ fn several_in_a_frame_and_in_place() {
     assert_silent(device);
 }
 
-/// The GPU holds the count: exact, with more workgroups than needed, none, and beyond the capacity.
+/// The GPU has the count: exact, with more workgroups than needed, none, and beyond the capacity.
 #[test]
 fn counted_by_the_gpu() {
     let device = watched();

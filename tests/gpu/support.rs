@@ -10,7 +10,7 @@ pub fn watched() -> HeadlessDevice {
     HeadlessDevice::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"))
 }
 
-/// Shuts the device down; anything that the layers said fails the test.
+/// Shuts the device down; fails the test if the layers reported anything.
 pub fn assert_silent(device: HeadlessDevice) {
     let messages = device.shutdown();
     let texts: Vec<_> = messages.iter().map(ToString::to_string).collect();

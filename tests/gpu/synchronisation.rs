@@ -1,4 +1,4 @@
-//! Synchronisation validation sees what it is trusted to see.
+//! Synchronisation validation reports a missing barrier.
 
 use crate::support::watched;
 use selvedge::gpu::{Access, Buffer, Pool, barrier};

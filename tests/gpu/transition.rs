@@ -1,4 +1,4 @@
-//! How far the tessellator's triangles reach where a side has more segments than the interior.
+//! The extent of the tessellator's triangles at a side with more segments than the interior.
 //!
 //! ```text
 //!    ├───────┼───────┤  interior, m segments      u of a triangle's vertices, weighted as at a pixel,
@@ -6,8 +6,8 @@
 //!    ├──┴──┴─┴─┴──┴──┤  side, n segments          quarter of the square of the triangle's extent
 //! ```
 //!
-//! The bound of `twin::factor` needs extents up to `1 / m`. Vulkan leaves the triangles to the driver
-//! (*Tessellation*, "Quad Tessellation"), so this asks the driver.
+//! The bound of `twin::factor` needs extents up to `1 / m`. Vulkan leaves the triangles to the driver (*Tessellation*,
+//! "Quad Tessellation"), so this measures the driver.
 
 use crate::support::{assert_silent, watched};
 use ash::vk;
@@ -103,7 +103,7 @@ fn powers_of_two_are_joined_within_a_cell() {
             assert!(reach > 0.9 && reach <= 1.0 + ROUNDING, "{m} cells, {n} segments: {reach}");
         }
     }
-    // the reason for powers of two, and the proof that the probe sees it
+    // the reason for powers of two; it also shows that the probe reports larger extents
     if watched.device().driver().contains("llvmpipe") {
         for (m, n) in [(6, 9), (13, 16), (48, 64)] {
             assert!(probe.reach(m, n) > 2.0, "{m} cells, {n} segments");

@@ -1,4 +1,4 @@
-//! Solids whose faces end where their surfaces end, with loops along their sides, as CAD files have them.
+//! Solids whose faces end where their surfaces end, with loops along their sides, as in CAD files.
 
 use super::meshes::block_mesh;
 use super::{circle, face, one, placed, plane, rectangle, revolved, sphere_surface};
@@ -60,8 +60,8 @@ fn block(id: u32, low: DVec3, high: DVec3) -> Vec<Face> {
     (0..6).map(side).collect()
 }
 
-/// A drum over a floor of facets, and before it, seen from above, thin bars of facets: where a bar hides the neighbour of a
-/// pixel at the drum's border, nothing says that the drum ends there.
+/// A drum over a floor of facets; before it, seen from above, thin bars of facets. Where a bar hides the neighbour of a
+/// pixel at the drum's border, there is no evidence that the drum ends.
 pub fn barred() -> Model {
     let mut model = drum(1.5, 4.0);
     let bar = |k: u32| {

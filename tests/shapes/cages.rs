@@ -1,15 +1,15 @@
 //! Closed surfaces of many faces without trims, which share their sides: limit surfaces of small cages.
 //!
 //! ```text
-//!   cube      eight corners of 3 faces, two of which share a face: refined, and all rings alike
-//!   box       corners of 3 faces among regular ones, which their rings meet in halves of halves
+//!   cube      eight corners of 3 faces, two of which share a face: refined, and all rings equal
+//!   box       corners of 3 faces among regular ones, whose rings meet them in halves of halves
 //!   torus     regular: one bicubic patch a face, sides one to one
 //!   tips      two corners of 3, 5 or 8 faces, of triangles, over a ring of ordinary ones
 //!   fine      the box, eight times as near its limit: more rings
 //!   triangles Loop's scheme: faces cut at a corner of their neighbours
 //! ```
 
-#![allow(dead_code)] // each test takes what it needs
+#![allow(dead_code)] // each test uses some of them
 
 use glam::{DAffine3, DVec3};
 use selvedge::construct::subdivide::{ControlMesh, Scheme, subdivide};
@@ -26,7 +26,7 @@ fn mesh(positions: Vec<DVec3>, faces: Vec<Vec<u32>>) -> ControlMesh {
     ControlMesh { positions, faces, creases: Vec::new() }
 }
 
-/// Sides of length 2 around the origin, stretched a little so that coordinates are no round numbers.
+/// Sides of length 2 around the origin, stretched a little so that coordinates are not round numbers.
 fn cube() -> ControlMesh {
     let at = |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 2.0 - 1.0;
     let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];

@@ -1,4 +1,4 @@
-//! Meshes with names. Where a closed form is meant, the vertices lie on it.
+//! Named meshes. The vertices of a mesh that approximates a closed form lie on it.
 
 use super::{cube, cylinder, one, placed, plate, sphere};
 use glam::{DAffine3, DMat3, DVec3};
@@ -10,7 +10,7 @@ pub fn tetra() -> Model {
     whole_mesh("tetra", tetra_mesh(1))
 }
 
-/// The tetrahedron twice: as it is, and mirrored, turned and squeezed, in another colour.
+/// The tetrahedron twice: unchanged, and mirrored, turned and squeezed, in another colour.
 pub fn facets() -> Model {
     let mut model = tetra();
     let squeezed = DMat3::from_rotation_z(0.7) * DMat3::from_diagonal(DVec3::new(-1.0, 0.6, 1.3));
@@ -89,7 +89,7 @@ pub fn ball_mesh(levels: u32) -> Mesh {
         .collect();
     for _ in 0..levels {
         let quarters = |&[a, b, c]: &[DVec3; 3]| {
-            // the sum does not depend on the order, so that neighbours agree bit for bit
+            // the sum does not depend on the order, so neighbours agree bit for bit
             let [ab, bc, ca] = [(a + b).normalize(), (b + c).normalize(), (c + a).normalize()];
             [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
         };

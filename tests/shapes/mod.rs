@@ -1,4 +1,4 @@
-//! Tiny exact models with names: each has one thing that renderers get wrong.
+//! Small exact models with names: each has one thing that is hard for renderers.
 //!
 //! ```text
 //!   sphere     poles, where a side of a patch is one point      torus    closed both ways
@@ -15,10 +15,10 @@
 //!   stair      plates whose sides have no trims, beside trimmed tops and bottoms
 //! ```
 //!
-//! Circles are quadratic arcs of a quarter turn with weights 1, 1/√2, 1 (Piegl and Tiller, *The NURBS
-//! Book*, 1997, section 7.3), so every shape is exact; [`circle_at`] says where the parameter is.
+//! Circles are quadratic arcs of a quarter turn with weights 1, 1/√2, 1 (Piegl and Tiller, *The NURBS Book*, 1997,
+//! section 7.3), so every shape is exact; [`circle_at`] gives a point's parameter.
 
-#![allow(dead_code)] // each test binary takes what it needs
+#![allow(dead_code)] // each test binary uses some of them
 
 pub mod borders;
 mod meshes;
@@ -188,21 +188,22 @@ pub fn mirrored() -> Model {
     model
 }
 
-/// A square face of a solid, 1, that looks up, and [`TOUCHING_GAP`] below it a strip along y, 2, of another
-/// solid, that looks down: as where solids cut into each other, or a file has a face the wrong way round.
+/// A square face of a solid, 1, that faces up, and [`TOUCHING_GAP`] below it a strip along y, 2, of another solid, that
+/// faces down: as where solids cut into each other, or a file has a face with the wrong orientation.
 pub fn touching() -> Model {
     let strip = level(2, (-TOUCHING_STRIP, TOUCHING_STRIP), -TOUCHING_GAP);
     two_parts([vec![level(1, (-PLATE_HALF, PLATE_HALF), 0.0)], vec![strip]])
 }
 
-/// The same where face 1 ends with the strip, at x = [`TOUCHING_END`], and the strip's solid has a floor below both, 3.
+/// The same with face 1 ending together with the strip, at x = [`TOUCHING_END`]; the strip's solid has a floor below
+/// both, 3.
 pub fn touching_at_its_end() -> Model {
     let strip = level(2, (-TOUCHING_END, TOUCHING_END), -TOUCHING_GAP);
     let floor = level(3, (-PLATE_HALF, PLATE_HALF), -0.3);
     two_parts([vec![level(1, (-PLATE_HALF, TOUCHING_END), 0.0)], vec![strip, floor]])
 }
 
-/// A rectangle from one x to another; face 2 looks down.
+/// A rectangle from one x to another; face 2 faces down.
 fn level(id: u32, (from, to): (f64, f64), z: f64) -> Face {
     Face {
         loops: vec![rectangle(DVec2::new(from, -PLATE_HALF), DVec2::new(to, PLATE_HALF))],
@@ -218,8 +219,8 @@ fn two_parts([a, b]: [Vec<Face>; 2]) -> Model {
     model
 }
 
-/// Walls of solids that look along -y, one behind the other, faces 1 to 4, each a little higher than the one
-/// before; and the back of the nearest, 5, which ends where its front does.
+/// Walls of solids that face -y, one behind the other, faces 1 to 4, each a little higher than the one before; and the
+/// back of the nearest, 5, which ends where its front does.
 pub fn ledges() -> Model {
     let wall = |id: u32, top: f64, y: f64| Face {
         loops: vec![rectangle(DVec2::splat(-8.0), DVec2::new(8.0, top))],
@@ -230,8 +231,8 @@ pub fn ledges() -> Model {
     one("ledges", true, fronts.chain([wall(5, LEDGES[0], 3.0)]).collect())
 }
 
-/// Twenty-four treads around the z axis, as of a spiral stair. Top and bottom, faces 1 and 2, are trimmed; the sides,
-/// 3 to 6, are bilinear and end where their surfaces end.
+/// Twenty-four treads around the z axis, as of a spiral stair. Top and bottom, faces 1 and 2, are trimmed; the sides, 3
+/// to 6, are bilinear and end where their surfaces end.
 pub fn stair() -> Model {
     let corners = [(6.0, -3.0), (44.0, -9.0), (44.0, 9.0), (6.0, 3.0)].map(|(x, y)| DVec2::new(x, y));
     let side = |i: usize| (corners[i], corners[(i + 1) % 4]);
@@ -280,7 +281,7 @@ pub fn circle_at(x: f64) -> (f64, f64) {
     }
 }
 
-/// A model of one part, placed once where it is.
+/// A model of one part, placed once without a transform.
 pub fn one(name: &str, closed: bool, faces: Vec<Face>) -> Model {
     Model {
         name: name.to_owned(),

@@ -20,7 +20,7 @@ fn box_mesh(low: [f64; 3], high: [f64; 3]) -> Primitive {
     mesh(block_mesh(low.into(), high.into(), 1))
 }
 
-/// A mesh with every triangle the other way round.
+/// A mesh with reversed triangles.
 fn inverted(m: &Mesh) -> Mesh {
     let triangles = m.triangles().iter().map(|[a, b, c]| [*a, *c, *b]).collect();
     Mesh::new(1, m.positions().to_vec(), triangles, vec![]).unwrap()
@@ -90,7 +90,7 @@ pub fn splines() -> Vec<Named> {
     ]
 }
 
-/// Meshes that are no clean boundary, and still bound something.
+/// Meshes that are not clean boundaries, and still bound something.
 pub fn unclean() -> Vec<Named> {
     let with = |m: &Mesh, more: Vec<[u32; 3]>| {
         Mesh::new(1, m.positions().to_vec(), [m.triangles().to_vec(), more].concat(), vec![]).unwrap()
@@ -99,7 +99,7 @@ pub fn unclean() -> Vec<Named> {
     let round = ball_mesh(2);
     let doubled = with(&round, round.triangles().to_vec());
     let flat = with(&round, vec![[0, 0, 1], [0, 1, 1], [5, 5, 5]]);
-    // two balls in one mesh, which run into each other
+    // two balls in one mesh that intersect each other
     let beside = Mesh::new(
         1,
         round.positions().iter().copied().chain(round.positions().iter().map(|p| *p + DVec3::X)).collect(),
@@ -124,8 +124,8 @@ pub fn unclean() -> Vec<Named> {
     ]
 }
 
-/// Meshes that are closed and turned outwards but for a part of them, with nothing else nearby: one whose smaller end is
-/// drawn through itself, and one with a smaller box beside it.
+/// Closed, outward-oriented meshes with one faulty part: one whose smaller end is drawn through itself, and one with a
+/// smaller box beside it.
 pub fn partly_inside_out() -> Vec<Named> {
     let whole = block_mesh(DVec3::new(-2.0, -1.0, -1.0), DVec3::new(2.0, 1.0, 1.0), 1);
     let drawn = |p: &DVec3| {

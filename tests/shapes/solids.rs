@@ -50,7 +50,7 @@ pub fn quadric(squares: [f64; 3], products: [f64; 3], linear: [f64; 3], constant
     primitive(Shape::Quadric(q), DAffine3::IDENTITY)
 }
 
-/// Moved, by a transform after its own.
+/// Moved by a transform after its own.
 pub fn moved(transform: DAffine3, p: Primitive) -> Primitive {
     Primitive { transform: transform * p.transform, ..p }
 }
@@ -81,14 +81,14 @@ pub fn holes(n: u32) -> Model {
     holes_by(n, &post(3.0, 0.0, 5.0))
 }
 
-/// The same by other tools, which stand at the origin.
+/// The same holes by another tool, which is given at the origin.
 pub fn holes_by(n: u32, tool: &Primitive) -> Model {
     let side = 10.0 * f64::from(n);
     let hole = |k: u32| moved(at(f64::from(k % n) * 10.0 + 5.0, f64::from(k / n) * 10.0 + 5.0, 0.0), tool.clone());
     folded(Op::Difference, [block([0.0; 3], [side, side, 5.0])].into_iter().chain((0..n * n).map(hole)).collect())
 }
 
-/// Balls within balls, each taken from the one around it, cut open.
+/// Nested balls, each subtracted from the one around it, cut open.
 pub fn onion() -> Model {
     let mut b = Builder::new();
     let mut all: Vec<Primitive> = (0..20).map(|i| ball(20.0 - f64::from(i), 0.0)).collect();
@@ -301,7 +301,7 @@ pub fn odd() -> Vec<Named> {
             ),
         ),
         ("an unbounded wedge less a ball", {
-            // what is bounded says where to look
+            // a bounded primitive determines the view
             let mut model = solid("A", vec![ball(1.2, 1.0)]);
             let wedge = [
                 below(DVec3::Z, 0.0),

@@ -1,9 +1,9 @@
 //! Hard cases of trimming as loops in the unit square, for every way to trim.
 //!
-//! Each has rows `(u, v, winding)` whose answer is known by hand. Coordinates are dyadic or stand far from
-//! every curve, so a row that lies *on* a straight curve has one right answer in single precision too, by
-//! the half-open rules of [`selvedge::trim`]. Numbers are those of the list in the tests of the exact
-//! loops, `tests/trim/hard_*.rs`.
+//! Each has rows `(u, v, winding)` whose answer is known by hand. Coordinates are dyadic or far from every curve, so a
+//! row *on* a straight curve has one right answer in single precision, too, by the half-open rules of
+//! [`selvedge::trim`]. Numbers are those of the list in the tests of the exact loops,
+//! `crates/geometry/tests/trim/hard_*.rs`.
 
 use glam::{DVec2, DVec3};
 use selvedge::model::TrimLoop;
@@ -14,13 +14,13 @@ use selvedge::spline::{BSpline, Bezier, Control};
 pub mod loops;
 use loops::{at, circle, closed, curve, polygon, rational, rectangle};
 
-/// Loops with answers.
+/// Loops with known answers.
 pub struct TrimCase {
     pub name: &'static str,
     pub loops: Vec<TrimLoop>,
     /// Points and winding numbers.
     pub rows: Vec<(f64, f64, i32)>,
-    /// Where a close look is worth while.
+    /// The point for close views.
     pub focus: (f64, f64),
 }
 
@@ -48,7 +48,7 @@ pub fn all() -> Vec<TrimCase> {
     all
 }
 
-/// 1 to 4: what meets the scan line.
+/// 1 to 4: crossings of the scan line.
 fn crossings() -> Vec<TrimCase> {
     let (above, below) = (ulp(0.5, true), ulp(0.5, false));
     let hexagon = small(&[(1.0, 2.0), (5.0, 2.0), (6.0, 4.0), (5.0, 6.0), (1.0, 6.0)]);
@@ -119,7 +119,7 @@ fn crossings() -> Vec<TrimCase> {
     ]
 }
 
-/// 5 and 6: the rule is a winding number that is not zero.
+/// 5 and 6: the rule is a winding number other than zero.
 fn rules() -> Vec<TrimCase> {
     let spike = curve(&[(0.25, 0.125), (0.75, 0.625), (0.25, 0.625), (0.75, 0.125)]); // c' = 0 at (0.5, 0.5)
     let cusp = closed(vec![spike, curve(&[(0.75, 0.125), (0.25, 0.125)])]);
@@ -201,7 +201,7 @@ fn rules() -> Vec<TrimCase> {
     ]
 }
 
-/// 7: many, and thin.
+/// 7: many and thin loops.
 fn many() -> Vec<TrimCase> {
     let holes = 24;
     let mut plate = vec![rectangle((0.0, 0.0), (1.0, 1.0))];

@@ -6,7 +6,7 @@ use selvedge::model::Model;
 use std::path::Path;
 
 /// A sample of the repository. The test fails if the file is missing.
-#[allow(dead_code)] // not every binary draws samples
+#[allow(dead_code)] // some test binaries use no samples
 pub fn sample(name: &str) -> Model {
     // a packed test binary runs where the source tree does not exist: the environment names the folder
     let root = std::env::var("CARGO_MANIFEST_DIR").unwrap_or_else(|_| env!("CARGO_MANIFEST_DIR").to_owned());

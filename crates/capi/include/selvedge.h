@@ -55,7 +55,7 @@
 
 // How a call ended.
 typedef enum SelvedgeStatus {
-    // Everything asked for was done.
+    // The call succeeded.
     SELVEDGE_STATUS_OK = 0,
     // A pointer, size, number or name that cannot be used.
     SELVEDGE_STATUS_ARGUMENT = 1,
@@ -116,8 +116,8 @@ typedef struct SelvedgeView {
     uint32_t width;
     // Pixels, 1 to 16384.
     uint32_t height;
-    // iso, front, right, back, left, top, bottom, or "AZIMUTH,ELEVATION" in degrees: as large as the model fits. Null: iso,
-    // or from `eye` where eye and target differ.
+    // iso, front, right, back, left, top, bottom, or "AZIMUTH,ELEVATION" in degrees: the model fills the picture. Null:
+    // iso, or from `eye` where eye and target differ.
     const char *standard;
     // Position of the eye, millimetres.
     double eye[3];
@@ -201,7 +201,7 @@ typedef struct SelvedgeTargets {
     struct SelvedgeTarget instance;
 } SelvedgeTargets;
 
-// What a finished frame reports.
+// The counts of a finished frame.
 typedef struct SelvedgeReport {
     // sizeof(SelvedgeReport)
     size_t struct_size;
@@ -223,7 +223,7 @@ typedef struct SelvedgeReadOptions {
     uint32_t strict;
 } SelvedgeReadOptions;
 
-// What a model holds.
+// Counts and extent of a model.
 typedef struct SelvedgeModelInfo {
     // sizeof(SelvedgeModelInfo)
     size_t struct_size;
@@ -239,19 +239,19 @@ typedef struct SelvedgeModelInfo {
     uint64_t faces;
     // See selvedge_model_warning.
     uint64_t warnings;
-    // 1: all that the file states is there.
+    // 1: nothing of the file is left out.
     uint32_t complete;
-    // What is drawn and what is missing, one sentence; lives as long as the model.
+    // The drawn and the missing parts, one sentence; lives as long as the model.
     const char *summary;
 } SelvedgeModelInfo;
 
-// Something in the file that was left out, healed or guessed.
+// Something in the file that was left out, repaired or guessed.
 typedef struct SelvedgeWarning {
     // sizeof(SelvedgeWarning)
     size_t struct_size;
     // The file; lives as long as the model, as does the message.
     const char *file;
-    // What was wrong and what was done.
+    // The fault, and what was done about it.
     const char *message;
     // Counted from 1; 0 for the file as a whole.
     uint64_t line;
@@ -283,7 +283,7 @@ typedef struct SelvedgeRendererOptions {
     size_t struct_size;
     // Part of the device's name; null takes a discrete GPU, else an integrated one, else the CPU.
     const char *device;
-    // Not 0: load Vulkan's validation layer; what it says of a picture is SELVEDGE_STATUS_RENDER.
+    // Not 0: load Vulkan's validation layer; its messages about a picture give SELVEDGE_STATUS_RENDER.
     uint32_t validation;
 } SelvedgeRendererOptions;
 
@@ -384,17 +384,17 @@ enum SelvedgeStatus selvedge_host_set_transform(const struct SelvedgeHost *host,
 // Shows (not 0) or hides an instance, counted from 0.
 //
 // # Safety
-// The pointer is null or points to what it says.
+// The pointer is null or points to a value of its type.
 enum SelvedgeStatus selvedge_host_set_visible(const struct SelvedgeHost *host, uint64_t instance, uint32_t visible);
 
 // Frees the renderer, and leaves the host's device as it is; null is allowed. The GPU has finished all frames.
 //
 // # Safety
-// What was made here and is used by no other call at the same time.
+// This library made it, and no other call uses it at the same time.
 void selvedge_host_free(struct SelvedgeHost *host);
 
-// Reads a file: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, .csg and others, by its content. `options` may
-// be null.
+// Reads a file: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, .csg and others, by its content. `options`
+// may be null.
 //
 // # Safety
 // Pointers are null or point to what they say.
@@ -402,8 +402,8 @@ enum SelvedgeStatus selvedge_open(const char *path,
                                   const struct SelvedgeReadOptions *options,
                                   struct SelvedgeModel **model);
 
-// The same of a file's content; `name` stands for it in messages, and its ending tells the format where the content does
-// not.
+// The same of a file's content. `name` is its name in messages, and the name's ending gives the format where the
+// content does not.
 //
 // # Safety
 // Pointers are null or point to what they say; `bytes` to `count` bytes.
@@ -430,7 +430,7 @@ enum SelvedgeStatus selvedge_model_warning(const struct SelvedgeModel *model,
 // Frees a model; null is allowed.
 //
 // # Safety
-// What was made here and is used by no other call at the same time.
+// This library made it, and no other call uses it at the same time.
 void selvedge_model_free(struct SelvedgeModel *model);
 
 // Fills `image`, whose struct_size is set, with the one of this flag: SELVEDGE_COLOUR, or one of the view's outputs.
@@ -456,7 +456,7 @@ enum SelvedgeStatus selvedge_picture_save_png(const struct SelvedgePicture *pict
 // Frees a picture and its images; null is allowed.
 //
 // # Safety
-// What was made here and is used by no other call at the same time.
+// This library made it, and no other call uses it at the same time.
 void selvedge_picture_free(struct SelvedgePicture *picture);
 
 // Opens a device; `options` may be null.
@@ -478,7 +478,7 @@ enum SelvedgeStatus selvedge_render(const struct SelvedgeRenderer *renderer,
 // Frees the device; null is allowed.
 //
 // # Safety
-// What was made here and is used by no other call at the same time.
+// This library made it, and no other call uses it at the same time.
 void selvedge_renderer_free(struct SelvedgeRenderer *renderer);
 
 // Finds a visible point of the model within `radius` pixels of a place in the view's picture, and fills `snap`, whose

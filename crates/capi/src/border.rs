@@ -1,4 +1,4 @@
-//! What every call does: status, the last error, panics caught, structs of any size read and written.
+//! The boundary of every call: status, last error, caught panics, structs of any size read and written.
 
 use selvedge_session::SessionError;
 use std::cell::RefCell;
@@ -10,7 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SelvedgeStatus {
-    /// Everything asked for was done.
+    /// The call succeeded.
     Ok = 0,
     /// A pointer, size, number or name that cannot be used.
     Argument = 1,
@@ -157,7 +157,7 @@ pub unsafe fn text<'a>(what: &str, from: *const c_char) -> Result<Option<&'a str
 /// A handle of the caller's.
 ///
 /// # Safety
-/// The pointer is null, or this library made it and nobody has freed it.
+/// The pointer is null, or this library made it and it was not freed.
 pub unsafe fn handle<'a, T>(what: &str, from: *const T) -> Result<&'a T, Failure> {
     // SAFETY: as the caller promises
     unsafe { from.as_ref() }.ok_or_else(|| argument(format!("the {what} is a null pointer")))
@@ -177,7 +177,7 @@ pub unsafe fn place<'a, T>(to: *mut *mut T) -> Result<&'a mut *mut T, Failure> {
 /// Frees a handle.
 ///
 /// # Safety
-/// The pointer is null, or this library made it and nobody has freed it.
+/// The pointer is null, or this library made it and it was not freed.
 pub unsafe fn free<T>(handle: *mut T) {
     if !handle.is_null() {
         // SAFETY: as the caller promises; a panic while it is freed ends here

@@ -97,7 +97,7 @@ pub struct SelvedgeTargets {
     pub instance: SelvedgeTarget,
 }
 
-/// What a finished frame reports.
+/// The counts of a finished frame.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct SelvedgeReport {
@@ -322,8 +322,8 @@ impl SelvedgeHost {
     }
 }
 
-/// Uploads the model that later frames show. Only samples, edges, line_width, ambient and sun of `view` are read, and
-/// with edges its height: line_width counts pixels of a picture so high. The call does not wait for the GPU: objects
+/// Uploads the model that later frames show. Only samples, edges, line_width, ambient and sun of `view` are read,
+/// whether its style shows curvature, and with edges its height: line_width counts pixels of a picture so high. The call does not wait for the GPU: objects
 /// that frames in flight use are freed with their slots.
 ///
 /// # Safety
@@ -346,8 +346,8 @@ pub unsafe extern "C" fn selvedge_host_upload(
     })
 }
 
-/// Records a frame into a VkCommandBuffer of the host's. Only size, camera, style, background and tolerance of `view`
-/// are read. With a null background the host's picture stays where no model is drawn. The frame that was recorded into
+/// Records a frame into a VkCommandBuffer of the host's. Only size, camera, style, curvature_range (which a host sets:
+/// where it is 0, the whole model is sampled), background and tolerance of `view` are read. With a null background the host's picture stays where no model is drawn. The frame that was recorded into
 /// the slot before has finished.
 ///
 /// # Safety
@@ -371,7 +371,7 @@ pub unsafe extern "C" fn selvedge_host_record(
         }
         let (slot, model) = (host.slot(slot)?, host.model()?);
         // SAFETY: as the caller promises
-        let (camera, settings) = unsafe { (view.camera_of(&model)?, view.host_frame()?) };
+        let (camera, settings) = unsafe { (view.camera_of(&model)?, view.host_frame(&model)?) };
         let whole = camera.size;
         let size = if (targets.width, targets.height) == (0, 0) { whole } else { (targets.width, targets.height) };
         let corner = (size != whole || (targets.x, targets.y) != (0, 0)).then_some((targets.x, targets.y));
@@ -469,7 +469,7 @@ pub unsafe extern "C" fn selvedge_host_set_transform(
 /// Shows (not 0) or hides an instance, counted from 0.
 ///
 /// # Safety
-/// The pointer is null or points to what it says.
+/// The pointer is null or points to a value of its type.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn selvedge_host_set_visible(
     host: *const SelvedgeHost,
@@ -488,7 +488,7 @@ pub unsafe extern "C" fn selvedge_host_set_visible(
 /// Frees the renderer, and leaves the host's device as it is; null is allowed. The GPU has finished all frames.
 ///
 /// # Safety
-/// What was made here and is used by no other call at the same time.
+/// This library made it, and no other call uses it at the same time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn selvedge_host_free(host: *mut SelvedgeHost) {
     // SAFETY: as the caller promises

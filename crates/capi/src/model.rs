@@ -31,7 +31,7 @@ pub struct SelvedgeReadOptions {
     pub strict: u32,
 }
 
-/// What a model holds.
+/// Counts and extent of a model.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct SelvedgeModelInfo {
@@ -49,13 +49,13 @@ pub struct SelvedgeModelInfo {
     pub faces: u64,
     /// See selvedge_model_warning.
     pub warnings: u64,
-    /// 1: all that the file states is there.
+    /// 1: nothing of the file is left out.
     pub complete: u32,
-    /// What is drawn and what is missing, one sentence; lives as long as the model.
+    /// The drawn and the missing parts, one sentence; lives as long as the model.
     pub summary: *const c_char,
 }
 
-/// Something in the file that was left out, healed or guessed.
+/// Something in the file that was left out, repaired or guessed.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct SelvedgeWarning {
@@ -63,7 +63,7 @@ pub struct SelvedgeWarning {
     pub struct_size: usize,
     /// The file; lives as long as the model, as does the message.
     pub file: *const c_char,
-    /// What was wrong and what was done.
+    /// The fault, and what was done about it.
     pub message: *const c_char,
     /// Counted from 1; 0 for the file as a whole.
     pub line: u64,
@@ -80,8 +80,8 @@ unsafe impl Sized for SelvedgeModelInfo {}
 // SAFETY: as above
 unsafe impl Sized for SelvedgeWarning {}
 
-/// Reads a file: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, .csg and others, by its content. `options` may
-/// be null.
+/// Reads a file: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, .csg and others, by its content. `options`
+/// may be null.
 ///
 /// # Safety
 /// Pointers are null or point to what they say.
@@ -100,8 +100,8 @@ pub unsafe extern "C" fn selvedge_open(
     })
 }
 
-/// The same of a file's content; `name` stands for it in messages, and its ending tells the format where the content does
-/// not.
+/// The same of a file's content. `name` is its name in messages, and the name's ending gives the format where the
+/// content does not.
 ///
 /// # Safety
 /// Pointers are null or point to what they say; `bytes` to `count` bytes.
@@ -209,12 +209,12 @@ pub unsafe extern "C" fn selvedge_model_warning(
 /// Frees a model; null is allowed.
 ///
 /// # Safety
-/// What was made here and is used by no other call at the same time.
+/// This library made it, and no other call uses it at the same time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn selvedge_model_free(model: *mut SelvedgeModel) {
     // SAFETY: as the caller promises
     unsafe { free(model) }
 }
 
-/// The text of nothing.
+/// No text.
 pub const NO_TEXT: *const c_char = null();

@@ -145,7 +145,7 @@ pub unsafe extern "C" fn selvedge_picture_save_png(
 /// Frees a picture and its images; null is allowed.
 ///
 /// # Safety
-/// What was made here and is used by no other call at the same time.
+/// This library made it, and no other call uses it at the same time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn selvedge_picture_free(picture: *mut SelvedgePicture) {
     // SAFETY: as the caller promises

@@ -28,7 +28,7 @@ pub struct SelvedgeRendererOptions {
     pub struct_size: usize,
     /// Part of the device's name; null takes a discrete GPU, else an integrated one, else the CPU.
     pub device: *const c_char,
-    /// Not 0: load Vulkan's validation layer; what it says of a picture is SELVEDGE_STATUS_RENDER.
+    /// Not 0: load Vulkan's validation layer; its messages about a picture give SELVEDGE_STATUS_RENDER.
     pub validation: u32,
 }
 
@@ -42,8 +42,8 @@ pub struct SelvedgeView {
     pub width: u32,
     /// Pixels, 1 to 16384.
     pub height: u32,
-    /// iso, front, right, back, left, top, bottom, or "AZIMUTH,ELEVATION" in degrees: as large as the model fits. Null: iso,
-    /// or from `eye` where eye and target differ.
+    /// iso, front, right, back, left, top, bottom, or "AZIMUTH,ELEVATION" in degrees: the model fills the picture. Null:
+    /// iso, or from `eye` where eye and target differ.
     pub standard: *const c_char,
     /// Position of the eye, millimetres.
     pub eye: [f64; 3],
@@ -59,7 +59,7 @@ pub struct SelvedgeView {
     pub outputs: u32,
     /// 1, 4 or 8 samples of each pixel's colour; 0: 1.
     pub samples: u32,
-    /// shaded, clay, normals or zebra; null: shaded.
+    /// shaded, clay, technical, normals, zebra, isophotes, mean-curvature or gaussian-curvature; null: shaded.
     pub style: *const c_char,
     /// A CSS colour, gradient or none; null: gradient.
     pub background: *const c_char,
@@ -82,6 +82,9 @@ pub struct SelvedgeView {
     /// Radius of ambient occlusion, millimetres. 0: a twenty-fifth of the model's diagonal with one sample, no ambient
     /// occlusion with several. Below 0: no ambient occlusion.
     pub ambient: f64,
+    /// The largest mean curvature on the scale of the styles of curvature, 1/mm, whose square is that of Gaussian curvature;
+    /// 0: a round number at which most of the model's curvatures are told apart.
+    pub curvature_range: f64,
 }
 
 pub(crate) const NO_VIEW: SelvedgeView = SelvedgeView {
@@ -106,6 +109,7 @@ pub(crate) const NO_VIEW: SelvedgeView = SelvedgeView {
     rotation: [0.0; 9],
     translation: [0.0; 3],
     ambient: 0.0,
+    curvature_range: 0.0,
 };
 
 // SAFETY: each begins with its size and consists of numbers and pointers
@@ -167,7 +171,7 @@ pub unsafe extern "C" fn selvedge_render(
     })
 }
 
-/// The word, or the one that stands for nothing said.
+/// The word, or the default for null.
 ///
 /// # Safety
 /// As [`text`].
@@ -180,7 +184,7 @@ where
     word.parse().map_err(|error: T::Err| argument(error.to_string()))
 }
 
-/// The vector, or what stands for zeros.
+/// The vector, or the default for zeros.
 fn or(given: [f64; 3], usual: DVec3) -> DVec3 {
     if given == [0.0; 3] { usual } else { given.into() }
 }
@@ -195,7 +199,7 @@ impl SelvedgeView {
             Ok(Job {
                 camera: self.camera_of(&model.loaded.model)?,
                 scene: self.scene(images.contains(&Image::Edge), &model.loaded.model)?,
-                frame: self.frame()?,
+                frame: self.frame(&model.loaded.model)?,
                 outputs: Image::outputs(images),
                 backdrop: word::<Backdrop>("the background", self.background, "gradient")?,
                 model: Arc::clone(&model.loaded.model),
@@ -226,14 +230,29 @@ impl SelvedgeView {
             radius => Some(Ambient::Radius(radius)).filter(|_| radius != 0.0),
         };
         let ambient = Ambient::radius(ambient, samples, model);
-        Ok(SceneSettings { edges: drawn, samples, smooth, ambient, sun, ..SceneSettings::default() })
+        // SAFETY: as the caller promises
+        let curvature = unsafe { self.style() }?.is_curvature();
+        Ok(SceneSettings { edges: drawn, samples, smooth, ambient, sun, curvature, ..SceneSettings::default() })
     }
 
     /// # Safety
     /// As [`SelvedgeView::job`].
-    unsafe fn frame(&self) -> Result<FrameSettings, Failure> {
+    unsafe fn style(&self) -> Result<Style, Failure> {
         // SAFETY: as the caller promises
-        let style = unsafe { word::<Style>("the style", self.style, "shaded") }?;
+        unsafe { word::<Style>("the style", self.style, "shaded") }
+    }
+
+    /// # Safety
+    /// As [`SelvedgeView::job`].
+    unsafe fn frame(&self, model: &Model) -> Result<FrameSettings, Failure> {
+        // SAFETY: as the caller promises
+        let style = unsafe { self.style() }?;
+        let curvature_range = match self.curvature_range {
+            0.0 if style.is_curvature() => model.curvature_range(),
+            0.0 => 1.0,
+            range if range.is_finite() && range > 0.0 => range,
+            range => return Err(argument(format!("the largest curvature must be above 0, not {range}"))),
+        };
         let tolerance_px = if self.tolerance == 0.0 { 0.5 } else { self.tolerance };
         if !(tolerance_px >= FrameSettings::LEAST_TOLERANCE_PX && tolerance_px.is_finite()) {
             return Err(argument(format!(
@@ -241,16 +260,16 @@ impl SelvedgeView {
                 FrameSettings::LEAST_TOLERANCE_PX
             )));
         }
-        Ok(FrameSettings { tolerance_px, style, ..FrameSettings::default() })
+        Ok(FrameSettings { tolerance_px, style, curvature_range, ..FrameSettings::default() })
     }
 
     /// The settings of a host's frame: over the host's picture, or over a colour.
     ///
     /// # Safety
     /// As [`SelvedgeView::job`].
-    pub(crate) unsafe fn host_frame(&self) -> Result<FrameSettings, Failure> {
+    pub(crate) unsafe fn host_frame(&self, model: &Model) -> Result<FrameSettings, Failure> {
         // SAFETY: as the caller promises
-        let (frame, background) = unsafe { (self.frame()?, text("the background", self.background)?) };
+        let (frame, background) = unsafe { (self.frame(model)?, text("the background", self.background)?) };
         let background = background.map(colour).transpose().map_err(argument)?;
         Ok(FrameSettings { background, ..frame })
     }
@@ -310,7 +329,7 @@ impl SelvedgeView {
 /// Frees the device; null is allowed.
 ///
 /// # Safety
-/// What was made here and is used by no other call at the same time.
+/// This library made it, and no other call uses it at the same time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn selvedge_renderer_free(renderer: *mut SelvedgeRenderer) {
     // SAFETY: as the caller promises

@@ -60,7 +60,7 @@ fn every_call_refuses_what_it_must() {
     good(&watched(&program).arg(bracket).output().expect("it runs"));
 }
 
-/// The sanitizer would tell.
+/// The sanitizer reports it.
 #[test]
 fn a_handle_that_is_not_freed_is_seen() {
     let into = tempfile::tempdir().expect("a folder");
@@ -121,7 +121,7 @@ fn the_host_records_into_its_own_command_buffer() {
 
 /// Null handles, null pointers and wrong sizes are refused; no device is made.
 #[test]
-fn a_host_is_told_what_it_got_wrong() {
+fn a_hosts_mistakes_are_refused() {
     let into = tempfile::tempdir().expect("a folder");
     good(&watched(&compiled(&folder().join("tests/host_border.c"), into.path())).output().expect("it runs"));
 }

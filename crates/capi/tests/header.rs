@@ -1,4 +1,5 @@
-//! include/selvedge.h is what cbindgen makes of the sources: `SELVEDGE_WRITE_HEADER=1 cargo test -p selvedge-capi` writes it.
+//! include/selvedge.h is cbindgen's output for the sources. `SELVEDGE_WRITE_HEADER=1 cargo test -p selvedge-capi`
+//! writes it.
 
 use std::fs;
 use std::path::Path;

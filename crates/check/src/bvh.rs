@@ -1,4 +1,4 @@
-//! A bounding volume hierarchy: the boxes that a ray may meet, nearest first.
+//! A bounding volume hierarchy: visits the boxes that a ray may meet, nearest first.
 //!
 //! Binary, built from the top by the surface area heuristic over [`BINS`] bins an axis; the boxes of
 //! a leaf are a range of one permutation. Source: I. Wald, *On fast construction of SAH-based bounding
@@ -11,10 +11,10 @@ use glam::DVec3;
 const BINS: usize = 16;
 /// Items a leaf may hold: a box test costs about a fifth of an item's own first test.
 const LEAF: usize = 2;
-/// Levels a traversal has room for: `log(2^24) / log(8 / 7)` is 125.
+/// Levels of a traversal's stack: `log(2^24) / log(8 / 7)` is 125.
 const DEPTH: usize = 128;
 
-/// Where a ray is inside a box, for a direction given by its reciprocal.
+/// Intersects a ray with boxes, for a direction given by its reciprocal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slabs {
     origin: DVec3,
@@ -70,8 +70,8 @@ impl Bvh {
         self.nodes.first().map_or(Bounds::EMPTY, |n| n.bounds)
     }
 
-    /// Calls `visit(item)` for items whose box the ray meets between `range.0` and `range.1`. `visit`
-    /// returns the new end of the range, so that a hit hides what is behind it.
+    /// Calls `visit(item)` for items whose box the ray meets between `range.0` and `range.1`. `visit` returns the new
+    /// end of the range, so that a hit hides everything behind it.
     pub fn visit(&self, ray: &Slabs, range: (f64, f64), mut visit: impl FnMut(u32) -> f64) {
         let (start, mut end) = range;
         let mut stack = [(0u32, f64::NEG_INFINITY); DEPTH];

@@ -18,8 +18,8 @@ use crate::spline::{Control, Patch};
 use crate::trim::LoopIndex;
 use glam::{DVec2, DVec3, DVec4};
 
-/// Curvature at which halving stops: the largest relative deviation of a tangent from the mean one. From
-/// 0.1 to 0.8 the time of a picture hardly changes, and the number of leaves does by forty.
+/// Curvature at which halving stops: the largest relative deviation of a tangent from the mean one. From 0.1 to 0.8 the
+/// time of a picture hardly changes, but the number of leaves changes by a factor of forty.
 const FLAT: f64 = 0.4;
 /// Halvings of a Bézier patch in each direction at most: poles never become flat.
 const LEVELS: u32 = 3;
@@ -44,7 +44,7 @@ pub(super) struct Ray {
     planes: (DVec3, DVec3),
 }
 
-/// Where a ray meets a leaf.
+/// A meeting of a ray and a leaf.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Meeting {
     /// Ray parameter.
@@ -104,7 +104,7 @@ impl Ray {
         DVec2::new(self.planes.0.dot(from), self.planes.1.dot(from))
     }
 
-    /// Of the point of the ray nearest to `p`.
+    /// Ray parameter of the point of the ray nearest to `p`.
     pub fn parameter(&self, p: DVec3) -> f64 {
         (p - self.origin).dot(self.direction) / self.direction.length_squared()
     }
@@ -212,7 +212,7 @@ impl Net {
         }
         let normal = u.cross(v);
         let square = normal.length_squared();
-        // a parallelogram without area covers nothing; let the solver say so
+        // a parallelogram without area covers nothing; the solver rejects it
         (square > 0.0).then(|| Shape::Affine {
             normal,
             dual_u: v.cross(normal) / square,

@@ -8,16 +8,15 @@
 //!         ──LayerTracer──▶ where the union of the opaque Boolean solids is entered, and faces seen through
 //! ```
 //!
-//! Nothing is tessellated and nothing is sampled: a hit is a root of the surface's own rational
-//! equations, accurate to about 1e-15 of the distance to the eye, and a root is left out only after a
-//! proof that there is none (see the `solver` module). By rule the reference leaves out a surface seen exactly edge-on,
-//! because it covers no area. A solid is hit where the ray enters it, at the near plane or behind it: a near plane
-//! within a solid cuts it open, and the first face entered from there is seen. Of a transparent solid every face is
-//! hit, entered or left, unless its opacity is 0. Faces and meshes of a model trimmed by a volume are hit within the
-//! volume, and up to [`ON`] outside of it.
+//! Nothing is tessellated and nothing is sampled: a hit is a root of the surface's own rational equations, accurate to
+//! about 1e-15 of the distance to the eye, and a root is excluded only by a proof (see the `solver` module). The
+//! reference leaves out a surface seen exactly edge-on, because it covers no area. A solid is hit where the ray enters
+//! it, at the near plane or behind it: a near plane within a solid cuts it open, and the first face entered from there
+//! is visible. A ray hits every face of a transparent solid, whether it enters or leaves, unless the opacity is 0.
+//! Faces and meshes of a model trimmed by a volume are hit within the volume, and up to [`ON`] outside of it.
 //!
-//! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`]; [`SunTracer`] and [`judge_sun`] do so for the
-//! light. [`EdgeTracer`] says which points of edges are seen; [`drawing`] has a view's lines as curves.
+//! [`Tracer`] traces rays, [`judge`] compares a drawn [`Picture`]; [`SunTracer`] and [`judge_sun`] do so for the light.
+//! [`EdgeTracer`] finds the visible points of edges; [`drawing`] has a view's lines as curves.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
@@ -85,7 +84,7 @@ pub struct Hit {
     pub facet: bool,
 }
 
-/// The true picture: what each pixel's centre sees. Images as [`Images`] has them.
+/// The true picture: the hit at each pixel's centre. Images as in [`Images`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
     /// Width and height in pixels.
@@ -101,7 +100,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// What a judge looks at.
+    /// The images for a judge.
     pub fn images(&self) -> Images<'_> {
         Images { size: self.size, depth: &self.depth, face: &self.face, normal: &self.normal, ..Images::default() }
     }
@@ -113,7 +112,7 @@ pub struct Tracer {
     parts: Vec<PartTree>,
     placed: Vec<Placed>,
     top: Bvh,
-    /// The model's Boolean solids and closed parts that are seen through: those that are opaque are one.
+    /// The model's Boolean solids and transparent closed parts; the opaque ones are one union.
     solids: Option<solids::LayerTracer>,
     /// The volume that trims faces and meshes.
     trim: Option<solids::SolidTracer>,
@@ -191,8 +190,8 @@ impl Tracer {
         Self { parts, placed, top, solids, trim, bounds, given_up }
     }
 
-    /// A box around everything that can be hit, but for unbounded solids, of which only the bounded
-    /// primitives count; at least the model's.
+    /// A box around everything that can be hit; of unbounded solids only the bounded primitives count. At least the
+    /// model's.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
@@ -223,7 +222,7 @@ impl Tracer {
         self.given_up.load(Ordering::Relaxed)
     }
 
-    /// The true picture. `progress` is told the pixels done since last.
+    /// The true picture. `progress` receives the number of pixels done since the last call.
     pub fn picture(&self, camera: &Camera, progress: &(dyn Fn(u64) + Sync)) -> Picture {
         let (w, h) = camera.size;
         let row = |y: u32| {
@@ -248,8 +247,8 @@ impl Tracer {
 /// diagonal, are within it: a face that lies in the boundary is there, whatever the rounding.
 pub const ON: f64 = 1e-6;
 
-/// Padding of boxes relative to the diagonal of what they are in: above the rounding of a slab test,
-/// below the size of anything.
+/// Padding of boxes relative to the diagonal of their model: above the rounding of a slab test, below the size of any
+/// feature.
 const PAD: f64 = 1e-12;
 
 impl PartTree {

@@ -3,14 +3,14 @@
 use glam::DVec3;
 use selvedge_geometry::model::Camera;
 
-/// Where the key light comes from.
+/// The source of the key light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Key {
     /// The studio's lamp.
     Lamp,
     /// A sun in this direction, a unit vector in model space.
     Sun(DVec3),
-    /// A sun that something hides.
+    /// A sun hidden by an object.
     Shadow,
 }
 
@@ -27,13 +27,21 @@ pub fn studio(colour: DVec3, n: DVec3, camera: &Camera, key: Key) -> DVec3 {
         Key::Lamp => (v.dot(lamp), v.dot((lamp + DVec3::Z).normalize())),
         Key::Sun(towards) => (n.dot(towards), v.dot((in_view(towards) + DVec3::Z).normalize_or_zero())),
     };
-    let fill = v.dot(DVec3::new(0.71, 0.14, 0.69)).max(0.0);
+    let fill =
+        0.22 * v.dot(DVec3::new(0.71, 0.14, 0.69)).max(0.0) + 0.30 * v.dot(DVec3::new(0.64, 0.48, -0.60)).max(0.0);
     let sky = 0.12 + (0.26 - 0.12) * (0.5 + 0.5 * v.y);
     let highlight = 0.10 * shine.max(0.0).powi(48);
-    toned(colour * (0.62 * cosine.max(0.0) + 0.22 * fill + sky) + highlight)
+    toned(colour * (0.62 * cosine.max(0.0) + fill + sky) + highlight)
 }
 
-/// The tone curve: light up to its shoulder as it is, above it nearer and nearer to 1.
+/// The sRGB colour of a curvature that is this share of the largest on the scale: from blue hollows over light grey to red
+/// bulges, which `shade.glsl` darkens where the surface leans away.
+pub fn curvature_scale(share: f64) -> DVec3 {
+    let end = if share < 0.0 { DVec3::new(0.129, 0.400, 0.675) } else { DVec3::new(0.698, 0.094, 0.169) };
+    DVec3::splat(0.941).lerp(end, share.abs().min(1.0))
+}
+
+/// The tone curve: identity up to the shoulder, then nearer and nearer to 1.
 fn toned(light: DVec3) -> DVec3 {
     const SHOULDER: f64 = 0.76;
     let (peak, rest) = (light.max_element(), 1.0 - SHOULDER);

@@ -7,7 +7,7 @@ use crate::spline::MAX_DEGREE;
 use glam::DVec2;
 use std::ops::{Add, Mul, Sub};
 
-/// What a net is made of.
+/// The element of a net.
 pub(super) trait Value:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self> + Default
 {

@@ -12,11 +12,11 @@ use std::sync::atomic::Ordering;
 /// leaves both find a root on their common border, and a seam has it at two parameters.
 const SAME: f64 = 1e-11;
 
-/// Two hits of one face are one, too, when nearer than this many times what is known of their places: a
-/// tangent point is found in a few neighbouring cells of the solver.
+/// Two hits of one face are also one when nearer than this many times the uncertainty of their places: a tangent point
+/// is found in a few neighbouring cells of the solver.
 const CLUSTER: f64 = 8.0;
 
-/// Asks a [`Tracer`] many rays of one [`Camera`] without allocating for each.
+/// Traces many rays of one [`Camera`] through a [`Tracer`] without allocating for each.
 #[derive(Debug)]
 pub struct Probe<'a> {
     tracer: &'a Tracer,
@@ -140,7 +140,7 @@ impl<'a> Probe<'a> {
             if hit.depth > last {
                 break;
             }
-            // found is sorted by depth: only its recent entries can be as near as that
+            // found is sorted by depth: only its recent entries can be that near
             let reach = same + CLUSTER * (spread + widest);
             let twin =
                 self.found[..i].iter().rev().take_while(|(f, _)| hit.depth - f.depth <= reach).any(|(f, s)| {
@@ -160,7 +160,7 @@ impl Drop for Probe<'_> {
 }
 
 impl Placed {
-    /// A meeting in model coordinates; the face is for the caller to fill in.
+    /// A meeting in model coordinates; the caller fills in the face.
     fn hit(&self, m: &Meeting, eye: DVec3, forward: DVec3) -> Hit {
         let point = self.to_model.transform_point3(m.point);
         Hit {

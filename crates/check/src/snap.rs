@@ -20,7 +20,7 @@ use glam::{DAffine3, DMat4, DVec2, DVec3, Vec4Swizzles};
 use selvedge_geometry::edges::curve::{CurveShape, shape};
 use selvedge_geometry::edges::nearest::nearest;
 
-/// What may be snapped to, in the order in which they are preferred.
+/// The kinds of points, the preferred one first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SnapKind {
     /// Where an edge begins or ends.

@@ -17,11 +17,10 @@
 //! 4. **Edge-on.** A large cell whose image is a line through 0 within rounding: the surface contains
 //!    a piece of the ray. It covers no area of any picture, and is left out.
 //!
-//! Halving goes across the side that is longer in the image, so that cells shrink to the root in both
-//! coordinates at a fold as well. The mean value argument behind 2 is that of the Krawczyk operator:
-//! R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis*, 2009, chapter 8;
-//! the convex hull argument behind 1 is that of Bézier clipping: T. Nishita, T. W. Sederberg,
-//! M. Kakimoto, *Ray tracing trimmed rational surface patches*, SIGGRAPH 1990.
+//! Halving goes across the side that is longer in the image, so that cells shrink to the root in both coordinates at a
+//! fold as well. The mean value argument behind 2 is that of the Krawczyk operator: R. E. Moore, R. B. Kearfott, M. J.
+//! Cloud, *Introduction to Interval Analysis*, 2009, chapter 8; the convex hull argument behind 1 is that of Bézier
+//! clipping: T. Nishita, T. W. Sederberg, M. Kakimoto, *Ray tracing trimmed rational surface patches*, SIGGRAPH 1990.
 
 use super::net::{self, Degrees};
 use glam::DVec2;
@@ -33,7 +32,7 @@ const NEWTON_STEPS: u32 = 80;
 /// Roots are accepted this far outside their cell, in its own unit: neighbours that share a border
 /// must not both miss a root on it. Callers drop the duplicates.
 const BORDER: f64 = 1e-12;
-/// A step this small, in units of the patch, needs no other: it squares.
+/// A step this small, in units of the patch, is the last: convergence is quadratic.
 const POLISHED: f64 = 1e-9;
 /// Cells smaller than this fraction of the patch whose image is a line count as points: a tangent
 /// ray meets a second-order fold in a cell of 3e-8, a fourth-order one in 2e-4.
@@ -41,10 +40,9 @@ const EDGE_ON: f64 = 1e-3;
 /// An image this many roundings long and one wide is a line. The last cell at a pole, a triangle that
 /// wide, may be longer than it is wide, too: up to the angle of a leaf, about 1/50.
 const LINE: f64 = 1e4;
-/// Cells within which the root of a point is looked for, on either side.
+/// Cells on either side within which the root of a point is searched.
 const NEIGHBOURS: f64 = 16.0;
-/// Cells visited before the search of a patch is given up. A transversal ray visits 1, a tangent one
-/// some hundreds.
+/// Cells visited before the search of a patch is given up. A transversal ray visits 1, a tangent one some hundreds.
 const BUDGET: u32 = 1 << 15;
 
 /// A common zero of both components.
@@ -52,8 +50,7 @@ const BUDGET: u32 = 1 << 15;
 pub(super) struct Root {
     /// Parameters in the unit square.
     pub at: DVec2,
-    /// How well `at` is known: rounding over slope, or half the sides of the cell that a point stands
-    /// for.
+    /// The uncertainty of `at`: rounding over slope, or half the sides of the cell of a point.
     pub spread: DVec2,
 }
 
@@ -64,7 +61,7 @@ struct Cell {
     side: DVec2,
 }
 
-/// Working memory, kept between rays.
+/// Working memory, reused between rays.
 #[derive(Debug, Default)]
 pub(super) struct Solver {
     /// The net of the whole square: fill before [`Solver::solve`].
@@ -191,7 +188,7 @@ impl Inverse {
         DVec2::new(self.x.dot(d), self.y.dot(d))
     }
 
-    /// Row sums of absolute values: what a unit error in both components does to each parameter.
+    /// Row sums of absolute values: the change of each parameter by a unit error in both components.
     fn rows(&self) -> DVec2 {
         DVec2::new(self.x.abs().element_sum(), self.y.abs().element_sum())
     }
@@ -258,8 +255,8 @@ fn polished(base: &[DVec2], degrees: Degrees, start: DVec2, leash: DVec2, noise:
     root
 }
 
-/// The root that a cell within rounding of 0 stands for: next to a fold, Newton's method still tells
-/// its two roots apart; at a fold or a pole it does not converge, and the middle is as good as any.
+/// The root of a cell within rounding of 0. Next to a fold, Newton's method still separates its two roots; at a fold or
+/// a pole it does not converge, and the middle is as good as any point.
 fn point(base: &[DVec2], degrees: Degrees, cell: Cell, noise: f64) -> Root {
     let middle = cell.low + cell.side * 0.5;
     let mut at = middle;

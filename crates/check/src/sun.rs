@@ -1,16 +1,16 @@
-//! Where the sun reaches, exactly, and how far a drawn picture's light is from that.
+//! Which points the sun reaches, exactly, and the errors of a drawn picture's light.
 //!
 //! ```text
 //!   hit ──────────▶ sun      the line behind the hit, through the opaque solids: any length within them is shade;
-//!                            past placed faces and meshes: any that it meets shades, closed or not
+//!                            past placed faces and meshes: any that it meets casts shade, closed or not
 //!
-//!   drawn as the truth has it at the pixel's centre ........................... agree
-//!   as it has it at an offset of at most limit_px, the smallest of some tried . shift
-//!   as it has it where the hit is moved by FrameStats::shadow_deviation ....... deviated
+//!   drawn as at the pixel's centre in truth ................................... agree
+//!   as at an offset of at most limit_px, the smallest of those tried .......... shift
+//!   as where the hit is moved by FrameStats::shadow_deviation ................. deviated
 //!   neither .................................................................. wrong
 //! ```
 //!
-//! Faces are met where they are, by roots of their own equations: what a picture's shadows were made from plays no part.
+//! Faces are met by roots of their own equations. The surfaces that cast a picture's shadows are not used.
 
 use super::bvh::Slabs;
 use super::judge::samples;
@@ -24,26 +24,27 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// A model's sun and what casts shadows, made ready for lines.
+/// A model's sun and the objects that cast shadows, made ready for lines.
 #[derive(Debug)]
 pub struct SunTracer {
     casters: Option<SolidTracer>,
-    /// Placed parts that are drawn as faces; their solids are not asked for.
+    /// Placed parts that are drawn as faces, without their solids.
     parts: Option<Tracer>,
     towards: DVec3,
-    /// Of each part: light falls on its outside only.
+    /// For each part, whether it is closed: light then falls on its outside only.
     closed: Vec<bool>,
-    /// Of the model, and of what casts shadows.
+    /// Size of the model and the objects that cast shadows.
     size: f64,
 }
 
-/// Of a hit, relative to the model's size: far above the roundings of [`Hit::point`], far below a pixel.
+/// Rounding of a hit, relative to the model's size: far above the roundings of [`Hit::point`], far below a pixel.
 const ROUNDING: f64 = 1e-9;
-/// And to its place, 4096 ulp: a model may be a thousand million times nearer to itself than to the origin.
+/// Rounding relative to the hit's distance from the origin, 4096 ulp: a model may be a thousand million times nearer to
+/// itself than to the origin.
 const PLACE_ROUNDING: f64 = 1.0 / 1_099_511_627_776.0;
 /// Cosines of normal and sun below this are neither light nor shade: a key light so weak changes no picture.
 const EDGE_ON: f64 = 1e-6;
-/// Hits of a face nearer to the start than this many times what is known of their places are the start itself.
+/// Hits of a face nearer to the start than this many times the uncertainty of their places are the start itself.
 const CLUSTER: f64 = 8.0;
 /// A point counts as on a surface that casts shadows when it is within this many deviations of it.
 const ON_SURFACE: f64 = 2.0;
@@ -52,8 +53,8 @@ const RINGS: u32 = 8;
 const PLACES: u32 = 16;
 
 impl SunTracer {
-    /// `towards` is that of the engine's `SceneSettings::sun`, finite and not 0: what is seen
-    /// through casts no shadow, nor do placed parts that a volume trims.
+    /// `towards` is that of the engine's `SceneSettings::sun`, finite and not 0. Transparent solids cast no shadow, nor
+    /// do placed parts that a volume trims.
     ///
     /// # Errors
     /// [`SolidError`] when an expression is too large.
@@ -87,7 +88,7 @@ impl SunTracer {
         }
         let clear = || {
             let point = hit.point + by;
-            // a solid may have no end
+            // a solid may be unbounded
             let rounding = ROUNDING * self.size + PLACE_ROUNDING * point.length();
             let free =
                 |casters: &SolidTracer| casters.trace(point, self.towards).thickness(rounding, f64::MAX) <= rounding;
@@ -111,7 +112,7 @@ fn meets(tracer: &Tracer, (origin, direction): (DVec3, DVec3), start: f64) -> bo
             let index = index as usize;
             match part.leaves.get(index) {
                 Some(leaf) => leaf.meet(&ray, &mut solver, |m| {
-                    // known in the part's units
+                    // uncertainty, in the part's units
                     let known = CLUSTER * m.spread / local.1.length();
                     let there = leaf.inside || part.faces[leaf.face as usize].loops.contains(m.uv);
                     met |= m.t > start + known && there;
@@ -137,12 +138,12 @@ pub struct SunJudgement {
     pub shifted: u64,
     /// The largest distance at which one is, pixels: of the offsets tried.
     pub worst_shift_px: f64,
-    /// Of the rest, pixels whose light is right where the point is moved by what surfaces may be off by that cast
+    /// Of the rest, pixels whose light is right where the point is moved by the error of the surfaces that cast
     /// shadows: [`Images::shadow_deviation`].
     pub deviated: u64,
     /// Pixels whose light is right nowhere within the limit, nor moved so.
     pub wrong: u64,
-    /// The first of them: column, row.
+    /// The first wrong pixel: column, row.
     pub first_wrong: Option<[u32; 2]>,
 }
 
@@ -150,7 +151,7 @@ pub struct SunJudgement {
 /// beside which the light changes.
 ///
 /// # Panics
-/// When the picture has not the camera's size, no face image or no `sunlit`.
+/// When the picture does not have the camera's size, or has no face image or no `sunlit`.
 pub fn judge_sun(
     tracer: &Tracer,
     sun: &SunTracer,
@@ -197,15 +198,15 @@ struct Light {
     drawn: Drawn,
 }
 
-/// Where a pixel's light is as it is drawn.
+/// The offset at which a pixel's light is as it is drawn.
 enum Drawn {
-    /// So far away, pixels.
+    /// At this distance, pixels.
     Shifted(f64),
     Deviated,
     Wrong,
 }
 
-/// `None` where another face than the true one is drawn, which is judged elsewhere.
+/// `None` where another face than the true one is drawn: `judge` counts it.
 fn look(probe: &mut Probe, sun: &SunTracer, picture: &Images<'_>, index: usize, limit_px: f64) -> Option<Light> {
     let w = picture.size.0 as usize;
     let centre = DVec2::new((index % w) as f64 + 0.5, (index / w) as f64 + 0.5);

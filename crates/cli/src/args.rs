@@ -27,15 +27,16 @@ pub use write::{ConvertArgs, ExportArgs};
 use crate::cut::CutArgs;
 use crate::sweep::Divided;
 use crate::trims::Way;
-use crate::values::{at_least_one, direction, mebibytes, times, tolerance, vector, zoom};
+use crate::values::{at_least_one, curvature, direction, mebibytes, times, tolerance, vector, zoom};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
+use selvedge::model::Model;
 use selvedge::picture::{Levels, Samples, Smooth, SolidWay, Style, TrimWay};
 use selvedge_io::import::Import;
 use selvedge_session::{Ambient, Backdrop, Directions};
 use std::{path::PathBuf, str::FromStr};
 
-/// Told at the end of every help text.
+/// Printed at the end of every help text.
 const STATUSES: &str = "Exit status: 0 done; 1 a picture breaks the accuracy promise, or some of many files failed; 2 wrong usage, a file that cannot \
                         be read or written or of which nothing can be drawn, or with --strict not all of it; 3 no usable \
                         Vulkan device, or the device failed.";
@@ -59,7 +60,7 @@ pub enum Command {
     /// Draw the lines of a view to an SVG file: visible edges and silhouettes as curves; needs no GPU
     #[command(after_help = STATUSES)]
     Draw(DrawArgs),
-    /// Describe what a file holds; needs no GPU
+    /// Describe the content of a file; needs no GPU
     #[command(after_help = STATUSES)]
     Info(InfoArgs),
     /// Write a model as a STEP file; needs no GPU
@@ -74,13 +75,13 @@ pub enum Command {
     /// Measure time against error over tolerances, sizes, levels, zooms and numbers of copies, all in turn
     #[command(after_help = STATUSES)]
     Sweep(SweepArgs),
-    /// Put the ways to trim side by side: time, memory and error over zoom, picture size and each way's accuracy
+    /// Compare the ways to trim: time, memory and error over zoom, picture size and each way's accuracy
     #[command(after_help = STATUSES)]
     Trims(TrimsArgs),
-    /// Draw a small square picture for file managers, on nothing
+    /// Draw a small square picture for file managers, on a transparent background
     #[command(after_help = STATUSES)]
     Thumbnail(ThumbnailArgs),
-    /// Write a model in another form, so that it is read once and opens fast; needs no GPU
+    /// Write a model in the engine's own form, which opens fast; needs no GPU
     #[command(after_help = STATUSES)]
     Convert(ConvertArgs),
     /// List Vulkan devices: what each lacks, and the limits that matter
@@ -98,30 +99,36 @@ pub struct EdgeArgs {
     /// Samples of each pixel's colour, 1, 4 or 8: smooth edges, at about as many times the cost
     #[arg(long, value_name = "N", default_value = "1")]
     pub samples: Samples,
-    /// Borders that are smooth in pictures of one sample: those of all faces (borders, in pictures of one sample), those of
-    /// trimmed faces by the area that they cover of a pixel (trims; trims exactly), or none
+    /// Borders that are smooth in pictures of one sample: borders, of all faces; trims, of trimmed faces, by the area
+    /// that they cover of a pixel, with the exact way to trim; or none
     #[arg(long, value_name = "none|trims|borders")]
     smooth: Option<Smooth>,
 }
 
 impl EdgeArgs {
-    /// As it is said, or by default.
+    /// The value of the option, or its default.
     pub fn smooth(&self) -> Smooth {
         selvedge_session::smooth(self.smooth, self.samples)
     }
 }
 
-/// What a picture looks like.
+/// The appearance of a picture.
 #[derive(Debug, Args)]
 pub struct LookArgs {
-    /// What lies behind the model: a CSS colour, gradient, or none for a transparent PNG; without it the scene file's
+    /// Background of the model: a CSS colour, gradient, or none for a transparent PNG; without it the scene file's
     /// colour, or the gradient
     #[arg(long, value_name = "COLOUR|gradient|none")]
     pub background: Option<Backdrop>,
-    /// How surfaces are shown: shaded, clay (one colour, no highlights), normals (as colours: right red, up green, towards
-    /// the eye blue) or zebra (stripes of a striped room, reflected: they break where surfaces do)
+    /// How surfaces are shown: shaded, clay (one colour, no highlights), technical (white, with sharp edges and outlines
+    /// unless --edges says otherwise), normals (as colours: right red, up green, towards the eye blue), zebra (stripes of a
+    /// striped room, reflected: they break where surfaces do), isophotes (bands of equal angle to the light),
+    /// mean-curvature or gaussian-curvature (of the exact surface, with a legend)
     #[arg(long, value_name = "STYLE", default_value = "shaded")]
     pub style: Style,
+    /// The largest mean curvature on the scale, 1/mm; that of Gaussian curvature ends at its square. The default is a round
+    /// number at which most of the model's curvatures are told apart
+    #[arg(long, value_name = "PER_MM", value_parser = curvature)]
+    pub curvature_range: Option<f64>,
     /// Ambient occlusion darkens corners and contacts. RADIUS is the reach of the occlusion in units of the model; auto is a
     /// twenty-fifth of the model's diagonal. The default is auto for one sample a pixel, and none for several
     #[arg(long, value_name = "RADIUS|auto|none")]
@@ -129,17 +136,23 @@ pub struct LookArgs {
 }
 
 impl LookArgs {
-    /// What lies behind the model of a file.
+    /// The background of the model of a file.
     pub fn backdrop(&self, import: &Import) -> Backdrop {
-        self.background.or(import.picture.background.map(Backdrop::Colour)).unwrap_or(Backdrop::Gradient)
+        let usual = if self.style == Style::Technical { Backdrop::Colour([1.0; 4]) } else { Backdrop::Gradient };
+        self.background.or(import.picture.background.map(Backdrop::Colour)).unwrap_or(usual)
+    }
+
+    /// The end of the scale of curvature.
+    pub fn range(&self, model: &Model) -> f64 {
+        self.curvature_range.unwrap_or_else(|| model.curvature_range())
     }
 }
 
 #[derive(Debug, Args)]
 pub struct RenderArgs {
     /// The models: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, BezierView .bv, .scad, .csg, .asc,
-    /// .selvedge or a scene .toml; `-` is standard input. Of several, each adds its name where the names of the outputs say
-    /// {stem}; the next is read while one is drawn
+    /// .selvedge or a scene .toml; `-` is standard input. Of several, each adds its name where the names of the outputs
+    /// say {stem}; the next is read while one is drawn
     #[arg(required = true)]
     pub models: Vec<PathBuf>,
     #[command(flatten)]
@@ -150,15 +163,15 @@ pub struct RenderArgs {
     pub subdivide: SubdivideArgs,
     #[command(flatten)]
     pub cut: CutArgs,
-    /// PNG file to write; `-` is standard output, here and wherever one file is written. With several views each adds its
-    /// name to every file's, or stands where the file's name says {view}
+    /// PNG file to write; `-` is standard output, here and for any other single file. With several views each adds its
+    /// name to every file's, or replaces {view} in it
     #[arg(short, long, value_name = "OUT.png")]
     pub output: PathBuf,
-    /// Standard views, as large as the model fits: iso, front, right, back, left, top, bottom, or AZIMUTH,ELEVATION in
+    /// Standard views, each fitted to the picture: iso, front, right, back, left, top, bottom, or AZIMUTH,ELEVATION in
     /// degrees, azimuth 0 the front and 90 the right; several with commas
     #[arg(long, value_name = "VIEWS", allow_hyphen_values = true, visible_alias = "views", conflicts_with_all = ["eye", "target", "camera"])]
     pub view: Option<Directions>,
-    /// All views in one picture, side by side; those with names where --view names none
+    /// All views in one picture, side by side; without --view the named standard views
     #[arg(long, conflicts_with_all = ["aov", "stats", "camera_out", "eye", "target", "camera"])]
     pub contact_sheet: bool,
     #[command(flatten)]
@@ -177,8 +190,8 @@ pub struct RenderArgs {
     /// --edges: number of the edge whose line covers the pixel, 0 is none), part and instance (u32, H x W, counted from 1, 0 is none)
     #[arg(long, value_name = "IMAGE=FILE.npy")]
     pub aov: Vec<Aov>,
-    /// Write statistics of a second drawing of the same frame as JSON. `first_frame` has what the driver compiled for the
-    /// first one; `objects` lists the pipelines, buffers and images that exist
+    /// Write statistics of a second drawing of the same frame as JSON. `first_frame` has the driver's compile times for
+    /// the first one; `objects` lists the pipelines, buffers and images that exist
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
     /// Write the camera as JSON: eye, target, up, fovy in degrees (or ortho: half the height), size
@@ -200,7 +213,7 @@ pub struct InfoArgs {
     /// List every face: deviation, gap, loops, notes; and the worst of them
     #[arg(long)]
     pub deep: bool,
-    /// Print JSON; it holds all that `--deep` tells
+    /// Print JSON; it includes everything of `--deep`
     #[arg(long)]
     pub json: bool,
 }
@@ -223,7 +236,8 @@ pub struct CheckArgs {
     /// Built-in views; not together with a camera
     #[arg(long, value_enum, default_value_t = Views::Whole, conflicts_with_all = ["eye", "target", "camera"])]
     pub views: Views,
-    /// In place of the views: so many times closer than the whole model, at the detail nearest to the eye; once each
+    /// In place of the views: so many times closer than the whole model, at the detail nearest to the eye; one view for
+    /// each number
     #[arg(long, value_name = "TIMES", value_parser = times, value_delimiter = ',', conflicts_with_all = ["eye", "target", "camera", "views"])]
     pub zoom: Vec<f64>,
     /// Move the model by this before anything is drawn
@@ -236,8 +250,8 @@ pub struct CheckArgs {
     /// several views each adds its name to the file's
     #[arg(long, value_name = "OUT.png")]
     pub difference: Option<PathBuf>,
-    /// Also draw lines along all edges and judge them: points half a pixel apart that are seen and have no line within half
-    /// its width and 0.5 px, and pixels of lines farther than that from all that is seen
+    /// Also draw lines along all edges and judge them: visible points half a pixel apart without a line within half its
+    /// width and 0.5 px, and pixels of lines farther than that from every visible edge
     #[arg(long)]
     pub edges: bool,
     /// Write the judgements as JSON
@@ -255,8 +269,8 @@ pub struct SweepArgs {
     /// Also a wavy sheet of 1024 patches of each of these degrees
     #[arg(long, value_name = "LIST", value_parser = clap::value_parser!(u8).range(1..=9), value_delimiter = ',')]
     pub degrees: Vec<u8>,
-    /// How patches are divided: bound, a level from 1 to 64, or slefe: by slefes of 3 segments, or as many as stand
-    /// behind it, up to slefe9; several, with commas
+    /// How patches are divided: bound, a level from 1 to 64, or slefe: by slefes of 3 segments, or of the number behind
+    /// it, up to slefe9; several, with commas
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "bound")]
     pub factors: Vec<Divided>,
     /// Tolerances in pixels
@@ -274,17 +288,17 @@ pub struct SweepArgs {
     /// Copy the parts too, not only their placements
     #[arg(long)]
     pub distinct: bool,
-    /// Measured frames of each
+    /// Measured frames for each setting
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = at_least_one)]
     pub frames: usize,
-    /// Pixels judged in the first frame of each; 0 judges none
+    /// Pixels judged in the first frame of each setting; 0 judges none
     #[arg(long, value_name = "N", default_value_t = 2_000)]
     pub samples: usize,
-    /// In place of the table: the bound beside the smallest fixed level that is off by no more, of each view and of all
+    /// In place of the table: the bound beside the smallest fixed level with no larger error, for each view and for all
     /// zooms together
     #[arg(long, conflicts_with = "factors")]
     pub against_fixed: bool,
-    /// Also the triangles a second beside those of an instanced grid of as many
+    /// Also the triangles a second beside those of an instanced grid with the same number
     #[arg(long)]
     pub rate: bool,
     /// Part of the name of the Vulkan device to use
@@ -299,14 +313,14 @@ pub struct SweepArgs {
 pub struct TrimsArgs {
     /// Models beside the generated face: STEP, IGES, OBJ, Rhino .3dm, BezierView .bv or .selvedge. Without any:
     /// samples/panel.step, and nist_pmi_2.stp and m6_countersunk_screw.step in the folder that SELVEDGE_MODELS names,
-    /// those that are there
+    /// if they exist
     pub models: Vec<PathBuf>,
     #[command(flatten)]
     pub read: ReadArgs,
     /// Holes along each side of the generated face; 0 leaves it out
     #[arg(long, value_name = "N", default_value_t = 100)]
     pub holes: usize,
-    /// Ways to put side by side
+    /// Ways to compare
     #[arg(long, value_delimiter = ',', value_name = "WAYS", default_values_t = Way::all())]
     pub ways: Vec<Way>,
     /// Magnifications of the view of the whole model
@@ -324,7 +338,7 @@ pub struct TrimsArgs {
     /// Leave out the sweep over each way's own accuracy
     #[arg(long)]
     pub no_knobs: bool,
-    /// Frames of each measurement; the quickest counts, because others measure what else the machine does
+    /// Frames of each measurement; the quickest counts, because slower ones include other work of the machine
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = at_least_one)]
     pub frames: usize,
     /// Pixels to judge in each view beside those at which the face changes
@@ -338,13 +352,13 @@ pub struct TrimsArgs {
     pub out: Option<PathBuf>,
 }
 
-/// Where the eye is.
+/// The position of the eye.
 #[derive(Debug, Args)]
 pub struct CameraArgs {
-    /// Width and height in pixels; 1920x1080 where a scene does not say
+    /// Width and height in pixels; by default that of the scene, or 1920x1080
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
-    /// A camera of the scene file, by its name; without it the one that the scene's picture names, if any
+    /// A camera of the scene file, by its name; by default the one that the scene's picture names, if any
     #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "target", "up", "fov", "ortho"])]
     pub camera: Option<String>,
     /// Position of the eye, millimetres; without it the whole model is framed
@@ -370,29 +384,28 @@ pub struct FrameArgs {
     /// Largest distance in pixels between a drawn boundary and the true one, at least 0.1
     #[arg(long, value_name = "PX", default_value_t = 0.5, value_parser = tolerance)]
     pub tolerance: f64,
-    /// How finely patches are divided: bound, which keeps the promise, or the same level from 1 to 64 everywhere, which
-    /// does not
+    /// How finely patches are divided: bound, which keeps the accuracy promise, or the same level from 1 to 64
+    /// everywhere, which does not
     #[arg(long, value_name = "bound|N", default_value = "bound")]
     pub factors: Factors,
-    /// How to trim: table (made for views from about as far, closer up for those from near by), exact (made once), or
-    /// auto: table where the scene needs few scan lines, exact beyond
+    /// How to trim: table (made for views from about the same distance; for close views, for those from near by), exact
+    /// (made once), or auto: table where the scene needs few scan lines, exact beyond
     #[arg(long, value_name = "WAY", default_value = "auto")]
     pub trim: TrimWay,
     /// How to draw Boolean solids: events (a ray a pixel), cst (each primitive, trimmed by the others) or blister
     /// (layers of faces, classified by labels)
     #[arg(long, value_name = "WAY", default_value = "events")]
     pub solids: SolidWay,
-    /// Most memory for the lists of events, MiB; beyond it the picture is drawn in bands of rows. As much as one buffer
-    /// of the device holds for each list without it
+    /// Most memory for the lists of events, MiB; beyond it the picture is drawn in bands of rows. By default the
+    /// largest buffer of the device for each list
     #[arg(long, value_name = "MIB", value_parser = mebibytes)]
     pub solid_budget: Option<f64>,
-    /// Mark, before everything, where faces of two solids or closed parts coincide, blue, and where two overlap, red;
-    /// counts of the pixels are told, and stand in the statistics
+    /// Mark, over everything, where faces of two solids or closed parts coincide, blue, and where two overlap, red; the
+    /// counts of the pixels are printed, and are part of the statistics
     #[arg(long)]
     pub highlight: bool,
-    /// Light from this direction, which stays where it is in the model, with the shadows that all opaque things cast:
-    /// from the model towards the sun. Without it the light of a scene file, or one that travels with the camera and
-    /// casts none
+    /// Light from this direction, fixed in the model, with the shadows of all opaque objects: from the model towards
+    /// the sun. Without it the light of a scene file, or one that travels with the camera and casts no shadows
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub sun: Option<DVec3>,
     /// Part of the name of the Vulkan device to use
@@ -434,7 +447,7 @@ pub enum Views {
     Close,
     /// From 8 degrees above the ground along the largest extent
     Grazing,
-    /// The three of them
+    /// All three
     All,
 }
 

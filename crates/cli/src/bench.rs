@@ -1,13 +1,12 @@
-//! `selvedge bench`: what a frame costs, next to how wrong it is.
+//! `selvedge bench`: the cost of a frame, next to its error.
 //!
-//! Speed without its error says little: some frames of the path are judged against the exact model,
-//! and both stand in the same table.
+//! Some frames of the path are judged against the exact model, so the same table shows speed and error.
 //!
 //! Frames are drawn as a viewer draws them: the warm-up builds the trim table that serves all views from about the same
 //! distance, and later frames reuse it. A standing view (`--motion still`) is drawn in turn with every pass and with the
 //! visibility of the frame before; rows of the latter begin with `reused:`.
 //!
-//! The first frame is no part of the table: the driver compiles for it, and its time stands apart.
+//! The first frame is not in the table: the driver compiles for it, and its time is reported separately.
 
 use crate::args::{BenchArgs, Motion, Size};
 use crate::progress::during;
@@ -137,7 +136,8 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
         Ok(())
     })?;
     let throughput = args.throughput.then(|| {
-        // the path is closed: its end warms up for its beginning, and its beginning goes on while its end is measured
+        // the path is closed: its end warms up for its beginning, and its beginning is drawn on while its end is
+        // measured
         let from_end = WARM_UP_FRAMES * (args.frames - 1);
         let cameras = (0..args.frames + 2 * WARM_UP_FRAMES).map(|nth| camera((nth + from_end) % args.frames));
         let cameras: Vec<Camera> = cameras.collect();
@@ -172,11 +172,12 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
 }
 
 /// Draws pictures with several frames in flight, and measures all but [`WARM_UP_FRAMES`] at either end: as many frames
-/// are in flight when the clock starts as when it stops. Each picture is copied, as by a caller that keeps it.
+/// are in flight when the clock starts as when it stops. Each picture is copied, as a caller that stores it would.
 fn throughput(session: &mut Session, cameras: &[Camera]) -> Result<Throughput> {
     let measured = WARM_UP_FRAMES..cameras.len() - WARM_UP_FRAMES;
     let (mut start, mut wall_ms, mut passes_ms, mut kept) = (Instant::now(), 0.0, 0.0, Vec::new());
-    session.render_sequence(cameras, |nth, picture| {
+    session.render_sequence(cameras, Outputs::default(), |nth, picture| {
+        output::clamps(&picture.stats);
         kept.clear();
         kept.extend_from_slice(picture.colour);
         if measured.contains(&nth) {
@@ -185,6 +186,7 @@ fn throughput(session: &mut Session, cameras: &[Camera]) -> Result<Throughput> {
         } else if nth < measured.start {
             start = Instant::now();
         }
+        Ok(())
     })?;
     let [wall_ms, passes_ms] = [wall_ms, passes_ms].map(|ms| ms / measured.len() as f64);
     let wall_over_passes = wall_ms / passes_ms;
@@ -195,7 +197,7 @@ fn all_passes(stats: &FrameStats) -> f64 {
     stats.passes.iter().map(|pass| pass.gpu_ms).sum()
 }
 
-/// One frame, and what it cost.
+/// Draws one frame, and records its cost.
 fn timed(session: &mut Session, camera: &Camera, gathered: &mut Gathered) -> Result<FrameStats> {
     let start = Instant::now();
     let stats = session.render(camera, Outputs::default())?.stats;
@@ -238,7 +240,7 @@ fn gather(to: &mut Gathered, stats: &FrameStats) {
     }
 }
 
-/// Indices of the frames to judge, spread evenly; each takes much longer than it takes to draw.
+/// Indices of the frames to judge, spread evenly; judging takes much longer than drawing.
 fn judged(frames: usize, most: usize) -> impl Iterator<Item = usize> {
     let count = most.min(frames);
     (0..count).map(move |i| i * frames / count)

@@ -15,22 +15,22 @@ use selvedge_check::{Hit, Tracer};
 use selvedge_io::import::{Import, NamedCamera};
 use selvedge_session::{Direction, FOV_DEG, FROM};
 
-/// How much nearer the close view is. At six times a 1080p picture shows what 6480 lines would: far
-/// past what a mesh made for the whole view resolves.
+/// How much nearer the close view is. At six times a 1080p picture shows the detail of 6480 lines: far beyond the
+/// resolution of a mesh made for the whole view.
 const CLOSER: f64 = 6.0;
 /// Rays along a side of the picture that look for an edge of Boolean solids.
 const LOOKS: usize = 48;
 /// Low enough that a silhouette crosses many surfaces, high enough that a flat model shows its face.
 const GRAZING_DEG: f64 = 8.0;
 
-/// Field of view in radians that stands for a parallel view where a model is framed: off by no more than its share.
+/// Field of view in radians of the perspective that frames a parallel view: its error is this share at most.
 const NARROW: f64 = 1e-4;
-/// Size of a picture where nothing is said.
+/// Default size of a picture.
 const SIZE: Size = Size(1920, 1080);
 
 pub use selvedge_session::{CameraFile, bounds, whole};
 
-/// A camera and what it is called in reports.
+/// A camera and its name in reports.
 #[derive(Clone, Debug)]
 pub struct View {
     pub name: String,
@@ -38,7 +38,7 @@ pub struct View {
 }
 
 impl CameraArgs {
-    /// The camera asked for: one of the file's by name, or where the arguments say.
+    /// The camera: one of the file's by name, or that of the arguments.
     pub fn of(&self, import: &Import) -> Result<Camera> {
         self.over(bounds(&import.model), import)
     }
@@ -57,8 +57,8 @@ impl CameraArgs {
         fitted(self.framed(&import.model, direction.from(), up, size), bounds(&import.model))
     }
 
-    /// For a drawing: parallel, as large as the model fits, from a direction or from [`FROM`], unless the arguments say
-    /// how else.
+    /// For a drawing: parallel, fitted to the picture, from a direction or from [`FROM`], unless the arguments state
+    /// another camera.
     pub fn parallel(&self, direction: Option<Direction>, import: &Import) -> Result<Camera> {
         let size = self.pixels(import);
         let given = self.eye.is_some() || self.camera.is_some() || self.fov.is_some() || self.ortho.is_some();
@@ -79,7 +79,7 @@ impl CameraArgs {
         }
     }
 
-    /// The file's camera of the name given; without any word about a camera the one that its picture asks for.
+    /// The file's camera of the given name; without any camera argument the one that the file's picture names.
     fn named<'a>(&self, import: &'a Import) -> Result<Option<&'a NamedCamera>> {
         let silent = self.eye.is_none() && self.target.is_none() && self.up.is_none();
         let silent = silent && self.fov.is_none() && self.ortho.is_none();
@@ -102,7 +102,7 @@ impl CameraArgs {
         (width, height)
     }
 
-    /// Where the arguments say; what they do not say frames the model.
+    /// The camera of the arguments; missing ones are chosen to frame the model.
     fn camera(&self, model: &Model, bounds: Bounds, size: (u32, u32)) -> Result<Camera> {
         let up = self.up.unwrap_or(DVec3::Z);
         if let Some(eye) = self.eye {
@@ -119,7 +119,7 @@ impl CameraArgs {
         fitted(camera, bounds)
     }
 
-    /// The built-in views; a camera asked for takes the place of `whole` and is called `given`.
+    /// The built-in views; a camera in the arguments replaces `whole` and is called `given`.
     pub fn views(&self, views: Views, import: &Import) -> Result<Vec<View>> {
         let (model, size) = (&import.model, self.pixels(import));
         let bounds = bounds(model);
@@ -139,7 +139,7 @@ impl CameraArgs {
         Ok(list)
     }
 
-    /// So many times closer each.
+    /// For each number a view so many times closer.
     pub fn zooms(&self, times: &[f64], import: &Import) -> Result<Vec<View>> {
         let bounds = bounds(&import.model);
         let whole = self.over(bounds, import)?;
@@ -179,8 +179,7 @@ fn fitted(camera: Camera, bounds: Bounds) -> Result<Camera> {
     selvedge_session::fitted(camera, bounds).context("the camera shows nothing")
 }
 
-/// `times` closer to the start of the trim curve or the vertex nearest to the eye: certainly in sight, and at
-/// an edge.
+/// `times` closer to the start of the trim curve or the vertex nearest to the eye: certainly visible, and at an edge.
 pub fn closer(model: &Model, mut camera: Camera, times: f64) -> Camera {
     let depth = |p: &DVec3| (*p - camera.eye).dot(camera.axes().2);
     let nearest = details(model).min_by(|a, b| depth(a).total_cmp(&depth(b)));
@@ -204,8 +203,8 @@ fn details(model: &Model) -> impl Iterator<Item = DVec3> + '_ {
     })
 }
 
-/// The nearest place at which two of the rays over the picture see different faces, or else the nearest that
-/// any of them sees.
+/// The nearest place at which two neighbouring rays over the picture hit different faces, or else the nearest hit of
+/// any ray.
 fn edge_of_solids(model: &Model, camera: &Camera) -> Option<DVec3> {
     let tracer = (!model.solids.is_empty()).then(|| Tracer::new(model))?;
     let step = DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1)) / LOOKS as f64;
@@ -232,9 +231,9 @@ fn boundary_points(face: &Face) -> Vec<DVec3> {
     starts.map(|uv| grid.point(uv.x, uv.y)).collect()
 }
 
-/// `zoom` times magnified: the eye stays, the angle narrows. From 1 on the picture's middle moves from the
-/// model's to the start of a trim curve: of an open shell to the one nearest to the model's middle, of a
-/// solid to the one nearest to the eye, which is certainly in sight.
+/// `zoom` times magnified: the eye stays, the angle narrows. From 1 on the picture's middle moves from the model's to
+/// the start of a trim curve: in an open shell to the one nearest to the model's middle, on a solid to the one nearest
+/// to the eye, which is certainly visible.
 pub fn zoomed(model: &Model, size: (u32, u32), zoom: f64) -> Camera {
     let bounds = bounds(model);
     let mut camera = Camera::around(bounds, FROM, DVec3::Z, 35f64.to_radians(), size);
@@ -274,7 +273,7 @@ mod tests {
         Model { solids: vec![Solid::of(block).expect("a block")], ..Model::default() }
     }
 
-    /// As for a file that asks for nothing.
+    /// As for a file without a camera.
     fn framing(words: &[&str]) -> Result<Camera> {
         let args = args(words);
         args.camera(&model(), BOX, args.pixels(&Import::default()))

@@ -1,4 +1,4 @@
-//! `selvedge check`: the accuracy promise, tested on the pictures that this machine draws.
+//! `selvedge check`: tests the accuracy promise on the pictures that this machine draws.
 
 use crate::args::CheckArgs;
 use crate::camera::{CameraFile, View};
@@ -14,14 +14,14 @@ use selvedge_check::{EXACT_DEPTH_PX, EXACT_NORMAL_DEG, Judgement, SunJudgement, 
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// What was found in one view.
+/// The judgement of one view.
 #[derive(Debug, Serialize)]
 struct Verdict {
     view: String,
     camera: CameraFile,
     tolerance_px: f64,
     kept: bool,
-    /// Some pixel shows the model: else nothing was there to be judged.
+    /// Whether some pixel shows the model: if not, there was nothing to judge.
     seen: bool,
     judgement: Judgement,
     sun: Option<SunJudgement>,
@@ -101,8 +101,8 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     Ok(if complained || verdicts.iter().any(|v| !v.kept) { Outcome::Broken } else { Outcome::Good })
 }
 
-/// Lines along all edges, as wide in a picture of `height` pixels as they are at 1080, for what is thinner covers too
-/// little of a pixel to be told.
+/// Lines along all edges, as wide in a picture of `height` pixels as they are at 1080: thinner ones cover too little of
+/// a pixel to be judged.
 fn judged_lines(height: u32) -> EdgeSettings {
     let usual = EdgeSettings::default();
     let width = usual.width * (EdgeSettings::HEIGHT / f64::from(height)).max(1.0);
@@ -146,7 +146,8 @@ fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {
     table.to_string()
 }
 
-/// The picture of the verdicts of each view; of several, each with the view's name. Several to `-` are one too many.
+/// The file for the picture of the verdicts of each view; with several views, each with the view's name. Several
+/// pictures to `-` are refused.
 fn differences(path: &Path, views: &[View]) -> Vec<PathBuf> {
     let named = |view: &View| match views.len() > 1 && !target::is_standard(path) {
         true => target::with_name(path, &format!("-{}", view.name)),

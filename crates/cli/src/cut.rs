@@ -1,4 +1,4 @@
-//! A model cut open or seen through before it is drawn: `--section`, `--trim-by`, `--xray`.
+//! A model cut open or made transparent before it is drawn: `--section`, `--trim-by`, `--xray`.
 
 use crate::args::ReadArgs;
 use crate::session;
@@ -12,21 +12,21 @@ use std::str::FromStr;
 /// How the model is cut open.
 #[derive(Debug, Default, Args)]
 pub struct CutArgs {
-    /// Draw only what lies where NX x + NY y + NZ z <= D, millimetres, with caps on what is closed; several cut one
-    /// after another
+    /// Draw only the part where NX x + NY y + NZ z <= D, millimetres, with caps on closed parts and solids; several cut
+    /// one after another
     #[arg(long, value_name = "NX,NY,NZ,D", allow_hyphen_values = true)]
     pub section: Vec<Plane>,
-    /// Draw only the surface that lies within the solids of another file (.csg, .asc or a scene), open where it is cut;
+    /// Draw only the surface within the solids of another file (.csg, .asc or a scene), open where it is cut; applied
     /// before any section
     #[arg(long, value_name = "FILE")]
     pub trim_by: Option<PathBuf>,
-    /// See through occurrences and parts of this name, or faces and primitives of number N with #N, as the face image tells
-    /// it; opacity from 0 to 1, 0.25 without it; several may be named
+    /// Make occurrences and parts of this name transparent, or faces and primitives of number N with #N, as in the face
+    /// image; opacity from 0 to 1, 0.25 by default; may be given several times
     #[arg(long, value_name = "NAME[=OPACITY]")]
     pub xray: Vec<Xray>,
 }
 
-/// Who is seen through, and their opacity.
+/// A name to make transparent, and its opacity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Xray {
     name: String,

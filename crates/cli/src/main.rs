@@ -1,14 +1,14 @@
 //! The command line: draw a CAD model, describe it, prove the picture right, measure the cost.
 //!
 //! ```text
-//!   render   model ─▶ picture and images      info    model ─▶ what the file holds
+//!   render   model ─▶ picture and images      info    content of a file      
 //!   check    picture against exact rays       bench   time and memory beside the error
 //!   trims    ways to trim, side by side       sweep   time against error, over many settings
 //!   convert  model ─▶ the engine's own form
 //!   export   model ─▶ STEP file                draw    lines of a view ─▶ SVG
 //!   view     models in a window
 //!   thumbnail model ─▶ small picture
-//!   devices  what the system's GPUs offer, and lack
+//!   devices  features and limits of the system's GPUs
 //! ```
 //!
 //! Results go to standard output, everything else to standard error.
@@ -49,16 +49,16 @@ use selvedge::headless::HeadlessError;
 use std::io::IsTerminal;
 use std::process::ExitCode;
 
-/// How a command that ran to its end ended.
+/// The outcome of a command that ran to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Outcome {
-    /// Everything asked for was done, and every promise looked at was kept.
+    /// The command did its work, and every tested promise was kept.
     Good,
-    /// A picture is not what it promises to be, or some of many files failed.
+    /// A picture breaks the accuracy promise, or some of many files failed.
     Broken,
 }
 
-/// Exit statuses; `args::STATUSES` tells them to the user.
+/// Exit statuses; the help text lists them (`args::STATUSES`).
 const BROKEN: u8 = 1;
 const USAGE: u8 = 2;
 const DEVICE: u8 = 3;
@@ -102,7 +102,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// There is no usable device, or it failed.
+/// No usable device, or a device that failed.
 fn is_of_device(error: &anyhow::Error) -> bool {
     #[cfg(feature = "view")]
     if view::is_of_device(error) {

@@ -10,7 +10,7 @@
 use bytemuck::NoUninit;
 use std::io::{self, Write};
 
-/// A number that NumPy knows.
+/// A number type of NumPy.
 pub trait Element: NoUninit {
     /// Its kind and size in bytes, without the byte order.
     const KIND: &'static str;
@@ -27,7 +27,7 @@ impl Element for u32 {
 /// Writes `data` as an array of `shape`, the last dimension running fastest.
 ///
 /// # Panics
-/// When the shape does not hold as many numbers as there are.
+/// When the shape does not match the number of elements.
 pub fn write<T: Element>(to: &mut impl Write, shape: &[usize], data: &[T]) -> io::Result<()> {
     assert_eq!(shape.iter().product::<usize>(), data.len(), "the shape holds the data");
     const MAGIC: &[u8] = b"\x93NUMPY\x01\x00";

@@ -15,7 +15,7 @@ pub fn is_program(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("scad"))
 }
 
-/// Runs a program and reads what it makes; what OpenSCAD warns of is passed on.
+/// Runs a program and reads its output; OpenSCAD's warnings are passed on.
 pub fn open(path: &Path, facets: Facets) -> Result<Import> {
     let name = path.display().to_string();
     // an absolute path is not taken for an option

@@ -60,14 +60,14 @@ pub fn table<'a>(header: impl IntoIterator<Item = &'a str>) -> Table {
     table
 }
 
-/// Tells what the importer warns of: it bounds their number and counts the rest.
+/// Prints the importer's warnings: it bounds their number and counts the rest.
 pub fn warnings(import: &Import) {
     for warning in &import.warnings {
         tracing::warn!("{warning}");
     }
 }
 
-/// Tells where the frame could not be cut finely enough.
+/// Reports how often the frame could not be divided finely enough.
 pub fn clamps(stats: &FrameStats) {
     if stats.clamps > 0 {
         tracing::warn!(

@@ -6,7 +6,7 @@
 //!   distance   d = framing / zoom             zoom = 8 ^ ((1 - cos 2 a) / 2), from 1 to 8 and back, twice
 //! ```
 //!
-//! Zoom is geometric, so each frame looks as much nearer than the one before it as the others do.
+//! Zoom is geometric: each frame is nearer than the one before by the same factor.
 
 use glam::DVec3;
 use selvedge::model::{Bounds, Camera};

@@ -10,11 +10,11 @@ use std::time::Duration;
 /// Nothing is shown before this: short work needs no comment.
 const SILENCE: Duration = Duration::from_secs(1);
 
-/// Work without an end that is known.
+/// Work of unknown length.
 const SPINNER: &str = "{spinner} {msg}";
-/// Work that counts what it has done.
+/// Work that counts.
 const COUNTER: &str = "{spinner} {msg}: {human_pos}";
-/// Work that knows how much there is.
+/// Work of known length.
 const BAR: &str = "{spinner} {msg} {bar:30} {human_pos} of {human_len}, {eta} left";
 
 /// Files, whose times differ.
@@ -28,12 +28,12 @@ pub fn during<T>(what: &str, work: impl FnOnce() -> T) -> T {
     spin(what, SPINNER, |_| work())
 }
 
-/// As [`during`], for work that tells how many things it has done since it last told.
+/// As [`during`], for work that reports how many things it has done since its last report.
 pub fn counting<T>(what: &str, work: impl FnOnce(&(dyn Fn(u64) + Sync)) -> T) -> T {
     spin(what, COUNTER, |bar| work(&|done| bar.inc(done)))
 }
 
-/// As [`during`], for work that tells how many of so many things it has done since it last told.
+/// As [`during`], for work of `total` things, which reports how many it has done since its last report.
 pub fn advancing<T>(what: &str, total: usize, work: impl FnOnce(&(dyn Fn(usize) + Sync)) -> T) -> T {
     spin(what, BAR, |bar| {
         bar.set_length(total as u64);
@@ -41,7 +41,7 @@ pub fn advancing<T>(what: &str, total: usize, work: impl FnOnce(&(dyn Fn(usize) 
     })
 }
 
-/// As [`during`], for an import of `file`: its stages, each with a bar where it is known how much there is.
+/// As [`during`], for an import of `file`: its stages, each with a bar where its length is known.
 pub fn importing<T>(file: &str, work: impl FnOnce(&(dyn Fn(Stage) + Sync)) -> T) -> T {
     spin(&format!("reading {file}"), SPINNER, |bar| work(&|stage| show(bar, file, stage)))
 }
@@ -63,7 +63,7 @@ fn show(bar: &ProgressBar, file: &str, stage: Stage) {
     }
 }
 
-/// A bar of a stage that begins.
+/// Begins the bar of a stage.
 fn begin(bar: &ProgressBar, template: &str, message: String, length: u64) {
     bar.set_style(style(template));
     bar.set_message(message);
@@ -97,7 +97,7 @@ fn spin<T>(what: &str, template: &str, work: impl FnOnce(&ProgressBar) -> T) -> 
     })
 }
 
-/// Many files: one line for all of them, in place of those of each.
+/// Many files: one line for all of them, instead of a line for each.
 pub struct Files(ProgressBar);
 
 /// Set while a [`Files`] is shown.
@@ -112,13 +112,13 @@ pub fn files(count: usize) -> Files {
 }
 
 impl Files {
-    /// One more is done.
+    /// Counts a file.
     pub fn one(&self, name: &str) {
         self.0.set_message(name.to_owned());
         self.0.inc(1);
     }
 
-    /// A line on standard error, above the bar.
+    /// Prints a line on standard error, above the bar.
     pub fn tell(&self, line: &str) {
         self.0.suspend(|| eprintln!("{line}"));
     }
@@ -150,7 +150,7 @@ mod tests {
             show(&bar, "a.step", Stage::Bodies { mapped, total: 3 });
             assert_eq!((bar.position(), bar.length()), (mapped as u64, Some(3)));
         }
-        // threads may tell out of order; the number of calls counts
+        // threads may report out of order; the number of calls counts
         for built in [0, 2, 1] {
             show(&bar, "a.step", Stage::Faces { built, total: 7 });
         }

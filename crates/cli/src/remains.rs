@@ -11,12 +11,12 @@ use selvedge::model::Model;
 use selvedge_check::Tracer;
 use std::path::Path;
 
-/// As pictures are drawn where nothing is said, so that `render` and the others agree.
+/// The default size of pictures, so that `render` and these commands agree.
 const SIZE: (u32, u32) = (1920, 1080);
 /// Pixels between rays, one round after another.
 const STRIDES: [usize; 3] = [32, 8, 1];
 
-/// Refuses a model of whose solids nothing is left, as `render` does of its picture.
+/// Refuses a model whose solids are all empty, as `render` does after its picture.
 pub fn judge(path: &Path, model: &Model) -> Result<()> {
     if is_certain(model) || any(model) {
         return Ok(());
@@ -29,7 +29,7 @@ pub fn judge(path: &Path, model: &Model) -> Result<()> {
     )
 }
 
-/// Faces and meshes are seen for certain where no volume trims them.
+/// Whether faces and meshes are certainly visible: no volume trims them.
 fn is_certain(model: &Model) -> bool {
     let drawn = |part: usize| model.parts.get(part).is_some_and(|p| !(p.faces.is_empty() && p.meshes.is_empty()));
     model.trim.is_none() && (model.solids.is_empty() || model.instances.iter().any(|i| drawn(i.part)))

@@ -1,7 +1,7 @@
 //! Numbers gathered frame by frame, and their median, 95th percentile and maximum.
 //!
-//! A measurement is a name, a unit and a value. Commands only push them: a new pass, pool or counter
-//! in a frame's statistics becomes a new row without a change here.
+//! A measurement is a name, a unit and a value. Commands only push them: a new pass, pool or counter in a frame's
+//! statistics becomes a new row without a change here.
 
 use serde::Serialize;
 

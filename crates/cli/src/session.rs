@@ -1,6 +1,6 @@
 //! Reads a model and opens a renderer; progress and warnings go to standard error.
 
-use crate::args::{EdgeArgs, FrameArgs, ReadArgs, SubdivideArgs};
+use crate::args::{EdgeArgs, FrameArgs, LookArgs, ReadArgs, SubdivideArgs};
 use crate::progress::{advancing, during, importing};
 use crate::{camera, device, openscad, output, target};
 use anyhow::{Error, Result, anyhow, bail};
@@ -16,7 +16,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Reads a file that has something to draw, its polygons as `subdivide` says, and tells its warnings.
+/// Reads a file with something to draw, its polygons as `subdivide` says, and prints its warnings.
 pub fn open(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs) -> Result<Import> {
     let import = described(path, read, subdivide)?;
     judge(path, &import, read)?;
@@ -45,7 +45,7 @@ fn facets(subdivide: &SubdivideArgs) -> Facets {
     if subdivide.as_openscad { Facets::AsWritten } else { Facets::Round }
 }
 
-/// The file as messages name it.
+/// The file's name in messages.
 pub fn named(path: &Path) -> String {
     if target::is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
 }
@@ -89,7 +89,8 @@ fn imported(
     })
 }
 
-/// Refuses a file of which nothing can be drawn, and with `--strict` one of which anything is left out; else tells what.
+/// Refuses a file without anything to draw, and with `--strict` one of which anything is left out; else prints what is
+/// left out.
 pub fn judge(path: &Path, import: &Import, read: &ReadArgs) -> Result<()> {
     let summary = import.summary();
     let told = format!("{}: {summary}", named(path));
@@ -106,7 +107,7 @@ pub fn judge(path: &Path, import: &Import, read: &ReadArgs) -> Result<()> {
     Ok(())
 }
 
-/// The direction towards the sun, where one is asked for.
+/// The direction towards the sun, if there is a sun.
 pub fn sun(args: &FrameArgs, import: &Import) -> Option<DVec3> {
     args.sun.or(import.picture.sun)
 }
@@ -123,17 +124,17 @@ pub struct Session {
     first_frame: Option<FirstFrame>,
 }
 
-/// What the first frame took: drivers compile for it, and for no other one.
+/// The cost of the first frame: drivers compile for it alone.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct FirstFrame {
     /// Sum of the driver's times for each pipeline of the scene. Pipelines are made in parallel, so the wall time is
     /// less.
     pub pipelines_ms: f64,
-    /// From the call to the picture in host memory, with what the driver compiles when it first runs a shader.
+    /// From the call to the picture in host memory, including shaders that the driver compiles when they first run.
     pub wall_ms: f64,
 }
 
-/// A frame's statistics, what the session's first one took, and what exists for the scene.
+/// A frame's statistics, the cost of the session's first frame, and the objects of the scene.
 #[derive(Debug, Serialize)]
 pub struct Measured {
     #[serde(flatten)]
@@ -150,18 +151,18 @@ pub struct Object {
     pub bytes: u64,
 }
 
-/// Opens the device that is asked for.
+/// Opens the device of the arguments.
 pub fn opened(args: &FrameArgs) -> Result<HeadlessRenderer> {
     during("opening the device", || device(args))
 }
 
-/// The same without a word, beside something else.
+/// The same without a progress message, for use beside other work.
 pub fn device(args: &FrameArgs) -> Result<HeadlessRenderer> {
     Ok(HeadlessRenderer::new(&device::options(args.device.as_deref(), args.validation))?)
 }
 
 impl Session {
-    /// Opens the device and hands it the model, with lines along edges where they are asked for.
+    /// Opens the device and uploads the model, with lines along edges if `lines` is set.
     pub fn with_lines(args: &FrameArgs, import: &Import, lines: Option<EdgeSettings>) -> Result<Self> {
         let scene = SceneSettings { edges: lines, ..SceneSettings::default() };
         Self::with(opened(args)?, args, import, scene, Arc::new(import.model.clone()))
@@ -173,18 +174,19 @@ impl Session {
         Self::with(on, args, import, scene, Arc::new(import.model.clone()))
     }
 
-    /// The same of a model that the renderer shares, with lines along edges: the import's own is not looked at.
+    /// The same for a model that the renderer shares, with lines along edges: the import's own model is not used.
     pub fn of_one(
         on: HeadlessRenderer,
         args: &FrameArgs,
         import: &Import,
         model: &Arc<Model>,
-        (edges, ao, lines): (&EdgeArgs, Option<Ambient>, Option<EdgeSettings>),
+        (edges, look, lines): (&EdgeArgs, &LookArgs, Option<EdgeSettings>),
     ) -> Result<Self> {
         let scene = SceneSettings {
             samples: edges.samples,
             smooth: edges.smooth(),
-            ambient: Ambient::radius(ao, edges.samples, model),
+            ambient: Ambient::radius(look.ao, edges.samples, model),
+            curvature: look.style.is_curvature(),
             edges: lines,
             ..SceneSettings::default()
         };
@@ -217,10 +219,11 @@ impl Session {
         Ok(Self { renderer, settings, first_frame: None })
     }
 
-    /// From now on frames are drawn on this colour, in this style.
-    pub fn look(&mut self, background: Colour, style: Style) {
+    /// Sets background, style and the end of the scale of curvature for the frames from now on.
+    pub fn look(&mut self, background: Colour, style: Style, curvature_range: f64) {
         self.settings.background = Some(background);
         self.settings.style = style;
+        self.settings.curvature_range = curvature_range;
     }
 
     /// One frame.
@@ -235,21 +238,22 @@ impl Session {
         Ok(picture)
     }
 
-    /// A frame for each camera, several in flight; `take` gets each picture.
-    pub fn render_sequence(&mut self, cameras: &[Camera], mut take: impl FnMut(usize, &PictureView<'_>)) -> Result<()> {
-        self.renderer.render_sequence(cameras, &self.settings, Outputs::default(), |nth, picture| {
-            output::clamps(&picture.stats);
-            take(nth, picture);
-            Ok(())
-        })
+    /// A frame for each camera, several in flight; `take` gets each picture, and its error ends the sequence.
+    pub fn render_sequence(
+        &mut self,
+        cameras: &[Camera],
+        outputs: Outputs,
+        mut take: impl FnMut(usize, &PictureView<'_>) -> Result<()>,
+    ) -> Result<()> {
+        self.renderer.render_sequence(cameras, &self.settings, outputs, |nth, picture| take(nth, picture))
     }
 
-    /// What the first frame took, once it is drawn.
+    /// The cost of the first frame, once it is drawn.
     pub fn first_frame(&self) -> Option<FirstFrame> {
         self.first_frame
     }
 
-    /// The statistics of a picture, measured once more by a frame of all passes for which the driver compiles nothing.
+    /// The statistics of a picture, measured again by a frame of all passes for which the driver compiles nothing.
     pub fn measured(&mut self, camera: &Camera, outputs: Outputs, first: &FrameStats) -> Result<Measured> {
         let settings = FrameSettings { all_passes: true, ..self.settings };
         let again = during("drawing again, to measure", || self.renderer.render(camera, &settings, outputs))?.stats;
@@ -261,16 +265,15 @@ impl Session {
 
     /// Whether any pixel of the picture shows the model.
     pub fn shows(&mut self, camera: &Camera, picture: &Picture) -> Result<bool> {
-        // the background has one colour
-        if picture.colour.windows(2).any(|pair| pair[0] != pair[1]) {
+        if !is_of_one_colour(&picture.colour) {
             return Ok(true);
         }
         let faces = Outputs { face: true, ..Outputs::default() };
         Ok(shows(&self.renderer.render(camera, &self.settings, faces)?))
     }
 
-    /// Refuses a model of which a picture of all of it shows nothing; else the camera looks past it, which is told, or with
-    /// `--strict` refused. For pictures that show nothing.
+    /// Refuses a model that is invisible in a picture of all of it. Otherwise the camera looks past the model, which is
+    /// a warning, or with `--strict` an error. For pictures that show nothing.
     pub fn blank(&mut self, path: &Path, model: &Model, size: (u32, u32), read: &ReadArgs) -> Result<()> {
         let camera = camera::whole(camera::bounds(model), size);
         let picture = self.render(&camera, Outputs { face: true, ..Outputs::default() })?;
@@ -289,7 +292,7 @@ impl Session {
         Ok(())
     }
 
-    /// From now on every pass is recorded in every frame, or what a standing view keeps is not.
+    /// Whether every frame from now on records all passes, or a still view may reuse those of the frame before.
     pub fn record_all(&mut self, all_passes: bool) {
         self.settings.all_passes = all_passes;
     }
@@ -299,9 +302,7 @@ impl Session {
         Ok(self.renderer.edit_loop(at, new)?)
     }
 
-    /// What the validation layer said, told on standard error.
-    ///
-    /// True when it said anything.
+    /// Prints the validation layer's messages on standard error; true when there were any.
     pub fn complaints(&self) -> bool {
         tell(&self.renderer.messages())
     }
@@ -311,13 +312,18 @@ impl Session {
         self.renderer
     }
 
-    /// Frees the device; the same of all that the layer said, of what was left over, too.
+    /// Frees the device; prints all messages of the layer, those about leaked objects included.
     pub fn close(self) -> bool {
         close(self.renderer)
     }
 }
 
-/// Frees a device; true when the validation layer said anything, which is told on standard error.
+/// The background has one colour: a picture may be of nothing else.
+pub fn is_of_one_colour(pixels: &[[u8; 4]]) -> bool {
+    pixels.windows(2).all(|pair| pair[0] == pair[1])
+}
+
+/// Frees a device; true when the validation layer had messages, which are printed on standard error.
 pub fn close(renderer: HeadlessRenderer) -> bool {
     tell(&renderer.shutdown())
 }

@@ -4,9 +4,9 @@
 //!   model ─▶ copies ─▶ zoom ─▶ size ─▶ { every way and tolerance, in turn, frame by frame } ─▶ a row each
 //! ```
 //!
-//! The rows of one group are measured in turn, so that other work on the machine slows all of them alike: their ratios are
-//! comparable, their times are not. Slefes have renderers of their own: they belong to the scene.
-//! In the end, how time grows (`growth`), with `--rate` triangles a second beside those of a plain grid (`rate`); or,
+//! The rows of one group are measured in turn, so that other work on the machine slows all of them alike: their ratios
+//! are comparable, their times are not. Slefes belong to the scene, so each kind has a renderer of its own. The run
+//! ends with the growth of time (`growth`), with `--rate` triangles a second beside those of a plain grid (`rate`); or,
 //! with `--against-fixed`, another table (`against`).
 
 mod against;
@@ -114,7 +114,7 @@ pub fn run(args: &SweepArgs) -> Result<Outcome> {
     Ok(Outcome::Good)
 }
 
-/// Those of the files, and the sheets, by name.
+/// The models of the files, and the sheets, by name.
 fn models(args: &SweepArgs) -> Result<Vec<(String, Model)>> {
     let mut models = Vec::new();
     for file in &args.models {
@@ -133,7 +133,7 @@ fn renderer(args: &SweepArgs) -> Result<HeadlessRenderer> {
     Ok(HeadlessRenderer::new(&device::options(args.device.as_deref(), false))?)
 }
 
-/// With the model in as many scenes as the ways to divide ask for.
+/// Renderers with the model, one for each kind of scene that the ways to divide need.
 fn renderers(args: &SweepArgs, model: &Model) -> Result<Renderers> {
     let scenes: BTreeSet<_> = args.factors.iter().map(|divided| divided.slefe_segments()).collect();
     let uploaded = |slefe_segments| {
@@ -174,7 +174,7 @@ fn camera(model: &Model, zoom: f64, size: (u32, u32)) -> Camera {
     camera
 }
 
-/// What is measured in turn.
+/// Settings that are measured in turn.
 struct Group<'a> {
     name: &'a str,
     model: &'a Model,
@@ -246,7 +246,7 @@ impl Group<'_> {
         Ok(rows)
     }
 
-    /// The patches at each tolerance, where they are judged and every patch is that of a face as it stands.
+    /// The patches at each tolerance, where they are judged and all patches belong to faces that are drawn as such.
     fn seen(&self, args: &SweepArgs) -> Vec<Seen> {
         let plain = self.model.solids.is_empty() && self.model.is_opaque();
         let tolerances = args.tolerances.iter().filter(|_| self.tracer.is_some() && plain);

@@ -1,4 +1,4 @@
-//! Where outputs go: checked before the work begins, whole or not there at all when it ends.
+//! Output files: checked before the work begins; each is written whole or not at all.
 //!
 //! ```text
 //!   arguments ──check──▶ ending, folder, no file twice, no input among them        nothing is opened yet
@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// Links that are followed at the end of a path, as many as Linux follows.
 const MOST_LINKS: usize = 40;
 
-/// What a file holds, which its ending has to say.
+/// The kind of a file, which its ending has to match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Form {
     name: &'static str,
@@ -57,7 +57,8 @@ pub fn with_name(path: &Path, words: &str) -> PathBuf {
     path.with_file_name(format!("{stem}{words}{end}"))
 }
 
-/// Refuses what cannot be written, and what would be written over another output or an input of the same call.
+/// Refuses outputs that cannot be written, and outputs that would overwrite another output or an input of the same
+/// call.
 ///
 /// Existing files are the same when they are one file to the system, whatever names and links lead to it; new ones, when
 /// their names in one folder differ in case at most.
@@ -86,7 +87,7 @@ pub fn check(inputs: &[&Path], outputs: &[Target]) -> Result<()> {
 }
 
 impl Form {
-    /// The place can have such a file.
+    /// Checks that the place can have such a file.
     fn check(self, path: &Path) -> Result<()> {
         let told = path.display();
         if let Some(ending) = path.extension() {
@@ -100,18 +101,18 @@ impl Form {
         match fs::metadata(&place) {
             Ok(found) if found.is_dir() => bail!("{told}: a folder, not a file that can be written"),
             Ok(found) if !found.is_file() => return Ok(()),
-            // which to rename another file over it would not respect
+            // renaming another file over it would ignore this
             Ok(found) if found.permissions().readonly() => bail!("{told}: the file is write-protected"),
             _ => {}
         }
         let folder = place.parent().unwrap_or(Path::new("."));
-        // to be renamed, a file has to be made here first
+        // a file must be made here before it is renamed
         beside(folder).with_context(|| format!("cannot write {told}: no file can be made in its folder"))?;
         Ok(())
     }
 }
 
-/// What tells a place from another.
+/// Identifies a place.
 #[derive(PartialEq, Eq)]
 enum Identity {
     /// `-`
@@ -123,7 +124,7 @@ enum Identity {
 }
 
 impl Identity {
-    /// `None` for devices, pipes and what cannot be reached: to write them twice loses nothing.
+    /// `None` for devices, pipes and unreachable paths: writing them twice loses nothing.
     fn of(path: &Path) -> Option<Self> {
         let place = resolved(path).ok()?;
         match fs::metadata(&place) {
@@ -155,14 +156,14 @@ fn beside(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     builder.prefix(".selvedge-");
     #[cfg(unix)]
     {
-        // as any new file: what the user's mask leaves of it
+        // as any new file: the permissions that the user's mask allows
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder)
 }
 
-/// Lets `fill` write a file, which is there when all of it is; names it when either fails.
+/// Lets `fill` write a file, which appears when it is complete; the error of either names the file.
 pub fn write(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
     if is_standard(path) {
         let mut bytes = Vec::new();
@@ -202,7 +203,7 @@ pub fn standard(bytes: &[u8]) -> Result<()> {
     }
 }
 
-/// The same of what has been read beside the model, which is known when that is.
+/// As [`check`], for the files that were read beside the model, which are known only afterwards.
 pub fn check_read(import: &Import, outputs: &[Target]) -> Result<()> {
     let files: Vec<&Path> = import.report.files_read.iter().map(PathBuf::as_path).collect();
     check(&files, outputs)

@@ -1,7 +1,7 @@
 //! `selvedge thumbnail`: a small picture for file managers.
 //!
-//! The call is that of a freedesktop thumbnailer (`Exec=selvedge thumbnail %i %o %s`): the output's name is a temporary one
-//! with any ending, and the caller adds what the thumbnail standard wants in its PNG.
+//! The call is that of a freedesktop thumbnailer (`Exec=selvedge thumbnail %i %o %s`): the output's name is a temporary
+//! one with any ending, and the caller adds the fields of the thumbnail standard to the PNG.
 
 use crate::args::ThumbnailArgs;
 use crate::{Outcome, device, target};
@@ -36,7 +36,7 @@ pub fn run(args: &ThumbnailArgs) -> Result<Outcome> {
     Ok(Outcome::Good)
 }
 
-/// What a device fails with has an exit status of its own.
+/// A device's error has an exit status of its own.
 fn told(error: SessionError) -> Error {
     match error {
         SessionError::Device(error) | SessionError::Draw(error) => error.into(),

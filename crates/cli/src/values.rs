@@ -15,7 +15,7 @@ pub fn vector(text: &str) -> Result<DVec3, String> {
 /// `X,Y,Z`, not all 0.
 pub fn direction(text: &str) -> Result<DVec3, String> {
     let v = vector(text)?;
-    // whose square may have no number
+    // the square of which may overflow
     let largest = v.abs().max_element();
     if largest > 0.0 { Ok((v / largest).normalize()) } else { Err("wants a direction: not 0,0,0".into()) }
 }
@@ -54,7 +54,13 @@ pub fn mebibytes(text: &str) -> Result<f64, String> {
     text.parse::<f64>().ok().filter(|x| x.is_finite() && *x > 0.0).ok_or_else(|| "wants a number of MiB above 0".into())
 }
 
-/// A time; longer ones are none.
+/// The end of a scale of curvature.
+pub fn curvature(text: &str) -> Result<f64, String> {
+    let good = text.parse::<f64>().ok().filter(|k| k.is_finite() && *k > 0.0);
+    good.ok_or_else(|| "wants a curvature above 0, 1/mm, as in 0.05".into())
+}
+
+/// A time; longer ones mean no limit.
 pub fn seconds(text: &str) -> Result<f64, String> {
     let good = text.parse::<f64>().ok().filter(|s| *s > 0.0 && *s <= 1e9);
     good.ok_or_else(|| "wants a number of seconds above 0".into())

@@ -14,7 +14,7 @@ use selvedge_check::{JudgeOptions, Judgement, SunJudgement, SunTracer, Tracer, j
 pub use selvedge_session::{worst_shift_px, wrong};
 
 /// Judges about `samples` pixels of a picture, and every one at which the face changes. In a view `times` closer than
-/// the whole model faces that much nearer to each other are told apart.
+/// the whole model, the depth of a tie is as much smaller.
 pub fn of(
     tracer: &Tracer,
     camera: &Camera,

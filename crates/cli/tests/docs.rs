@@ -1,4 +1,4 @@
-//! docs/cli.md is what `--help` prints: `SELVEDGE_WRITE_DOCS=1 cargo test -p selvedge-cli --test docs` writes it.
+//! docs/cli.md is the output of `--help`: `SELVEDGE_WRITE_DOCS=1 cargo test -p selvedge-cli --test docs` writes it.
 
 use std::process::Command;
 use std::{fs, path::Path};
@@ -13,7 +13,7 @@ PLY, OFF, glTF, Rhino `.3dm`, BezierView `.bv`, OpenSCAD `.csg` and `.scad`, BRL
 and has no window.
 ";
 
-/// What the program prints when it is asked for help.
+/// The program's help text.
 fn help(arguments: &[&str]) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_selvedge")).args(arguments).output().expect("the program runs");
     assert!(output.status.success(), "{arguments:?}");

@@ -1,5 +1,5 @@
-//! Trimmed rational B-spline surfaces, Boolean solids and what makes them: plain `f64` data and the mathematics on it,
-//! without a GPU.
+//! Trimmed rational B-spline surfaces, Boolean solids and their construction: plain `f64` data and the mathematics on
+//! it, without a GPU.
 //!
 //! ```text
 //!   math ◀─ spline ◀─ model ◀─ trim
@@ -7,10 +7,9 @@
 //!       edges, silhouette ┘ └─────┴── construct
 //! ```
 //!
-//! [`model`] says what a renderer draws; [`spline`] and [`trim`] evaluate it; [`edges`] finds where its faces meet,
-//! [`silhouette`] where a view sees them fold;
-//! [`csg`] has Boolean expressions;
-//! [`construct`] makes surfaces and solids from curves, data, equations and dimensions.
+//! [`model`] is the data that a renderer draws; [`spline`] and [`trim`] evaluate it; [`edges`] finds where its faces
+//! meet, [`silhouette`] where a view sees them fold; [`csg`] has Boolean expressions; [`construct`] makes surfaces and
+//! solids from curves, data, equations and dimensions.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 

@@ -1,7 +1,7 @@
 //! Files to models and back.
 //!
 //! ```text
-//!   bytes ──import──▶ Model, warnings          analytic surfaces and edges by way of brep
+//!   bytes ──import──▶ Model, warnings          analytic surfaces and edges through brep
 //!   Model ──export──▶ STEP text
 //!   Model ◀─native──▶ the engine's own form, bit for bit
 //! ```

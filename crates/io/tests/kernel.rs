@@ -1,5 +1,5 @@
-//! Volumes of the gallery's solids, against those that Open CASCADE finds in what `selvedge export` writes of them
-//! (`tools/verify_export`, its quadrature asked for 1e-9). `tools/verify_csg --closed-forms` does so for Boolean solids.
+//! Volumes of the gallery's solids, against those that Open CASCADE finds in the output of `selvedge export`
+//! (`tools/verify_export`, quadrature to 1e-9). `tools/verify_csg --closed-forms` does so for Boolean solids.
 //!
 //! Ours are fluxes of `x / 3` through the exact faces: Gauss's rule on each patch of a whole face, and for a trimmed one
 //! along its loops, `∬ f du dv = ∮ (∫ f du) dv` by Green's theorem.

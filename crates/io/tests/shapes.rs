@@ -1,4 +1,4 @@
-//! Solids from dimensions: exact, closed edge by edge, of the right volume, and what has no such dimensions.
+//! Solids from dimensions: exact, closed edge by edge, of the right volume; and dimensions that make no solid.
 
 use glam::{DVec2, DVec3, DVec4};
 use proptest::prelude::*;
@@ -268,8 +268,8 @@ proptest! {
     }
 }
 
-/// Every point of a flank is as far along its tangent to the base circle as the arc that was unrolled, within what
-/// the gear says; returns half the angles of a tooth's tip and of the gap at the root.
+/// Every point of a flank is as far along its tangent to the base circle as the arc that was unrolled, within the
+/// gear's stated error; returns half the angles of a tooth's tip and of the gap at the root.
 fn flanks_are_involutes(gear: &SpurGear, body: &Body) -> [f64; 2] {
     assert!(body.deviation <= gear.tolerance);
     let n = f64::from(gear.teeth);
@@ -294,7 +294,7 @@ fn flanks_are_involutes(gear: &SpurGear, body: &Body) -> [f64; 2] {
     [middle - turn(at(tip)), PI / n - middle + turn(at(root))]
 }
 
-/// The area under an involute is `base² t³ / 6`; flanks are off by no more than they say.
+/// The area under an involute is `base² t³ / 6`; flanks are off by no more than their stated error.
 #[test]
 fn spur_gears_have_involute_teeth() {
     for (teeth, module, bore) in [(8, 1.0, 0.0), (17, 2.5, 6.0), (60, 0.5, 3.0)] {

@@ -35,6 +35,7 @@ pub struct Settings<'py> {
     size: (i64, i64),
     outputs: Vec<String>,
     style: String,
+    curvature_range: Option<f64>,
     background: String,
     edges: Option<String>,
     silhouettes: bool,
@@ -95,7 +96,17 @@ impl Settings<'_> {
         let camera = py.detach(|| viewpoint.camera(&model, size)).map_err(|error| raised(py, &error))?;
         let samples: Samples = word(&self.samples.to_string())?;
         let ao = self.ao.as_ref().map(|said| word::<Ambient>(&said.str()?.to_string())).transpose()?;
+        let style = word::<Style>(&self.style)?;
+        let range = match self.curvature_range {
+            _ if !style.is_curvature() => 1.0,
+            None => model.curvature_range(),
+            Some(range) if range.is_finite() && range > 0.0 => range,
+            Some(range) => {
+                return Err(PyValueError::new_err(format!("curvature_range must be above 0, not {range}")));
+            }
+        };
         let scene = SceneSettings {
+            curvature: style.is_curvature(),
             edges: self.lines(outputs, size)?,
             samples,
             smooth: smooth(self.smooth.as_deref().map(word::<Smooth>).transpose()?, samples),
@@ -103,11 +114,8 @@ impl Settings<'_> {
             sun: self.sun.map(DVec3::from),
             ..SceneSettings::default()
         };
-        let frame = FrameSettings {
-            tolerance_px: self.tolerance,
-            style: word::<Style>(&self.style)?,
-            ..FrameSettings::default()
-        };
+        let frame =
+            FrameSettings { tolerance_px: self.tolerance, style, curvature_range: range, ..FrameSettings::default() };
         Ok(Job { model, camera, scene, frame, outputs, backdrop: word::<Backdrop>(&self.background)? })
     }
 }

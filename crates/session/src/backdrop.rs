@@ -1,4 +1,4 @@
-//! What lies behind the model: a colour, a gradient from top to bottom, or nothing.
+//! The background of pictures: a colour, a gradient from top to bottom, or nothing.
 //!
 //! ```text
 //!   frame on nothing ──▶ straight colour c, opacity a ──▶ PNG as it is            --background none
@@ -13,7 +13,7 @@ use std::str::FromStr;
 const TOP: [u8; 3] = [243, 245, 248];
 const BOTTOM: [u8; 3] = [190, 197, 206];
 
-/// What pixels show that see nothing.
+/// The background of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Backdrop {
     /// A colour in linear light, and its opacity.
@@ -25,7 +25,7 @@ pub enum Backdrop {
 }
 
 impl Backdrop {
-    /// What a frame is drawn on.
+    /// The background colour of the frame.
     pub fn colour(self) -> Colour {
         match self {
             Self::Colour(colour) => colour,

@@ -1,4 +1,5 @@
-//! Cameras that frame a model, look from somewhere, or are those of a calibrated picture; the camera file for others.
+//! Cameras that frame a model, look from a point, or belong to a calibrated picture; the camera file for other
+//! programs.
 //!
 //! ```text
 //!   OpenCV      x right, y down, z ahead; pixel (0, 0) has its centre at (0, 0)      p ~ K (R X + t)
@@ -14,7 +15,7 @@ use serde::Serialize;
 
 /// From the model towards the eye: front, right, a little above; no axis of the model seen edge-on.
 pub const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
-/// Vertical field of view where nothing is said, degrees.
+/// Default vertical field of view, degrees.
 pub const FOV_DEG: f64 = 35.0;
 /// Largest deviation of a rotation from orthonormal, and of the zeros and the one in K: decimal files round so much
 /// off.
@@ -57,18 +58,18 @@ pub struct Pinhole {
     pub first_pixel: f64,
 }
 
-/// Where a picture is taken from.
+/// How a picture is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Viewpoint {
-    /// From a standard direction, as large as the model fits.
+    /// From a standard direction, fitted to the model.
     Standard(Direction),
     /// From a point to another.
     LookAt {
         /// The eye, model units.
         eye: DVec3,
-        /// What is in the middle of the picture.
+        /// The point in the middle of the picture.
         target: DVec3,
-        /// What is up in the picture.
+        /// The direction that is up in the picture.
         up: DVec3,
         /// How wide.
         lens: Lens,
@@ -83,7 +84,7 @@ impl Viewpoint {
     /// # Errors
     /// [`SessionError::Camera`], [`SessionError::Pinhole`].
     pub fn camera(&self, model: &Model, size: (u32, u32)) -> Result<Camera, SessionError> {
-        // nothing is framed in a picture without pixels
+        // a picture without pixels frames nothing
         if size.0 == 0 || size.1 == 0 {
             return Err(CameraError::Size.into());
         }
@@ -96,7 +97,7 @@ impl Viewpoint {
             }
             Self::Pinhole(pinhole) => pinhole.camera(size)?,
         };
-        // what has no direction has no depth either
+        // a camera without a direction has no depth either
         camera.check()?;
         Ok(fitted(camera, bounds(model))?)
     }
@@ -123,14 +124,14 @@ impl Pinhole {
     }
 }
 
-/// The box of what a picture of the whole model shows: that of its control points where nothing is left of it, so that
-/// there is a picture that says so.
+/// The box for a picture of the whole model: that of its control points where its trims leave nothing, so that there is
+/// a picture that shows this.
 pub fn bounds(model: &Model) -> Bounds {
     let bounds = model.bounds();
     if bounds.is_empty() { model.control_bounds() } else { bounds }
 }
 
-/// All of the model in the picture, whatever is asked for.
+/// A camera with all of the model in the picture.
 pub fn whole(bounds: Bounds, size: (u32, u32)) -> Camera {
     Camera::around(bounds, FROM, DVec3::Z, FOV_DEG.to_radians(), size)
 }
@@ -150,9 +151,9 @@ pub fn fitted(mut camera: Camera, bounds: Bounds) -> Result<Camera, CameraError>
 pub struct CameraFile {
     /// The eye, model units.
     pub eye: [f64; 3],
-    /// What is in the middle of the picture.
+    /// The point in the middle of the picture.
     pub target: [f64; 3],
-    /// What is up in the picture.
+    /// The direction that is up in the picture.
     pub up: [f64; 3],
     /// Vertical field of view, degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -200,7 +201,7 @@ mod tests {
         Pinhole { intrinsics, rotation, translation: DVec3::new(0.2, -0.1, 9.0), first_pixel: 0.0 }
     }
 
-    /// By OpenCV's own formula, computed beside.
+    /// By OpenCV's own formula, computed separately.
     #[test]
     fn points_fall_where_opencv_projects_them() {
         let pinhole = pinhole();

@@ -28,7 +28,7 @@ const fn named(name: &'static str, azimuth: f64, elevation: f64) -> Direction {
     Direction { azimuth, elevation, name: Some(name) }
 }
 
-/// Those with a name, as a contact sheet shows them.
+/// The named directions, as a contact sheet shows them.
 pub const NAMED: [Direction; 7] = [
     named("iso", 45.0, ISO_DEG),
     named("front", 0.0, 0.0),
@@ -46,7 +46,7 @@ impl Direction {
         DVec3::new(sin_a * cos_e, -cos_a * cos_e, sin_e)
     }
 
-    /// What is up in the picture: z, or what becomes of it where the eye rises to the top or sinks to the bottom.
+    /// The direction that is up in the picture: z, tilted where the eye rises to the top or sinks to the bottom.
     pub fn up(self) -> DVec3 {
         let ((sin_a, cos_a), (sin_e, cos_e)) = (turn(self.azimuth), turn(self.elevation));
         DVec3::new(-sin_a * sin_e, cos_a * sin_e, cos_e)

@@ -1,4 +1,4 @@
-//! Why there is no model or no picture, and how a caller ends what takes too long.
+//! Why there is no model or no picture, and how a caller stops work that takes too long.
 
 use selvedge::edges::EdgeError;
 use selvedge::headless::HeadlessError;
@@ -23,7 +23,7 @@ pub enum SessionError {
     Nothing {
         /// The file.
         file: String,
-        /// What it holds in place of surfaces.
+        /// Its content in place of surfaces.
         summary: Box<Summary>,
     },
     /// No device, or none that suffices.
@@ -38,7 +38,7 @@ pub enum SessionError {
     /// A matrix that no camera of the renderer has.
     #[error("{0}")]
     Pinhole(&'static str),
-    /// Settings of lines that draw nothing sensible.
+    /// Invalid settings of lines.
     #[error(transparent)]
     Edges(#[from] BadEdges),
     /// A part whose edges cannot be found.
@@ -46,7 +46,7 @@ pub enum SessionError {
     Boundary {
         /// Index of the part.
         part: usize,
-        /// What is wrong with one of its faces.
+        /// The fault of one of its faces.
         source: EdgeError,
     },
     /// A place or a radius that cannot be snapped within.
@@ -58,7 +58,7 @@ pub enum SessionError {
     /// The caller said [`Stop::set`], or the time of [`Stop::within`] is over.
     #[error("stopped before it was done")]
     Stopped,
-    /// The renderer was closed, or has failed in a way that it does not survive.
+    /// The renderer was closed, or failed for good.
     #[error("the renderer is closed")]
     Closed,
     /// A defect: an invariant of the library does not hold.
@@ -66,18 +66,18 @@ pub enum SessionError {
     Panicked(String),
 }
 
-/// A flag that ends an import or an upload: set from any thread or by time, seen between two faces.
+/// A flag that ends an import or an upload: set from any thread or by a timer, tested between two faces.
 #[derive(Clone, Debug, Default)]
 pub struct Stop {
     set: Arc<AtomicBool>,
     until: Option<Instant>,
 }
 
-/// What unwinds through the library to the caller who stopped it.
+/// The panic that unwinds through the library to the caller who stopped it.
 struct Stopping;
 
 impl Stop {
-    /// Set by itself once this time is over; a time without end is none.
+    /// A flag that sets itself once this time is over; an endless time sets nothing.
     pub fn within(time: Duration) -> Self {
         Self { until: Instant::now().checked_add(time), ..Self::default() }
     }
@@ -92,7 +92,7 @@ impl Stop {
         self.set.load(Ordering::Relaxed) || self.until.is_some_and(|until| Instant::now() >= until)
     }
 
-    /// Unwinds to [`guarded`] if it was set: progress callbacks cannot say no.
+    /// Unwinds to [`guarded`] if it was set: progress callbacks cannot return an error.
     pub fn check(&self) {
         if self.is_set() {
             resume_unwind(Box::new(Stopping));
@@ -102,7 +102,7 @@ impl Stop {
 
 /// Runs work whose progress callbacks call [`Stop::check`]; a panic becomes an error.
 ///
-/// What the work had in hand may be half done: the caller throws it away.
+/// The objects of the work may be half done: the caller discards them.
 ///
 /// # Errors
 /// Those of the work, [`SessionError::Stopped`], [`SessionError::Panicked`].
@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_unwinds_is_told_by_its_cause() {
+    fn panics_are_reported_by_their_cause() {
         let late = Stop::within(Duration::ZERO);
         let stopped: Result<(), SessionError> = guarded(|| {
             late.check();

@@ -102,7 +102,7 @@ impl FromStr for Image {
 mod tests {
     use super::*;
 
-    /// Each name asks for its own image, and gives it back.
+    /// Each name requests its own image.
     #[test]
     fn names_and_images_belong_together() {
         for image in Image::ALL {

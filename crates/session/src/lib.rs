@@ -1,4 +1,4 @@
-//! From a CAD file to pictures in memory: what the program, the C library and the Python package share.
+//! From a CAD file to pictures in memory: the common part of the program, the C library and the Python package.
 //!
 //! ```text
 //!   path, bytes ──read──▶ Loaded { model, warnings, … } ──┐
@@ -6,8 +6,8 @@
 //!                         outputs, backdrop ──────────────┘                     images ─▶ arrays, PNG
 //! ```
 //!
-//! A [`Worker`] draws one picture after another; its caller waits as long as it likes, and reads the next file
-//! meanwhile. A flag ends an import or an upload between two faces.
+//! A [`Worker`] draws one picture after another. Its caller may wait for each, and read the next file meanwhile. A flag
+//! ends an import or an upload between two faces.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
@@ -17,6 +17,7 @@ mod camera;
 mod directions;
 mod error;
 mod images;
+mod legend;
 mod lines;
 mod png;
 mod read;
@@ -32,6 +33,7 @@ pub use camera::{CameraFile, FOV_DEG, FROM, Lens, Pinhole, Viewpoint, bounds, fi
 pub use directions::{Direction, Directions, NAMED};
 pub use error::{SessionError, Stop, guarded};
 pub use images::{Image, Values};
+pub use legend::legend;
 pub use lines::lines;
 pub use png::{save as save_png, write as write_png};
 pub use read::{Loaded, ReadOptions, Source, memory, read};

@@ -2,8 +2,8 @@
 
 use selvedge::picture::EdgeSettings;
 
-/// Thinnest line where nothing is said, pixels: each pixel along an edge is covered by more than the tenth that the image of
-/// edges wants.
+/// Default width of the thinnest line, pixels: each pixel along an edge is then covered by more than the tenth from
+/// which the image of edges counts it.
 const LEAST_PX: f64 = 1.0;
 
 /// The usual lines, `width_px` pixels wide in a picture of this height. Without a width they are as wide as the renderer's own,
@@ -23,7 +23,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_are_never_too_thin_to_be_told() {
+    fn lines_are_never_too_thin_to_be_seen() {
         let px = |settings: EdgeSettings, height: u32| settings.width * f64::from(height) / EdgeSettings::HEIGHT;
         assert!((px(lines(None, 1080), 1080) - 1.25).abs() < 1e-12);
         assert!((px(lines(None, 64), 64) - 1.0).abs() < 1e-12);

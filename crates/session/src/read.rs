@@ -17,7 +17,7 @@ pub enum Source<'a> {
     Bytes {
         /// All of it, gzip or not.
         bytes: &'a [u8],
-        /// Stands for the file in messages; its ending tells the format where the content does not.
+        /// The file's name in messages; its ending gives the format where the content does not.
         name: &'a str,
     },
 }
@@ -31,22 +31,22 @@ pub struct ReadOptions {
     pub search: Vec<PathBuf>,
 }
 
-/// A model, and what is known about the file.
+/// A model, and the report of reading it.
 #[derive(Clone, Debug)]
 pub struct Loaded {
-    /// The file as messages name it.
+    /// The file's name in messages.
     pub file: String,
     /// Shared with the renderer.
     pub model: Arc<Model>,
-    /// What is drawn and what is missing.
+    /// The drawn and the missing items.
     pub summary: Summary,
-    /// What was left out or healed.
+    /// What was left out or repaired.
     pub warnings: Vec<Warning>,
     /// Cameras that a scene names.
     pub cameras: Vec<NamedCamera>,
-    /// What a scene asks of its picture.
+    /// A scene's picture settings.
     pub picture: PictureSettings,
-    /// Counts for people.
+    /// Counts for readers of the report.
     pub report: ImportReport,
 }
 
@@ -81,7 +81,7 @@ pub fn read(
 }
 
 impl Loaded {
-    /// Of an import.
+    /// From an import.
     ///
     /// # Errors
     /// [`SessionError::Nothing`].
@@ -95,7 +95,7 @@ impl Loaded {
     }
 }
 
-/// Bytes of memory: the machine's, or what the group of processes may use of it.
+/// Bytes of memory: the machine's, or the limit of the group of processes.
 pub fn memory() -> u64 {
     let mut system = sysinfo::System::new();
     system.refresh_memory();
@@ -138,7 +138,7 @@ mod tests {
         assert!(large.to_string().contains("100 bytes"), "{large}");
     }
 
-    /// From the first face on: the import has gone its whole way until then.
+    /// From the first face on: the import has passed all earlier stages then.
     #[test]
     fn a_flag_ends_an_import() {
         let stop = Stop::default();

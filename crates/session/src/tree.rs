@@ -36,7 +36,7 @@ pub struct Body<'a> {
     pub count: usize,
 }
 
-/// Names told of occurrences alike before the rest is only counted.
+/// Names listed of like occurrences before the rest is only counted.
 const NAMES: usize = 4;
 
 impl<'a> Node<'a> {

@@ -21,12 +21,12 @@ pub fn worst_shift_px(judgement: &Judgement) -> f64 {
     judgement.worst_shift_px.max(judgement.folds.worst_shift_px)
 }
 
-/// What was found in one picture.
+/// The verdict on one picture.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
     /// No pixel is wrong, and the frame counted no clamp.
     pub kept: bool,
-    /// Some pixel shows the model: else nothing was there to be judged.
+    /// Whether some pixel shows the model: if not, there was nothing to judge.
     pub seen: bool,
     /// Pixels compared.
     pub judged: u64,
@@ -38,9 +38,9 @@ pub struct Verdict {
     pub tolerance_px: f64,
     /// Places where the frame could not keep the promise.
     pub clamps: u64,
-    /// From where.
+    /// The camera.
     pub camera: CameraFile,
-    /// All that was found.
+    /// The whole judgement.
     pub judgement: Judgement,
 }
 

@@ -4,8 +4,8 @@
 //!   caller ──Job──▶ channel ──▶ thread: upload if the model or its scene is another; draw ──Ticket──▶ caller
 //! ```
 //!
-//! Jobs are drawn in the order in which they came, whichever threads sent them. What the driver answers and how long the
-//! caller waits have nothing to do with each other, so a caller may look after signals while a frame is drawn.
+//! Jobs are drawn in the order in which they came, whichever threads sent them. The caller's wait is independent of the
+//! driver, so a caller may handle signals while a frame is drawn.
 
 use crate::backdrop::Backdrop;
 use crate::error::{SessionError, Stop, guarded};
@@ -17,15 +17,15 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-/// Which device, and how closely it is watched.
+/// The device, and its validation.
 pub type DeviceOptions = HeadlessOptions;
 
 /// One picture to be drawn.
 #[derive(Clone, Debug)]
 pub struct Job {
-    /// What is seen. A model that is drawn again in the same scene settings is not uploaded again.
+    /// The model. A model that is drawn again in the same scene settings is not uploaded again.
     pub model: Arc<Model>,
-    /// From where.
+    /// The camera.
     pub camera: Camera,
     /// How the model is prepared.
     pub scene: SceneSettings,
@@ -33,15 +33,15 @@ pub struct Job {
     pub frame: FrameSettings,
     /// Images beside the colour.
     pub outputs: Outputs,
-    /// What lies behind the model.
+    /// The background.
     pub backdrop: Backdrop,
 }
 
-/// A device that remembers which model it holds.
+/// A device, and the model that it holds.
 pub struct Drawer {
     renderer: HeadlessRenderer,
     loaded: Option<(Arc<Model>, SceneSettings)>,
-    /// Messages of the validation layer that were told.
+    /// Messages of the validation layer that were reported.
     told: usize,
 }
 
@@ -54,8 +54,8 @@ impl Drawer {
         Ok(Self { renderer: HeadlessRenderer::new(options).map_err(SessionError::Device)?, loaded: None, told: 0 })
     }
 
-    /// Draws one picture. [`Stop`] is looked at before it begins and between two faces of an upload. What the validation
-    /// layer says of it is an error.
+    /// Draws one picture. [`Stop`] is tested before it begins and between two faces of an upload. A message of the
+    /// validation layer is an error.
     ///
     /// # Errors
     /// [`SessionError`]; the next job is drawn all the same.
@@ -90,7 +90,7 @@ struct Order {
     answer: Sender<Answer>,
 }
 
-/// A picture that will be there.
+/// A picture that is not drawn yet.
 #[derive(Debug)]
 pub struct Ticket {
     answer: Receiver<Answer>,
@@ -98,7 +98,7 @@ pub struct Ticket {
 }
 
 impl Ticket {
-    /// Waits so long at most; `None` when it was not enough.
+    /// Waits at most so long; `None` when the picture was not ready.
     pub fn wait(&self, at_most: Duration) -> Option<Answer> {
         match self.answer.recv_timeout(at_most) {
             Ok(answer) => Some(answer),
@@ -139,9 +139,9 @@ impl Worker {
             for Order { job, stop, answer } in incoming {
                 let drawn = guarded(|| drawer.draw(&job, &stop));
                 let is_lost = matches!(drawn, Err(SessionError::Panicked(_)));
-                let _ = answer.send(drawn); // nobody has to wait
+                let _ = answer.send(drawn); // the ticket may be dropped
                 if is_lost {
-                    break; // what a panic leaves is not drawn with again
+                    break; // after a panic the device is not used again
                 }
             }
         };

@@ -1,11 +1,11 @@
-//! What a person can ask for, and the keys that ask for it.
+//! The commands of the window, and their keys.
 
 use crate::navigation::standard::StandardView;
 use egui::{Key, Modifiers};
 use glam::DVec3;
 use std::path::PathBuf;
 
-/// One wish; panels and keys collect them, the window fulfils them.
+/// One command; panels and keys collect them, the window carries them out.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Show the dialog of files.
@@ -16,7 +16,7 @@ pub enum Command {
     Close(usize),
     /// Read all open files again.
     Reload,
-    /// Give up what is being read.
+    /// Stop reading files.
     Cancel,
     /// The whole model in the picture.
     Fit,
@@ -26,35 +26,35 @@ pub enum Command {
     Standard(StandardView),
     /// From a direction of the view cube.
     LookFrom(DVec3),
-    /// Perspective or parallel, the other one.
+    /// Switch between perspective and parallel.
     Projection,
-    /// The view before.
+    /// The previous view.
     Previous,
     /// Turn by pixels, right and down.
     Turn(f64, f64),
-    /// Undo the last change of what is shown.
+    /// Undo the last change of the scene.
     Undo,
     /// Do it again.
     Redo,
-    /// Nothing is selected or measured any more.
+    /// Clear selection and measurement.
     Clear,
-    /// Hide what is selected.
+    /// Hide the selection.
     Hide,
     /// Hide everything else.
     Isolate,
     /// Show everything.
     ShowAll,
-    /// See through what is selected, or no more.
+    /// Make the selection transparent, or opaque again.
     SeeThrough,
-    /// Ask where the picture is to be written, or no more.
+    /// Open the dialog for writing the picture, or close it.
     Screenshot,
-    /// Write it there.
+    /// Write the picture to its file.
     WritePicture,
-    /// Drag trim loops, or no more.
+    /// Start dragging trim loops, or stop.
     Trims,
-    /// Ask where the model is to be saved, or no more.
+    /// Open the dialog for saving the model, or close it.
     SaveAs,
-    /// Save it there.
+    /// Save the model to its file.
     Save,
     /// Check the view against exact rays.
     Check,
@@ -62,7 +62,7 @@ pub enum Command {
     CopyCommand,
     /// A text to the clipboard.
     CopyText(String),
-    /// Keep what is measured of the selection in the list.
+    /// Keep the measurement of the selection in the list.
     Measure,
     /// Show the help, or hide it.
     Help,
@@ -70,14 +70,14 @@ pub enum Command {
     Quit,
 }
 
-/// A key and what it does.
+/// A key and its command.
 #[derive(Clone, Debug)]
 pub struct Shortcut {
     /// The key.
     pub key: Key,
-    /// What is held beside it.
+    /// Modifiers held with it.
     pub modifiers: Modifiers,
-    /// What it does.
+    /// Its command.
     pub command: Command,
     /// In words, for the help.
     pub what: &'static str,
@@ -131,7 +131,7 @@ pub fn shortcuts() -> Vec<Shortcut> {
 }
 
 impl Shortcut {
-    /// As the help shows it.
+    /// The key as the help shows it.
     pub fn label(&self) -> String {
         let mut label = String::new();
         for (held, name) in [(self.modifiers.command, "Ctrl + "), (self.modifiers.shift, "Shift + ")] {
@@ -142,7 +142,7 @@ impl Shortcut {
         label + self.key.symbol_or_name()
     }
 
-    /// Its key went down with just what it wants held; a question mark needs shift on some keyboards.
+    /// Whether its key went down with exactly its modifiers held; a question mark needs shift on some keyboards.
     fn is_pressed(&self, input: &egui::InputState) -> bool {
         let exact = |held: Modifiers| {
             held.command == self.modifiers.command
@@ -156,7 +156,7 @@ impl Shortcut {
     }
 }
 
-/// What the keys that went down ask for; nothing while a text is typed.
+/// Commands of the keys that went down; none while a text is typed.
 pub fn pressed(ctx: &egui::Context) -> Vec<Command> {
     if ctx.wants_keyboard_input() {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! What a selected thing is, exactly, and the command that draws the view.
+//! Exact descriptions of selected items, and the command that draws the view.
 
 use crate::session::Picked;
 use crate::session::{Session, World};
@@ -7,10 +7,10 @@ use glam::DVec3;
 use selvedge::model::{Camera, EdgeKind, Face, Projection, SurfaceKind};
 use selvedge::picture::Style;
 
-/// Lines of a description: what, and its value.
+/// Lines of a description: name and value.
 pub type Description = Vec<(&'static str, String)>;
 
-/// A number as the panels show it: 12 digits, no more zeros than it needs.
+/// A number as the panels show it: 12 digits, without trailing zeros.
 pub fn number(x: f64) -> String {
     if x == 0.0 {
         return "0".to_owned();
@@ -40,7 +40,7 @@ pub fn kind(kind: SurfaceKind) -> &'static str {
     }
 }
 
-/// One line for the cursor's place.
+/// One line for the item under the cursor.
 pub fn short(world: &World, picked: &Picked) -> String {
     let part = |instance: usize| &world.model.parts[world.model.instances[instance].part];
     match *picked {
@@ -61,7 +61,7 @@ pub fn short(world: &World, picked: &Picked) -> String {
     }
 }
 
-/// Everything that is known of it.
+/// The whole description of an item.
 pub fn long(world: &World, picked: &Picked) -> Description {
     let mut lines = Vec::new();
     if let Some(instance) = picked.instance() {
@@ -128,7 +128,7 @@ fn face_lines(face: &Face, lines: &mut Description) {
     lines.push(("trims", format!("{} loops, {curves} curves", face.loops.len())));
 }
 
-/// Points around what is selected.
+/// Points around the selection.
 pub fn extent(session: &Session) -> Vec<DVec3> {
     let world = &session.world;
     let mut points = Vec::new();

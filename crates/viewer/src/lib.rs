@@ -1,20 +1,20 @@
 //! A window for CAD files: look, pick, measure and cut exact surfaces, at every zoom.
 //!
 //! ```text
-//!   files ─▶ session (what is open and how it is shown) ─▶ engine ─▶ picture ─▶ window
+//!   files ─▶ session (open files and how they are shown) ─▶ engine ─▶ picture ─▶ window
 //!               ▲                                                      │
 //!               ╰── pick, describe, measure ◀── images of faces, edges ─╯      navigation: the hand moves the camera
 //! ```
 //!
-//! | module | what it holds |
+//! | module | content |
 //! |---|---|
 //! | [`navigation`] | orbit, zoom, pan, presets of mice, standard views, view cube, transitions: pure functions |
-//! | [`view`] | the camera in the hand, and which picture is due |
+//! | [`view`] | the camera that the mouse moves, and the next picture |
 //! | [`pacing`] | fewer pixels while the view moves |
 //! | [`session`] | open files, visibility, colours, sections, selection, undo |
-//! | [`pick`], [`describe`], [`measure`] | what lies under the cursor, what it is, how large and how far |
-//! | [`panels`], [`commands`] | what a person sees and asks for |
-//! | [`settings`], [`watch`] | what is remembered; files that change on the disk |
+//! | [`pick`], [`describe`], [`measure`] | items under the cursor, their description, sizes and distances |
+//! | [`panels`], [`commands`] | the panels around the picture, and the commands |
+//! | [`settings`], [`watch`] | stored settings; files that change on the disk |
 //! | [`run`] | the window itself |
 //!
 //! The viewer uses the engine as any host does.

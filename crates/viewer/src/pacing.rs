@@ -1,11 +1,11 @@
-//! How fine the pictures of a moving view are: so that the next one is there in time.
+//! The resolution of pictures while the view moves: the next one is ready in time.
 //!
 //! ```text
 //!   still     every pixel                                    once, then nothing is drawn
 //!   moving    one of SCALES of the pixels along each side    the finest that takes at most BUDGET
 //! ```
 //!
-//! Time grows with the number of pixels, from a share that does not. A picture of fewer pixels keeps the engine's promise
+//! Time grows with the number of pixels, from a constant part. A picture of fewer pixels satisfies the accuracy promise
 //! at its own size: resolution falls, correctness does not.
 
 use std::time::Duration;
@@ -14,7 +14,7 @@ use std::time::Duration;
 pub const BUDGET: Duration = Duration::from_millis(40);
 /// Parts of the pixels along each side, from fine to coarse.
 pub const SCALES: [f64; 6] = [1.0, 0.75, 0.5, 0.375, 0.25, 0.1875];
-/// A finer scale is taken once it would need this share of the budget at most: it does not flicker between two.
+/// A finer scale is taken only if it needs at most this share of the budget: the scale does not flicker between two.
 const SURE: f64 = 0.75;
 
 /// Chooses the scale of moving pictures from the time that they took.
@@ -36,7 +36,7 @@ impl Pacing {
         SCALES[self.scale]
     }
 
-    /// A picture of this scale took so long: takes one step at most.
+    /// Records that a picture of this scale took so long; changes the scale by one step at most.
     pub fn took(&mut self, scale: f64, time: Duration) {
         if scale != self.scale() {
             return;

@@ -1,7 +1,6 @@
-//! What is remembered from one session to the next: a JSON file in the user's folder of settings.
+//! The stored settings: a JSON file in the user's folder of settings.
 //!
-//! Fields that this version does not know are kept as they are, and fields that are missing have their default: newer and
-//! older versions share one file.
+//! Unknown fields are preserved, and missing fields have their default: newer and older versions share one file.
 
 use crate::navigation::OrbitStyle;
 use crate::navigation::gesture::Preset;
@@ -9,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Most files that are remembered.
+/// Most files in the list of recent ones.
 const MOST_RECENT: usize = 12;
 
 /// Light or dark.
@@ -38,7 +37,7 @@ pub enum Lines {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// Whose mouse.
+    /// The style of mouse buttons.
     pub preset: Preset,
     /// How a drag turns the model.
     pub orbit: OrbitStyle,
@@ -58,7 +57,7 @@ pub struct Settings {
     pub smooth: bool,
     /// Files opened last, the last one first.
     pub recent: Vec<PathBuf>,
-    /// What other versions have written.
+    /// Fields of other versions.
     #[serde(flatten)]
     pub others: serde_json::Map<String, serde_json::Value>,
 }
@@ -104,7 +103,7 @@ impl Settings {
         Ok(settings)
     }
 
-    /// Writes them; the file is there as a whole or as it was.
+    /// Writes them. If writing fails, the old file is unchanged.
     ///
     /// # Errors
     /// When it cannot be written.
@@ -147,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_file_is_told_and_not_replaced() {
+    fn a_damaged_file_is_reported_and_not_replaced() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("viewer.json");
         std::fs::write(&path, "{\n\"preset\": 3}").expect("written");

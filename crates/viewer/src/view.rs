@@ -1,11 +1,11 @@
-//! The view of the model: its camera, how the hand moves it, and which picture of it is due.
+//! The view of the model: its camera, its moves by the mouse, and the next picture.
 //!
 //! ```text
 //!   press ─▶ Drag, waits for the point under the cursor ─▶ moves ─▶ camera ─▶ a picture of fewer pixels, in time
 //!                                                                     └─ still for SETTLE ─▶ every pixel, once
 //! ```
 //!
-//! Times are handed in, and no window is known here.
+//! The caller passes times in; there is no window here.
 
 use crate::navigation::gesture::{Action, Held, Preset};
 use crate::navigation::transition::{DURATION, Transition};
@@ -16,7 +16,7 @@ use glam::{DVec2, DVec3};
 use selvedge::model::{Bounds, Camera, Projection};
 use std::time::{Duration, Instant};
 
-/// A hand that rests so long has stopped.
+/// A view that rests so long is still.
 pub const SETTLE: Duration = Duration::from_millis(80);
 /// A button that comes up within so many pixels of where it went down is a click.
 const CLICK_PX: f64 = 4.0;
@@ -34,20 +34,20 @@ const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
 struct Drag {
     start: DVec2,
     last: DVec2,
-    /// The point that turns or sticks; `None` until it is known.
+    /// The fixed point of the drag; `None` until it is found.
     held: Option<DVec3>,
     /// It has left the place where it began.
     moved: bool,
-    /// The view before it can be gone back to.
+    /// The view before it is in the list of previous views.
     remembered: bool,
 }
 
-/// What the cursor was over when it was looked up.
+/// The item under the cursor when it was last looked up.
 #[derive(Clone, Copy, Debug)]
 pub struct Hover {
     /// Pixels of the view.
     pub cursor: DVec2,
-    /// What is there.
+    /// The item.
     pub hit: Hit,
 }
 
@@ -62,9 +62,9 @@ pub struct View {
     anchor: Option<(DVec2, DVec3)>,
     transition: Option<(Transition, Instant)>,
     moved: Option<Instant>,
-    /// Chooses the size of moving pictures.
+    /// Chooses the size of pictures of a moving view.
     pub pacing: Pacing,
-    /// The last answer about the cursor.
+    /// The last result for the cursor.
     pub hover: Option<Hover>,
 }
 
@@ -100,7 +100,7 @@ impl View {
         &self.camera
     }
 
-    /// What is drawn lies within this box.
+    /// Sets the box of the drawn model.
     pub fn set_bounds(&mut self, bounds: Bounds) {
         if !bounds.is_empty() {
             self.bounds = bounds;
@@ -192,7 +192,7 @@ impl View {
         matches!(self.goal().projection, Projection::Orthographic { .. })
     }
 
-    /// The view before this one; false where there is none.
+    /// Goes back to the previous view; false where there is none.
     pub fn previous(&mut self, smooth: bool, now: Instant) -> bool {
         let Some(before) = self.before.pop() else { return false };
         self.towards(before, smooth, now);
@@ -207,19 +207,19 @@ impl View {
         self.set(to, now);
     }
 
-    /// A button went down at `cursor`; the point under it is wanted, unless it is known: [`hold`](Self::hold).
+    /// A button went down at `cursor`. The view needs the point under it, unless it is known: [`hold`](Self::hold).
     pub fn press(&mut self, cursor: DVec2) {
         self.transition = None;
         let known = self.hover.filter(|hover| hover.cursor.distance(cursor) < 1.0).and_then(|hover| hover.hit.point);
         self.drag.get_or_insert(Drag { start: cursor, last: cursor, held: known, moved: false, remembered: false });
     }
 
-    /// A drag waits for the point under its start.
+    /// The cursor at the start of a drag that waits for its point.
     pub fn wants_point(&self) -> Option<DVec2> {
         self.drag.filter(|drag| drag.held.is_none()).map(|drag| drag.start)
     }
 
-    /// The point under the start of the drag; without one, what lies behind the cursor as deep as the model's middle.
+    /// The point under the start of the drag; without one, the point behind the cursor as deep as the model's middle.
     pub fn hold(&mut self, point: Option<DVec3>) {
         let (camera, middle) = (self.camera, self.bounds.centre());
         if let Some(drag) = &mut self.drag {
@@ -291,7 +291,7 @@ impl View {
         self.set(camera, now);
     }
 
-    /// The picture of the view as it is now: of fewer pixels while it moves.
+    /// The next picture of the current view: of fewer pixels while the view moves.
     pub fn due(&self, now: Instant) -> Due {
         let moves = self.moving(now);
         let scale = if moves { self.pacing.scale() } else { 1.0 };
@@ -304,7 +304,7 @@ impl View {
         self.transition.is_some() || self.moved.is_some_and(|moved| now.saturating_duration_since(moved) < SETTLE)
     }
 
-    /// When something is to be drawn though nothing happens: the next step of a transition, or the still picture.
+    /// When the next picture is due without an event: the next step of a transition, or the still picture.
     pub fn wake(&self, now: Instant) -> Option<Instant> {
         match (self.transition, self.moved) {
             (Some(_), _) => Some(now),

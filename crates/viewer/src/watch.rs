@@ -1,4 +1,4 @@
-//! Open files on the disk: told when they change.
+//! Watches open files on the disk for changes.
 //!
 //! Folders are watched, not files: many programs write a new file and rename it over the old one.
 
@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Watched files: how they were named, by where they are.
+/// Watched files: the given name by the path.
 type Watched = Arc<Mutex<BTreeMap<PathBuf, PathBuf>>>;
 
 /// Watches files.
@@ -60,7 +60,7 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn files_that_are_written_or_replaced_are_told_and_others_are_not() {
+    fn written_and_replaced_files_are_reported_and_others_are_not() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = |name: &str| folder.path().join(name);
         std::fs::write(path("a"), "1").expect("written");

@@ -1,5 +1,4 @@
-// Trimming by bisection of monotone pieces in every pixel. What the structure is, and its twin:
-// src/baselines/bisect.rs.
+// Trimming by bisection of monotone pieces in every pixel. Data structure and twin: src/baselines/bisect.rs.
 #ifndef BISECT_GLSL
 #define BISECT_GLSL
 
@@ -79,7 +78,7 @@ vec2 bisect_point(BisectPiece piece, float t) {
     return sum.xy / sum.z;
 }
 
-// The piece crosses the point's scan line at or left of it.
+// Whether the piece crosses the point's scan line at the point or left of it.
 bool bisect_left(BisectPiece piece, vec2 p, uint steps) {
     vec2 a = piece.start;
     vec2 b = piece.end;
@@ -103,7 +102,7 @@ bool bisect_left(BisectPiece piece, vec2 p, uint steps) {
     return a.x + (b.x - a.x) * ((p.y - a.y) / (b.y - a.y)) <= p.x;
 }
 
-// Index of the cell of the band of v that begins at or left of u, and of the band; false where there is none: outside.
+// The band of v, and its last cell that begins at or left of u; false if there is none: the point is outside.
 bool bisect_cell(BisectFace own, vec2 uv, out uint band, out uint cell) {
     // the number of bands that begin below the point
     uint lo = 0u;
@@ -129,7 +128,7 @@ bool bisect_cell(BisectFace own, vec2 uv, out uint band, out uint cell) {
     return lo != first;
 }
 
-// Of a box within a band: it lies between two cells or beyond all.
+// For a box within a band: whether it lies between two cells or beyond all.
 uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
     BisectFace own = bisect_face_at(fi.face);
     uint band;

@@ -1,10 +1,10 @@
-// A trim texture a placed face, one bit a texel. What it is: src/baselines/texture.rs.
+// A trim texture for each placed face, one bit a texel: src/baselines/texture.rs.
 #ifndef TEXTURE_GLSL
 #define TEXTURE_GLSL
 
-// Rows of a texture; more is more than any storage buffer of these widths holds.
+// Most rows of a texture; no storage buffer holds more rows of these widths.
 const float TEXTURE_MOST_ROWS = 65536.0;
-// Texels along a row, so that sizes fit in 32 bits.
+// Most texels of a row, so that sizes fit in 32 bits.
 const float TEXTURE_MOST_COLUMNS = 16777216.0;
 
 struct TextureSize {
@@ -13,13 +13,13 @@ struct TextureSize {
     uint words; // of a row
 };
 
-// Where the texture of a placed face is: at the index of its first strip, which is its alone.
+// The place of a placed face's texture, stored at the index of its first strip, which no other face uses.
 struct TexturePlace {
     TextureSize size;
     uint start;
 };
 
-// Texels of a face that is seen at so many pixels per unit of u and of v; none for one that is not seen.
+// Texels of a face that covers so many pixels per unit of u and of v; none for a face that is not visible.
 TextureSize texture_size(vec2 speed, float texels_per_px) {
     vec2 texels = ceil(speed * texels_per_px);
     if (!(texels.x > 0.0 || texels.y > 0.0)) return TextureSize(0u, 0u, 0u);

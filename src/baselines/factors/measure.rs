@@ -1,33 +1,33 @@
-//! How often each way breaks the budget, and how much finer than needed it divides.
+//! Measures how often each way exceeds the budget, and how much finer than necessary it divides.
 
 use super::Way;
 use crate::fixtures::{Deviation, Emit, Kind, Trial};
 use crate::model::{Camera, Model};
 use rayon::prelude::*;
 
-/// Lattice intervals along one side of a cell: the middle of the diagonal is where triangles are off by most.
+/// Lattice intervals along one side of a cell: the deviation is largest at the middle of the diagonal.
 const FINENESS: usize = 2;
-/// Finer triangulations take no part in the search for the smallest sufficient one.
+/// Longest side, in segments, of triangulations for which the smallest sufficient one is searched.
 const MOST_SEARCHED: usize = 64;
-/// Of hardware.
+/// The hardware's largest tessellation level.
 const MOST_LEVEL: u32 = 64;
 /// A budget of half a pixel for the tessellation alone; see `Budget`.
 const TOLERANCE_PX: f64 = 6.0;
 
-/// What came of one way on one patch.
+/// The result of one way on one patch.
 struct Outcome {
     rational: bool,
     answered: bool,
-    /// Pixels over the budget; at most 1 where it holds.
+    /// Deviation over budget; at most 1 if the budget holds.
     excess: f64,
     quads: f64,
-    /// How much finer than the smallest sufficient factors of the same ratio, where that was looked for.
+    /// Factors over the smallest sufficient ones of the same ratio, if these were searched.
     finer: Option<f64>,
-    /// The same of those that are off in depth by no more, either; of ways that emit points.
+    /// The same with deviations in depth; for ways that emit points.
     finer_in_space: Option<f64>,
 }
 
-/// Of a set of numbers; not numbers where there are none.
+/// Statistics of a set of numbers; NaN for an empty set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
     /// Half of them are no larger.
@@ -44,16 +44,16 @@ impl Spread {
     }
 }
 
-/// Every way on the same patches.
+/// All results of one way.
 #[derive(Clone, Debug)]
 pub struct Ways {
     /// The way.
     pub way: Way,
     /// Patches in the picture.
     pub patches: usize,
-    /// Patches for which the way has no answer below 4096 segments.
+    /// Patches for which the way gives no factor below 4096 segments.
     pub unanswered: usize,
-    /// Patches off by more than half a pixel.
+    /// Patches that deviate by more than half a pixel.
     pub violations: usize,
     /// The largest deviation over the budget.
     pub worst: f64,
@@ -63,14 +63,15 @@ pub struct Ways {
     pub finer_polynomial: Spread,
     /// The same, rational patches.
     pub finer_rational: Spread,
-    /// Factor over the smallest one that keeps the budget in space, depth too; polynomial patches, ways that emit points.
+    /// Factor over the smallest one that holds the budget in space, including depth; polynomial patches, ways that emit
+    /// points.
     pub space_polynomial: Spread,
     /// The same, rational patches.
     pub space_rational: Spread,
 }
 
 /// Random patches of degrees 2 to 7 with weights to 100 : 1, in perspective and through the near plane. The smallest
-/// sufficient factors are looked for in the first `searched`.
+/// sufficient factors are searched for the first `searched` patches.
 pub fn of_random(count: u64, searched: u64, ways: &[Way]) -> Vec<Ways> {
     let kind = Kind { degrees: (2, 7), ratios: &[1.5, 5.0, 100.0], tolerances: &[TOLERANCE_PX] };
     let outcomes = (0..count).into_par_iter().map(|seed| on(&Trial::random(seed, kind), ways, seed < searched));
@@ -84,27 +85,27 @@ pub fn of_model(model: &Model, camera: &Camera, ways: &[Way]) -> Vec<Ways> {
     summaries(ways, &outcomes)
 }
 
-/// The patches of a model in one view, to be asked what ways are off by there.
+/// The visible patches of a model in one view, for measuring deviations.
 pub struct Seen {
     trials: Vec<Trial>,
 }
 
 impl Seen {
-    /// Those that the camera may see; `tolerance_px` is the promise, of which the tessellation has its share.
+    /// The patches that the camera may see; the tessellation gets its share of `tolerance_px`.
     pub fn new(model: &Model, camera: &Camera, tolerance_px: f64) -> Self {
         let mut trials = Trial::of_model(model, camera, tolerance_px);
         trials.retain(|trial| trial.tau[0] > 0);
         Self { trials }
     }
 
-    /// The largest deviation in pixels over all patches; what trims cut away counts.
+    /// The largest deviation in pixels over all patches, including their trimmed parts.
     pub fn deviation_px(&self, way: Way) -> f64 {
         let off =
             |trial: &Trial| way.factors(trial).map_or(f64::INFINITY, |t| trial.measure(t, FINENESS, way.emits()).px);
         self.trials.par_iter().map(off).reduce(|| 0.0, f64::max)
     }
 
-    /// The smallest level up to 64 that deviates by no more; `None` where none does.
+    /// The smallest level up to 64 with at most this deviation; `None` if there is none.
     pub fn level(&self, px: f64) -> Option<u32> {
         let kept = |level: u32| self.deviation_px(Way::Fixed(level as usize)) <= px;
         let (mut low, mut high) = (0, MOST_LEVEL);
@@ -119,7 +120,7 @@ impl Seen {
     }
 }
 
-/// One outcome a way; none for a patch that nobody sees.
+/// One result for each way; none for a patch that is not visible.
 fn on(trial: &Trial, ways: &[Way], search: bool) -> Vec<Outcome> {
     if trial.tau[0] == 0 || trial.measure([8; 2], 1, Emit::Point).points == 0 {
         return Vec::new();
@@ -172,8 +173,8 @@ fn summaries(ways: &[Way], outcomes: &[Vec<Outcome>]) -> Vec<Ways> {
 mod tests {
     use super::*;
 
-    /// By the median of random patches the bound takes no more than half as many segments again as the smallest sufficient
-    /// ones of its ratio, of rational ones twice as many.
+    /// For the median of random patches the bound uses at most half as many segments again as the smallest sufficient
+    /// factors of its ratio; for rational patches at most twice as many.
     #[test]
     fn the_bound_divides_little_too_finely() {
         let bound = &of_random(400, 400, &[Way::Bound])[0];
@@ -181,7 +182,7 @@ mod tests {
         assert!(bound.finer_polynomial.median <= 1.5 && bound.finer_rational.median <= 2.0, "{bound:?}");
     }
 
-    /// Of 120 random patches: ways with a proof break no budget; the plain slefe and a fixed level do.
+    /// 120 random patches: ways with a proof never exceed the budget; the plain slefe and a fixed level do.
     #[test]
     fn proofs_hold_and_habits_do_not() {
         let ways = [

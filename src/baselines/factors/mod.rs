@@ -1,4 +1,4 @@
-//! Ways to choose how finely a patch is divided, behind one interface.
+//! Ways to choose tessellation factors, behind one interface.
 //!
 //! | way | bounds | guaranteed | source |
 //! |---|---|---|---|
@@ -16,13 +16,13 @@
 //!   M_uu = sup |L_uu| <= n (n-1) max |Δ²_u L|     M_uv <= n k max |Δ_u Δ_v L|     M_vv <= k (k-1) max |Δ²_v L|
 //! ```
 //!
-//! where the homogeneous position is what is linear between vertices, its weight not divided out;
-//! and `M` is convex in `x`, so the ends of the patch's range within the picture suffice. Through the near plane, with
+//! if the homogeneous position is interpolated between vertices without dividing by the weight. `M` is convex in `x`,
+//! so the ends of the patch's range within the picture suffice. Through the near plane, with
 //! `K` the larger `M(L)` of the ends, `(K / ε + M(W)) / (8 near)` takes the place of `M / (8 ε W_min)`.
 //!
-//! **Corrected.** The two faults of slefes as a guarantee go when they enclose *second derivatives*: the
-//! factor from them bounds triangles, and shrinks with the square of the interval. `L_uu`, `L_uv`, `L_vv` and `W` are
-//! Bernstein polynomials too; their slefes are tighter than their hulls, and weights are in `L`.
+//! **Corrected.** Slefes guarantee the budget if they enclose *second derivatives*: the factor then bounds triangles,
+//! and shrinks with the square of the interval. `L_uu`, `L_uv`, `L_vv` and `W` are Bernstein polynomials, too. Their
+//! slefes are tighter than their hulls, and `L` contains the weights.
 
 mod measure;
 
@@ -37,24 +37,24 @@ use glam::{DVec2, DVec4};
 /// A way to choose the factors of a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// What the engine does.
+    /// The engine's way.
     Bound,
-    /// Second differences, the net cut into so many pieces along each side before.
+    /// Second differences of the net, after splitting it into equal pieces along each side.
     Homogeneous {
         /// Pieces along a side.
         cuts: usize,
     },
     /// Projected slefe boxes. On the GPU: pass `baseline_slefe`.
     Ipass {
-        /// Of the slefe.
+        /// Segments of the slefe.
         segments: usize,
     },
     /// Slefes of second derivatives.
     Corrected {
-        /// Of the slefe.
+        /// Segments of the slefe.
         segments: usize,
     },
-    /// The same everywhere.
+    /// The same number for every patch.
     Fixed(usize),
 }
 
@@ -62,7 +62,7 @@ pub enum Way {
 const MOST: f64 = 4096.0;
 
 impl Way {
-    /// What must be linear between vertices for the way's bound to hold; the others take what the engine does.
+    /// The quantity that must be linear between vertices for the way's bound; points for ways without a bound.
     pub(crate) fn emits(self) -> Emit {
         match self {
             Self::Homogeneous { .. } | Self::Corrected { .. } => Emit::Homogeneous,
@@ -70,7 +70,7 @@ impl Way {
         }
     }
 
-    /// Segments along `u` and `v`; `None` where the way has no answer, or one above 4096.
+    /// Segments along `u` and `v`; `None` if the way gives no factor, or one above 4096.
     pub(crate) fn factors(self, trial: &Trial) -> Option<[usize; 2]> {
         let asked = match self {
             Self::Bound => return (!trial.clamped()).then_some(trial.tau),
@@ -91,13 +91,13 @@ fn pieces(patch: &Patch, cuts: usize) -> impl Iterator<Item = Patch> + '_ {
     (0..cuts * cuts).map(move |c| patch.rectangle(range(c % cuts), range(c / cuts)))
 }
 
-/// How a Bernstein polynomial over the unit square is enclosed: coefficients, `u` fastest, and degrees.
+/// An enclosure of a Bernstein polynomial over the unit square: from coefficients, `u` fastest, and degrees.
 trait Enclose {
     fn largest(&self, b: &[f64], n: usize, k: usize) -> f64;
     fn smallest(&self, b: &[f64], n: usize, k: usize) -> f64;
 }
 
-/// By its coefficients.
+/// Enclosure by the coefficients.
 struct Hull;
 
 impl Enclose for Hull {
@@ -109,7 +109,7 @@ impl Enclose for Hull {
     }
 }
 
-/// By a slefe of so many segments, or by its coefficients where that is tighter.
+/// Enclosure by a slefe with this number of segments, or by the coefficients if they are tighter.
 struct Slefes(usize);
 
 impl Slefes {
@@ -142,7 +142,7 @@ fn second_derivatives(b: &[f64], n: usize, k: usize, by: &impl Enclose) -> [f64;
     [if n > 1 { net(n - 2, k, &uu) } else { 0.0 }, net(n - 1, k - 1, &uv), if k > 1 { net(n, k - 2, &vv) } else { 0.0 }]
 }
 
-/// The factor from homogeneous pixels, for either way to enclose.
+/// The factor from homogeneous pixels, with one of the enclosures.
 fn homogeneous(patch: &Patch, trial: &Trial, by: &impl Enclose) -> [f64; 2] {
     let (n, k) = (patch.degree_u, patch.degree_v);
     let frame = &trial.frame;
@@ -173,8 +173,8 @@ fn homogeneous(patch: &Patch, trial: &Trial, by: &impl Enclose) -> [f64; 2] {
     factors(bend.map(|b: f64| b as f32), (8.0 * w) as f32).map(f64::from)
 }
 
-/// `m sqrt(e / tolerance)`, `e` the largest extent in pixels of a slefe box; weights are ignored. Infinite where there
-/// is no answer: above the table's degrees, and where a box reaches the near plane.
+/// `m sqrt(e / tolerance)`, where `e` is the largest extent of a slefe box in pixels; weights are ignored. Infinite
+/// above the table's degrees, and for a box that reaches the near plane.
 pub(crate) fn ipass(trial: &Trial, segments: usize) -> f64 {
     let (patch, frame) = (&trial.patch, &trial.frame);
     if patch.degree_u.max(patch.degree_v) > MOST_DEGREE {

@@ -8,19 +8,20 @@
 //!       0 1/m 2/m   a_j: coefficients -i (n-j) / n for i <= j, -j (n-i) / n for i >= j
 //! ```
 //!
-//! Each `a_j` is convex and nowhere positive. Between break points `i / m` its best piecewise-linear upper bound
-//! `U_j` is its own interpolant; the lower one `L_j` is the solution of a small linear program (the least largest gap,
-//! then the least sum of gaps), tabled in `table.txt` for degrees 2 to 9 and 1 to 9 segments. Then
+//! Each `a_j` is convex and nowhere positive. Between break points `i / m` its best piecewise-linear upper bound `U_j`
+//! is its own interpolant. The lower bound `L_j` solves a small linear program (the smallest largest gap, then the
+//! smallest sum of gaps); `table.txt` has the solutions for degrees 2 to 9 and 1 to 9 segments. Then
 //!
 //! ```text
 //!   p+ = linear + sum max(D_j, 0) U_j + min(D_j, 0) L_j
 //!   p- = linear + sum max(D_j, 0) L_j + min(D_j, 0) U_j
 //! ```
 //!
-//! enclose `p`. A tensor product is enclosed along its rows, then the upper values' upper and the lower values' lower
-//! bounds along the columns: *bilinear* tiles between break points, as each step is convex in the coefficients.
+//! enclose `p`. A tensor product is enclosed along its rows; then the upper values are bounded from above and the lower
+//! values from below along the columns. This gives *bilinear* tiles between break points, as each step is convex in the
+//! coefficients.
 //!
-//! `tools/slefe_table` writes the table; `tests/baselines` derives it again and holds it against the anchors of the
+//! `tools/slefe_table` writes the table; `tests/baselines` derives it again and compares it with values from the
 //! literature. Sources: D. Lutterkort, J. Peters, *Optimized refinable enclosures of multivariate polynomial pieces*,
 //! CAGD 18, 2001; Y. I. Yeo, L. Bin, J. Peters, *Efficient pixel-accurate rendering of curved surfaces*, 2012.
 
@@ -28,16 +29,15 @@ use std::cmp::Ordering;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// Degrees in the table; those below 2 need none, being linear.
+/// Largest degree in the table; degrees below 2 are linear and need no slefe.
 pub const MOST_DEGREE: usize = 9;
-/// Segments in the table.
+/// Most segments in the table.
 pub const MOST_SEGMENTS: usize = 9;
 
-/// Segments where nobody asks for others.
+/// Default number of segments.
 pub const USUAL_SEGMENTS: usize = 3;
 
-/// The table as it is stored: a line `n m j` and the `m + 1` values of `L_j`, for `j <= n / 2`; the others are
-/// mirrored.
+/// The table: a line `n m j` and the `m + 1` values of `L_j`, for `j <= n / 2`; the other `j` are mirrored.
 pub const TABLE: &str = include_str!("table.txt");
 
 static LOWER: LazyLock<HashMap<[usize; 3], Vec<f64>>> = LazyLock::new(|| {
@@ -81,11 +81,10 @@ pub fn value(coefficients: &[f64], t: f64) -> f64 {
     c[0]
 }
 
-/// The table as shaders read it: `segments`, then `U_j` and `L_j` in turn at the break points, `j` after `j`, degree
-/// after degree from 2 to [`MOST_DEGREE`], in single precision.
+/// The table as shaders read it, in single precision: `segments`, then `U_j` and `L_j` in turn at the break points, for
+/// each `j`, for each degree from 2 to [`MOST_DEGREE`].
 ///
-/// # Panics
-/// Without 1 to [`MOST_SEGMENTS`] segments.
+/// # Panics If `segments` is not 1 to [`MOST_SEGMENTS`].
 pub(crate) fn words(segments: usize) -> Vec<u32> {
     let bounds = (2..=MOST_DEGREE).flat_map(|degree| Slefe::new(degree, segments).bounds);
     let pairs = bounds.flat_map(|(upper, lower)| upper.into_iter().zip(lower)).flat_map(|(u, l)| [u, l]);
@@ -93,8 +92,7 @@ pub(crate) fn words(segments: usize) -> Vec<u32> {
 }
 
 impl Slefe {
-    /// # Panics
-    /// Above [`MOST_DEGREE`], or without 1 to [`MOST_SEGMENTS`] segments.
+    /// # Panics If the degree is above [`MOST_DEGREE`], or `segments` is not 1 to [`MOST_SEGMENTS`].
     pub fn new(degree: usize, segments: usize) -> Self {
         assert!(degree <= MOST_DEGREE && (1..=MOST_SEGMENTS).contains(&segments), "degree {degree} on {segments}");
         let breaks = || (0..=segments).map(|i| i as f64 / segments as f64);
@@ -103,7 +101,7 @@ impl Slefe {
             let mirrored = || stored.iter().rev().copied();
             match (2 * j).cmp(&degree) {
                 Ordering::Less => stored.clone(),
-                // its own mirror image, but for the last digit of the program's solution
+                // it is its own mirror image, except for the last digit of the solution
                 Ordering::Equal => stored.iter().zip(mirrored()).map(|(a, b)| a.min(b)).collect(),
                 Ordering::Greater => mirrored().collect(),
             }
@@ -120,8 +118,7 @@ impl Slefe {
 
     /// Bounds of the polynomial with these coefficients.
     ///
-    /// # Panics
-    /// When there are not `degree + 1` of them.
+    /// # Panics If there are not `degree + 1` of them.
     pub fn enclose(&self, b: &[f64]) -> Enclosure {
         assert_eq!(b.len(), self.degree + 1, "one coefficient more than the degree");
         let linear = |i: usize| b[0] + (b[self.degree] - b[0]) * (i as f64 / self.segments as f64);
@@ -138,8 +135,8 @@ impl Slefe {
         e
     }
 
-    /// Bounds of a tensor product with coefficients `b`, `u` fastest: at `(m + 1)` by `(m + 1)` break points, of which
-    /// the bilinear interpolants enclose it. `self` is for its rows, `columns` for its columns.
+    /// Bounds of a tensor product with coefficients `b`, `u` fastest, at `(m + 1)` by `(m + 1)` break points. Their
+    /// bilinear interpolants enclose it. `self` is for its rows, `columns` for its columns.
     pub fn enclose_net(&self, columns: &Self, b: &[f64]) -> Enclosure {
         let rows: Vec<Enclosure> = b.chunks_exact(self.degree + 1).map(|row| self.enclose(row)).collect();
         let (across, up) = (self.segments + 1, columns.segments + 1);
@@ -159,12 +156,12 @@ impl Slefe {
 }
 
 impl Enclosure {
-    /// The largest distance of the two bounds.
+    /// The largest distance between the two bounds.
     pub fn width(&self) -> f64 {
         self.upper.iter().zip(&self.lower).map(|(u, l)| u - l).fold(0.0, f64::max)
     }
 
-    /// The largest absolute value between the bounds.
+    /// The largest absolute value of the bounds.
     pub fn largest(&self) -> f64 {
         self.upper.iter().chain(&self.lower).fold(0.0, |m, x| m.max(x.abs()))
     }

@@ -5,8 +5,8 @@
 //!   curves ──flip──▶ bits ──fill──▶ texels, places
 //! ```
 //!
-//! And for what trim tests cost, whatever the way: the frame's sub-patches drawn without one, into images that pass
-//! `visibility` then clears.
+//! Also measures drawing without a trim test: the frame's sub-patches are drawn into images that pass `visibility` then
+//! clears.
 
 pub(crate) mod slefe;
 pub(crate) mod texture;
@@ -21,7 +21,7 @@ use crate::scene::{BaselineScene, Scene, SceneData, TableScene};
 use crate::shaders::{TRIM_BISECT, TRIM_TEXTURE, TRIM_UNTRIMMED, TrimTest};
 use std::sync::Arc;
 
-/// The passes of such a way.
+/// The passes of a baseline's way to trim.
 pub(crate) enum Passes {
     Untrimmed,
     Bisect,
@@ -55,14 +55,14 @@ impl Passes {
     }
 }
 
-/// Such a way, with its buffers.
+/// A baseline's way to trim, with its buffers.
 pub(crate) enum Trim {
     Untrimmed,
     Bisect,
     Texture(Box<Textures>),
 }
 
-/// Trim textures and what leads to them.
+/// Trim textures, and the buffers from which they are made.
 pub(crate) struct Textures {
     passes: Arc<TexturePasses>,
     strip_heights: Buffer,
@@ -70,7 +70,7 @@ pub(crate) struct Textures {
     words: Buffer,
     starts: Buffer,
     places: TexelBuffer,
-    /// As large as the capacity of intercepts.
+    /// As long as the capacity of intercepts.
     texels: TexelBuffer,
 }
 
@@ -90,14 +90,14 @@ impl Trim {
         }
     }
 
-    /// Makes the textures, where there are some.
+    /// Makes the textures, in scenes with trim textures.
     pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, times: &mut Timestamps) {
         if let (Self::Texture(textures), Some(BaselineScene::Texture(scene, knob))) = (self, frame.scene.baseline()) {
             times.scope(cmd, "trim texture", || textures.record(frame, cmd, (scene, knob)));
         }
     }
 
-    /// What the test reads, in its order.
+    /// The trim test's resources, in its order.
     pub(super) fn test<'a>(&'a self, scene: &'a Scene) -> Vec<Resource<'a>> {
         match (self, scene.baseline()) {
             (Self::Texture(t), _) => vec![Resource::from(&t.places), Resource::from(&t.texels)],
@@ -107,7 +107,7 @@ impl Trim {
     }
 }
 
-/// Pass `visibility` without a test; `None` where it is not asked for, or there is none to leave out.
+/// Pass `visibility` without a trim test; `None` if it is not requested, or if no patch is trimmed.
 pub(super) fn untested(
     device: &Device,
     data: &SceneData,
@@ -133,12 +133,12 @@ impl Textures {
         })
     }
 
-    /// Zero when the frame begins.
+    /// The buffers that are zero when the frame begins.
     fn counted(&self) -> [&Buffer; 3] {
         [&self.strip_heights, &self.face_speeds, &self.texels]
     }
 
-    /// Records the passes; what the trim test reads is then ready for it.
+    /// Records the passes, and the barrier before the trim test.
     fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, (scene, knob): (&TableScene, &Buffer)) {
         let (s, b, t, counts) = (frame.scene, &frame.stages.common, self, frame.counts);
         let (w, r) = WRITE_TO_READ;

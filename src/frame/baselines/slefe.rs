@@ -1,4 +1,4 @@
-//! Pass `baseline_slefe`, in place of `bound`: patches are divided by slefes, in scenes that ask for it.
+//! Pass `baseline_slefe`: divides patches by slefes, in place of pass `bound`.
 //!
 //! ```text
 //!    box of the patch ──▶ outside the picture, turned away? ──▶ tau = 0   as in pass `bound`
@@ -7,8 +7,8 @@
 //!    slefe boxes of the net ──▶ largest extent e in pixels ──▶ tau = m sqrt(e / deviation), in both directions
 //! ```
 //!
-//! Degrees above the table's, and boxes that reach the near plane, have no answer: a clamp. Weights are left out of
-//! account, as in the source.
+//! Degrees above the table's, and boxes that reach the near plane, are counted as clamps. Weights are ignored, as in
+//! the source.
 //!
 //! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `items`, `cones`, `points`, `slefes`. Writes:
 //! `taus`, `counters`. The same in `f64`: `Way::Ipass` of `src/baselines/factors`.

@@ -1,12 +1,12 @@
-//! Trim textures: one bit a texel for each placed face that is seen, at the resolution of this view.
+//! Trim textures: one bit a texel for each visible placed face, at the resolution of this view.
 //!
 //! ```text
 //!   face speeds ──sizes──▶ words ──(prefix sum)──▶ starts
 //!   curves ──flip──▶ a bit where a row meets a curve ──fill──▶ parity of the bits up to each texel
 //! ```
 //!
-//! Writes: `sizes`: `words`, `counters`; `flip`: `texels`, `counters`; `fill`: `texels`, `places`. Barriers
-//! between the steps are the caller's. What the method is: `src/baselines/texture.rs`.
+//! Writes: `sizes`: `words`, `counters`; `flip`: `texels`, `counters`; `fill`: `texels`, `places`. The caller records
+//! the barriers between the steps. `src/baselines/texture.rs` describes the method.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Resource, TexelBuffer};
@@ -22,7 +22,7 @@ pub(crate) struct BaselineTexture {
     fill: Kernel,
 }
 
-/// Of all steps.
+/// The buffers of all steps.
 pub(crate) struct Bindings<'a> {
     pub knob: &'a Buffer,
     pub frame: &'a Buffer,
@@ -49,12 +49,12 @@ impl BaselineTexture {
         })
     }
 
-    /// Words of each of `placed` faces.
+    /// Computes the words of each of `placed` faces.
     pub(crate) fn sizes(&self, cmd: &Commands<'_>, b: &Bindings<'_>, placed: u32) {
         self.sizes.record(cmd, &[b.knob, b.face_speeds, b.words, b.counters].map(Into::into), placed);
     }
 
-    /// Flips along each of `curves`.
+    /// Sets the bits along each of `curves`.
     pub(crate) fn flip(&self, cmd: &Commands<'_>, b: &Bindings<'_>, curves: u32) {
         let resources: [Resource<'_>; 11] = [
             b.frame.into(),
@@ -72,7 +72,7 @@ impl BaselineTexture {
         self.flip.record_grid(cmd, &resources, grid(curves, 1));
     }
 
-    /// Parities along the rows of each of `placed` faces.
+    /// Computes the parities along the rows of each of `placed` faces.
     pub(crate) fn fill(&self, cmd: &Commands<'_>, b: &Bindings<'_>, placed: u32) {
         let resources =
             [b.knob, b.face_speeds, b.starts, b.texels, b.counters, &**b.face_instances, &**b.faces, b.places];
@@ -80,7 +80,7 @@ impl BaselineTexture {
     }
 }
 
-/// So many columns of workgroups, folded into the third dimension beyond what every device has in the first.
+/// A grid of `columns` workgroups in each row. Columns beyond the limit of the first dimension go into the third.
 fn grid(columns: u32, rows: u32) -> [u32; 3] {
     const MOST: u32 = 65_535;
     [columns.min(MOST), rows, columns.div_ceil(MOST)]

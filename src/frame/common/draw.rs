@@ -1,29 +1,29 @@
-//! A graphics pipeline that knows from its shaders what it needs: bindings and push constants. It draws triangles, or
-//! patches of one point where there are tessellation stages.
+//! A graphics pipeline whose bindings and push constants come from its shaders. It draws triangles, or patches of one
+//! point if it has tessellation stages.
 
 use crate::gpu::{Binding, ColourTarget, DepthTest, Device, GpuError, GraphicsInfo, Pipeline, StencilTest};
 use crate::shaders::Shader;
 use ash::vk;
 
-/// What a graphics pipeline is made from.
+/// The parameters of a graphics pipeline.
 #[derive(Clone, Copy)]
 pub(crate) struct Draw<'a> {
     pub name: &'a str,
     pub vertex: &'static Shader,
-    /// Control and evaluation.
+    /// Tessellation control and evaluation shader.
     pub tessellation: Option<[&'static Shader; 2]>,
     pub fragment: Option<&'static Shader>,
-    /// Specialisation constants: ids of `shaders::constant`, and values. Stages without a constant ignore it.
+    /// Specialisation constants: ids of `shaders::constant`, and values. A stage without the constant ignores it.
     pub constants: &'a [(u32, u32)],
     pub cull: vk::CullModeFlags,
-    /// In `location` order.
+    /// Colour targets, in `location` order.
     pub colour: &'a [ColourTarget],
     pub depth: Option<DepthTest>,
     pub stencil: Option<StencilTest>,
 }
 
 impl<'a> Draw<'a> {
-    /// Both sides of triangles, into no attachment.
+    /// Draws both sides of triangles, without attachments.
     pub(crate) fn new(name: &'a str, vertex: &'static Shader, fragment: impl Into<Option<&'static Shader>>) -> Self {
         Self {
             name,
@@ -71,8 +71,7 @@ impl<'a> Draw<'a> {
 
 /// The bindings of all stages.
 ///
-/// # Panics
-/// When two stages have different things at one binding.
+/// # Panics If two stages use one binding for different resources.
 fn merged<'b>(name: &str, stages: impl Iterator<Item = &'b [Binding]>) -> Vec<Binding> {
     let mut all = Vec::new();
     for bindings in stages {

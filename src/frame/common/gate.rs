@@ -1,7 +1,7 @@
-//! Pass `gate`: if a list of this frame overflowed, no patch is drawn.
+//! Pass `gate`: if a list of this frame overflowed, sets the numbers of patch draws to 0.
 //!
 //! ```text
-//!   trim table, sub-patches, draws, chords ──counters.failed──▶ the numbers of draws: as they are, or 0
+//!   trim table, sub-patches, draws, chords ──counters.failed──▶ numbers of draws: unchanged, or 0
 //! ```
 //!
 //! Reads: `counters`. Writes: `counters`. Twin: `src/twin/gate.rs`.

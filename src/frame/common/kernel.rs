@@ -1,9 +1,9 @@
-//! A compute pipeline that knows from its shader what it needs: bindings, workgroups, constants.
+//! A compute pipeline whose bindings, workgroup size and constants come from its shader.
 
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Resource};
 use crate::shaders::Shader;
 
-/// The most threads of one dispatch. The threads that fill its last row of workgroups have numbers of 32 bits too.
+/// Most threads of a dispatch. The threads that fill the last row of workgroups have 32-bit numbers, too.
 pub(crate) const MOST_THREADS: u32 = 1 << 31;
 
 /// The pipeline of one compute shader.
@@ -14,10 +14,9 @@ pub(crate) struct Kernel {
 }
 
 impl Kernel {
-    /// `constants`: specialisation constants, ids of `shaders::constant`; a flag is 0 or 1.
+    /// `constants`: specialisation constants, as ids of `shaders::constant` and values; a flag is 0 or 1.
     ///
-    /// # Panics
-    /// When the shader has no constant of an id.
+    /// # Panics If the shader has no constant of an id.
     pub(crate) fn new(
         device: &Device,
         name: &str,
@@ -43,7 +42,7 @@ impl Kernel {
         cmd.bind(&self.pipeline, resources, push_constants);
     }
 
-    /// As many workgroups as `threads` need; [`Commands::dispatch`] fills the last row of them.
+    /// Dispatches enough workgroups for `threads`; [`Commands::dispatch`] fills their last row.
     pub(crate) fn record(&self, cmd: &Commands<'_>, resources: &[Resource<'_>], threads: u32) {
         self.bind(cmd, resources, &[]);
         self.dispatch(cmd, threads);
@@ -51,25 +50,24 @@ impl Kernel {
 
     /// As [`record`](Self::record), after [`bind`](Self::bind).
     ///
-    /// # Panics
-    /// When there are more threads than [`MOST_THREADS`].
+    /// # Panics If there are more threads than [`MOST_THREADS`].
     pub(crate) fn dispatch(&self, cmd: &Commands<'_>, threads: u32) {
         assert!(threads <= MOST_THREADS, "{threads} threads where {MOST_THREADS} are the most");
         cmd.dispatch(threads.div_ceil(self.group[0]));
     }
 
-    /// For the pipeline bound last: a row of workgroups for each of so many rows of threads.
+    /// Dispatches a row of workgroups for each of `rows` rows of threads, with the pipeline bound last.
     pub(crate) fn dispatch_rows(&self, cmd: &Commands<'_>, [threads, rows]: [u32; 2]) {
         cmd.dispatch_grid([threads.div_ceil(self.group[0]), rows, 1]);
     }
 
-    /// A grid of workgroups.
+    /// Dispatches a grid of workgroups.
     pub(crate) fn record_grid(&self, cmd: &Commands<'_>, resources: &[Resource<'_>], groups: [u32; 3]) {
         self.bind(cmd, resources, &[]);
         cmd.dispatch_grid(groups);
     }
 
-    /// The grid that stands at `offset` bytes of `arguments`.
+    /// Dispatches the grid stored at `offset` bytes of `arguments`.
     pub(crate) fn record_indirect(
         &self,
         cmd: &Commands<'_>,

@@ -1,4 +1,4 @@
-//! What several stages have in common: counters that begin at 0, prefix sums, and the draws of sub-patches.
+//! Shared by several stages: counters that begin at 0, prefix sums, and the draws of sub-patches.
 
 pub(crate) mod draw;
 pub(crate) mod gate;
@@ -32,13 +32,13 @@ impl Passes {
     }
 }
 
-/// The passes, and what they and all stages count in.
+/// The passes, and the counters of all stages.
 pub(crate) struct Common {
     pub(super) passes: Arc<Passes>,
     /// Plain draws of sub-patches, then trimmed ones.
     pub draws: Buffer,
     pub counters: Buffer,
-    /// What they were when all that a still camera keeps was there; from frame to frame.
+    /// The counters as they were after the reusable results; they stay from frame to frame.
     pub kept_counters: Buffer,
     pub sums: Buffer,
 }
@@ -55,7 +55,7 @@ impl Common {
         })
     }
 
-    /// No draws, and nothing is counted.
+    /// Empties the draws and clears the counters.
     pub(super) fn reset(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let bindings = reset::Bindings { frame: frame.constants, draws: &self.draws, counters: &self.counters };
         self.passes.reset.record(cmd, &bindings, 2 * frame.capacities.tessellation.draws);
@@ -63,7 +63,7 @@ impl Common {
         cmd.after(w, w);
     }
 
-    /// After all lists are made: takes out the draws of patches if a list overflowed.
+    /// After all lists: removes the draws of patches if a list overflowed.
     pub(super) fn gate(&self, cmd: &Commands<'_>) {
         let Some(gate) = &self.passes.gate else { return };
         let (counted, drawn) = (Access::COMPUTE_WRITE, Access::COMPUTE_WRITE | Access::INDIRECT_READ);
@@ -72,7 +72,7 @@ impl Common {
         barrier::buffers(cmd, &[(&self.counters, counted, drawn)]);
     }
 
-    /// One prefix sum; the total follows the last start.
+    /// Records one prefix sum; the total follows the last start.
     pub(super) fn scan(&self, cmd: &Commands<'_>, counts: &Buffer, starts: &Buffer, count: u32) {
         let (sums, w) = (&self.sums, Access::COMPUTE_WRITE);
         cmd.after(w, w);

@@ -1,11 +1,11 @@
-//! Pass `reset`: empty draws and zero counters, before anything counts.
+//! Pass `reset`: empties the draws and clears the counters, before any other pass counts.
 //!
 //! ```text
 //!    draws     [0 vertices, first = none] x 2 capacity
 //!    counters  all 0
 //! ```
 //!
-//! Where patches are drawn a second time, only the draws and how many there are.
+//! A second drawing of patches clears only the draws and their numbers.
 //!
 //! Reads: `frame`. Writes: `draws`, `counters`.
 //! Twin: `src/twin/reset.rs`.
@@ -21,11 +21,11 @@ pub(crate) struct Reset {
 
 /// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
-    /// The frame.
+    /// The frame's constants.
     pub frame: &'a Buffer,
     /// Plain, then trimmed draws.
     pub draws: &'a Buffer,
-    /// What the frame counted.
+    /// The frame's counters.
     pub counters: &'a Buffer,
 }
 

@@ -6,11 +6,11 @@
 //!   blocks    0  3  4  8 │ 0  5 14 16 │ 0  5            each workgroup scans its block
 //!   sums               9 │         22 │    8            … and stores its sum
 //!   sums      0          │ 9          │ 31              one workgroup scans the sums; total = 39
-//!   offsets   0  3  4  8 │ 9 14 23 25 │ 31 36           each block gains what lies before it
+//!   offsets   0  3  4  8 │ 9 14 23 25 │ 31 36           each block adds the sum of all blocks before it
 //! ```
 //!
-//! `offsets[i] = Σ values[j], j < i`, modulo 2³². `offsets` may be the buffer `values`, and `total` may
-//! be `offsets` at index `count`, as a table of row starts wants it.
+//! `offsets[i] = Σ values[j], j < i`, modulo 2³². `offsets` may be the buffer `values`, and `total` may be `offsets` at
+//! index `count`, as a table of row starts needs.
 //!
 //! - READS `values`, `counts`: [`Access::COMPUTE_READ`]; `arguments`: [`Access::INDIRECT_READ`]
 //! - WRITES `offsets`, `sums`, `total`: [`Access::COMPUTE_WRITE`]
@@ -28,7 +28,7 @@ use crate::shaders::{self, constant};
 /// Elements that one workgroup scans.
 pub const BLOCK: u32 = 1024;
 
-/// Most elements. The elements that would fill the last row of workgroups have numbers of 32 bits too.
+/// Most elements. The elements that fill the last row of workgroups have 32-bit numbers, too.
 pub const MAX_COUNT: u32 = 1 << 31;
 
 /// Blocks, and so words of `sums` and workgroups of the indirect arguments, for `count` elements.
@@ -36,22 +36,22 @@ pub fn block_count(count: u32) -> u32 {
     count.div_ceil(BLOCK)
 }
 
-/// How many elements there are.
+/// The number of elements.
 #[derive(Clone, Copy, Debug)]
 pub enum Count<'a> {
-    /// The CPU knows.
+    /// Known on the CPU.
     Host(u32),
-    /// An earlier pass counted.
+    /// Counted by an earlier pass.
     Gpu {
-        /// Holds the count.
+        /// Buffer with the count.
         counts: &'a Buffer,
         /// Index of the word in `counts`.
         index: u32,
         /// A `VkDispatchIndirectCommand` of [`block_count`] workgroups in x, or more.
         arguments: &'a Buffer,
-        /// Where in `arguments`, in bytes.
+        /// Offset in `arguments`, in bytes.
         offset: u64,
-        /// Most elements that `values` and `offsets` have room for; a larger count is cut.
+        /// Capacity of `values` and `offsets`, in elements; a larger count is cut to it.
         capacity: u32,
     },
 }
@@ -102,24 +102,22 @@ impl Steps {
 }
 
 impl Scan {
-    /// Makes the pipelines; those of [`Count::Gpu`] where `counts_on_gpu`.
+    /// Makes the pipelines; those of [`Count::Gpu`] only if `counts_on_gpu`.
     ///
-    /// # Errors
-    /// [`GpuError::Vulkan`].
+    /// # Errors [`GpuError::Vulkan`].
     pub fn new(device: &Device, counts_on_gpu: bool) -> Result<Self, GpuError> {
         let by_gpu = counts_on_gpu.then(|| Steps::new(device, true)).transpose()?;
         Ok(Self { by_host: Steps::new(device, false)?, by_gpu })
     }
 
-    /// Records one prefix sum. Any number may follow each other with buffers of their own.
+    /// Records one prefix sum. Several may follow each other if each has its own buffers.
     ///
-    /// # Panics
-    /// When a buffer has no room for its elements, there may be more than [`MAX_COUNT`], or [`Count::Gpu`] was not
-    /// announced to [`Scan::new`].
+    /// # Panics If a buffer is too short, if there may be more than [`MAX_COUNT`] elements, or if [`Count::Gpu`] was
+    /// not announced to [`Scan::new`].
     pub fn record(&self, cmd: &Commands<'_>, count: Count<'_>, bindings: &Bindings<'_>) {
         let Bindings { values, offsets, sums, total, total_index } = *bindings;
         let (steps, most, counts, count_index) = match count {
-            // Binding 4 must hold some buffer; this variant of the shaders does not read it.
+            // binding 4 needs a buffer; this variant of the shaders does not read it
             Count::Host(count) => (&self.by_host, count, values, 0),
             Count::Gpu { counts, index, capacity, .. } => {
                 (self.by_gpu.as_ref().expect("pipelines for counts of the GPU"), capacity, counts, index)
@@ -140,7 +138,7 @@ impl Scan {
 
         bind(&steps.blocks);
         dispatch();
-        // Offsets too: `total` may be among them.
+        // `offsets`, too, because `total` may be in it
         let after_step = (Access::COMPUTE_WRITE, Access::COMPUTE_WRITE);
         let between = [(sums, after_step.0, after_step.1), (offsets, after_step.0, after_step.1)];
         barrier::buffers(cmd, &between);

@@ -1,5 +1,5 @@
-//! Pass `cull_early`: patches that lay behind others in the frame before are not drawn, unless pass
-//! [`cull_late`](super::cull_late) finds that they may be seen.
+//! Pass `cull_early`: patches that were hidden in the previous frame are not drawn, unless pass
+//! [`cull_late`](super::cull_late) finds that they may be visible now.
 //!
 //! Reads: `frame`, `hidden`. Writes: `taus`, `counters`. Twin: `src/twin/occlusion.rs`.
 
@@ -15,7 +15,7 @@ pub(crate) struct CullEarly {
 /// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    /// Of each item: whether it lay behind others.
+    /// Whether each item was hidden.
     pub hidden: &'a Buffer,
     pub taus: &'a Buffer,
     /// `hidden`.

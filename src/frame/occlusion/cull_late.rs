@@ -1,9 +1,9 @@
-//! Pass `cull_late`: which patches lie behind what has been drawn, wherever they could be seen.
+//! Pass `cull_late`: finds the patches that are hidden behind the surfaces drawn so far.
 //!
 //! ```text
-//!              lies behind                       does not
-//!   drawn      left out of the next frame        stays
-//!   hidden     stays hidden                      drawn now
+//!              hidden now                        may be visible
+//!   drawn      not drawn in the next frame       drawn in the next frame
+//!   hidden     not drawn in the next frame       drawn now
 //! ```
 //!
 //! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `points`, `items`, `farthest`, `outside`.
@@ -29,11 +29,11 @@ pub(crate) struct Bindings<'a> {
     pub points: &'a TexelBuffer,
     /// Face instance of each item.
     pub items: &'a Buffer,
-    /// Of squares, then of tiles, then of blocks.
+    /// Farthest depths of squares, then of tiles, then of blocks.
     pub farthest: &'a Buffer,
     pub taus: &'a Buffer,
     pub hidden: &'a Buffer,
-    /// Of each patch: where nothing of its face is.
+    /// The cells of each patch that no part of the face covers.
     pub outside: &'a Buffer,
     /// `hidden`.
     pub counters: &'a Buffer,

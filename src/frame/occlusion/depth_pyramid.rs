@@ -1,4 +1,4 @@
-//! Pass `depth_pyramid`: the farthest depth that is seen in each square of 4 x 4 pixels, in each tile, and in each block of
+//! Pass `depth_pyramid`: the farthest visible depth in each square of 4 x 4 pixels, in each tile, and in each block of
 //! tiles.
 //!
 //! Reads: `frame`, the depth image. Writes: `depth_pyramid`. Twin: `src/twin/occlusion.rs`.
@@ -19,7 +19,7 @@ pub(crate) struct DepthPyramid {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub depth: &'a Image,
-    /// A float a square, row by row, then a tile, then a block.
+    /// One float a square, row by row, then one a tile, then one a block.
     pub farthest: &'a Buffer,
 }
 

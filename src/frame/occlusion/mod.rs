@@ -1,18 +1,18 @@
-//! Patches that lie behind others: they are drawn only where that may show.
+//! Occlusion culling: patches that other surfaces hide are not drawn.
 //!
 //! ```text
-//!   bound ──taus──▶ cull_early: what lay behind others a frame ago ─▶ not drawn ─▶ … visibility
-//!                                                                                      │ depth
-//!         depth_pyramid: the farthest of each tile ◀───────────────────────────────────┘
-//!         cull_late: of each patch: wherever it could be seen, is there something nearer?
-//!           yes ─▶ left out of the next frame          no, and it was not drawn ─▶ drawn now:
-//!                                                      split, scan, emit, visibility once more
+//!   bound ──taus──▶ cull_early: hidden in the previous frame ─▶ not drawn ─▶ … visibility
+//!                                                                                 │ depth
+//!         depth_pyramid: farthest depth of each tile ◀────────────────────────────┘
+//!         cull_late: is the whole patch behind surfaces that are drawn?
+//!           yes ─▶ not drawn in the next frame       no, and it was not drawn ─▶ drawn now:
+//!                                                    split, scan, emit, visibility again
 //! ```
 //!
-//! A view is right whatever the frame before left, and the picture is the same bit for bit as with every patch drawn: what
-//! is left out would have lost the depth test at each pixel, and its skirts lie behind what is seen there. The derivation
-//! stands in `twin::occlusion`. Only of faces that have the same depth to the bit another may be drawn first, and seen. If
-//! the view has not changed since the last occlusion test, the test is skipped.
+//! The picture is the same, bit for bit, as with every patch drawn, whatever the previous frame contained. A culled
+//! patch would fail the depth test at each pixel, and its skirts lie behind visible surfaces; `twin::occlusion` has the
+//! derivation. One exception: of faces at exactly the same depth, another one may be drawn first and be visible. If the
+//! view has not changed since the last occlusion test, the test is skipped.
 
 pub(crate) mod cull_early;
 pub(crate) mod cull_late;
@@ -26,20 +26,20 @@ use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, barrier};
 use crate::scene::SceneData;
 use std::sync::Arc;
 
-/// What a frame may take from the frames before.
+/// What a frame may take over from the previous frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum OcclusionState {
-    /// Nothing, and it makes no test: the next frame may never come.
+    /// Nothing. It makes no test, since there may be no next frame.
     First,
-    /// Nothing, but it tests.
+    /// Nothing. It makes a test.
     Asks,
-    /// The result of a test of another view.
+    /// The result of a test for another view.
     Moved,
-    /// The result of a test of this view.
+    /// The result of a test for this view.
     Same,
 }
 
-/// The passes of scenes in which patches may lie behind others.
+/// The passes of scenes with occlusion culling.
 pub(crate) struct Passes {
     cull_early: cull_early::CullEarly,
     depth_pyramid: depth_pyramid::DepthPyramid,
@@ -48,7 +48,7 @@ pub(crate) struct Passes {
 }
 
 impl Passes {
-    /// `None` where too few may.
+    /// `None` in scenes without occlusion culling.
     pub(super) fn new(device: &Device, data: &SceneData) -> Result<Option<Self>, GpuError> {
         if !data.hides() {
             return Ok(None);
@@ -65,9 +65,9 @@ impl Passes {
 /// The stage.
 pub(crate) struct Occlusion {
     passes: Arc<Passes>,
-    /// A word an item: whether the patch lay behind others in the last frame that had it in sight.
+    /// One word an item: whether the patch was hidden in the last frame that had it in sight.
     hidden: Buffer,
-    /// A float a square of pixels, then a tile, then a block of tiles.
+    /// One float a square of pixels, then one a tile, then one a block of tiles.
     farthest: Buffer,
 }
 
@@ -81,14 +81,14 @@ impl Occlusion {
         })
     }
 
-    /// Clears what `cull_early` reads in a first frame.
+    /// Clears the input of `cull_early` in a first frame.
     pub(super) fn begin(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         if frame.occlusion == OcclusionState::First {
             cmd.fill(&self.hidden, 0);
         }
     }
 
-    /// After `bound`: takes out what lay behind others.
+    /// After `bound`: removes patches that were hidden in the previous frame.
     pub(super) fn cull_early(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let (taus, counters) = (&frame.stages.tessellation.taus, &frame.stages.common.counters);
         let (w, r) = WRITE_TO_READ;
@@ -100,13 +100,12 @@ impl Occlusion {
         cmd.after(w, w);
     }
 
-    /// This frame tests what lies behind what it draws.
+    /// Whether this frame tests which patches are hidden.
     pub(super) fn tests(&self, frame: &Frame<'_>) -> bool {
         matches!(frame.occlusion, OcclusionState::Asks | OcclusionState::Moved)
     }
 
-    /// After `visibility`: what lies behind what it drew; and where something had been left out that does not, that as
-    /// well.
+    /// After `visibility`: finds the hidden patches. Draws patches that were not drawn and may be visible.
     pub(super) fn cull_late(&self, frame: &Frame<'_>, cmd: &Commands<'_>, test: &[Resource<'_>]) {
         let (s, c, v) = (frame.scene, &frame.stages.common, &frame.stages.visibility);
         let taus = &frame.stages.tessellation.taus;

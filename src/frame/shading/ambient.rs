@@ -1,4 +1,4 @@
-//! Passes `ambient_find` and `ambient_write`: points close to other surfaces get less of the sky's light.
+//! Passes `ambient_find` and `ambient_write`: less of the sky's light reaches points near other surfaces.
 //!
 //! ```text
 //!   resolved ──find──▶ ambient: the hidden share of each pixel's slices ──write──▶ mean of 4 x 4 pixels ──▶ resolved
@@ -40,7 +40,7 @@ impl Ambient {
         })
     }
 
-    /// One thread a pixel. A point farther than `radius`, in units of the model, hides nothing.
+    /// One thread a pixel. Points farther than `radius`, in model units, hide nothing.
     pub(crate) fn find(&self, cmd: &Commands<'_>, b: &Bindings<'_>, radius: f32) {
         self.find.bind(cmd, &[b.frame.into(), b.resolved.into(), b.ambient.into()], bytemuck::bytes_of(&radius));
         cmd.dispatch_grid(groups(b.resolved));

@@ -8,7 +8,7 @@ use crate::scene::SceneData;
 use ash::vk;
 use std::sync::Arc;
 
-/// The passes, and the radius in units of the model.
+/// The passes, and the radius in model units.
 pub(crate) struct Passes {
     pass: Ambient,
     radius: f32,
@@ -33,7 +33,7 @@ impl Contact {
         Ok(Self { passes: Arc::clone(passes), image })
     }
 
-    /// Darkens the colours of `resolved`, which pass `resolve` drew. A compute shader writes them last.
+    /// Darkens the colours of `resolved` after pass `resolve`. The last write is by a compute shader.
     pub(crate) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, resolved: &Image) {
         let Passes { pass, radius } = &*self.passes;
         let (w, r) = (Access::COMPUTE_WRITE, Access::COMPUTE_READ);

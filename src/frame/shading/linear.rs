@@ -51,7 +51,7 @@ impl Linear {
 }
 
 impl<'a> Frame<'a> {
-    /// The host's colour, for a pass that blends every pixel over it: kept, or cleared to zero.
+    /// The host's colour target, for a pass that blends every pixel over it: loaded, or cleared to zero.
     pub(crate) fn colour_over_nothing(&self) -> Attachment<'a> {
         let load = match self.colour[0].load {
             Load::Discard => Load::ColourF32([0.0; 4]),

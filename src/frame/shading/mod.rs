@@ -1,4 +1,4 @@
-//! The pixels of each kind of surface; their exact points, normals and light, drawn into the host's targets or into
+//! Shading: tiles of each kind of surface, exact points, normals and light, drawn into the host's targets or into
 //! images of linear colour; ambient occlusion over those images.
 
 pub(crate) mod ambient;
@@ -22,11 +22,11 @@ use std::sync::Arc;
 
 /// The passes.
 pub(crate) struct Passes {
-    /// Into the host's targets; `None` where they are but a colour, made of samples.
+    /// For the host's targets; `None` if the only target is a colour made of samples.
     resolve: Option<resolve::Resolve>,
-    /// Of scenes with patches or meshes.
+    /// In scenes with patches or meshes.
     squares: Option<Arc<SeenSquares>>,
-    /// Where images of numbers are wanted.
+    /// If the host has images of numbers.
     numbers: Option<numbers::Numbers>,
     formats: resolve::Formats,
 }
@@ -42,7 +42,7 @@ impl Passes {
     }
 }
 
-/// What the scene asks of the pass.
+/// The kinds of surfaces in the scene.
 pub(super) fn kinds(data: &SceneData) -> resolve::Kinds {
     resolve::Kinds {
         patches: data.has_patches,
@@ -57,12 +57,13 @@ pub(super) fn kinds(data: &SceneData) -> resolve::Kinds {
         }),
         operands: data.has_operands,
         sun: data.sun.is_some(),
+        curvature: data.curvature,
     }
 }
 
-/// The pass into the host's targets; `None` where samples make all of them.
+/// The pass for the host's targets; `None` if samples make all of them.
 fn targets(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<resolve::Resolve>, GpuError> {
-    // lines and numbers are those of the pixels' centres
+    // lines and numbers are those at the pixels' centres
     let beside =
         formats.has_aovs() || formats.depth.is_some() || data.thickness || formats.has_numbers() || data.has_lines();
     let into = match data.samples {
@@ -76,7 +77,7 @@ fn targets(device: &Device, data: &SceneData, formats: resolve::Formats) -> Resu
     resolve::Resolve::new(device, into, formats, kinds(data)).map(Some)
 }
 
-/// Depth, face, (u, v) and normal where nothing is seen.
+/// Depth, face, (u, v) and normal of pixels without a surface.
 const NOWHERE: [Load; 4] = [
     Load::ColourF32([f32::INFINITY; 4]),
     Load::ColourU32([0; 4]),
@@ -88,12 +89,12 @@ const NOWHERE: [Load; 4] = [
 pub(crate) struct Shading {
     passes: Arc<Passes>,
     squares: Option<Squares>,
-    /// What passes draw that the host does not want, beside what it wants: images of depth, face, (u, v), normal, edge, part
-    /// and instance, which are drawn together.
+    /// Images that passes must draw together with the host's targets but that the host does not have: depth, face, (u,
+    /// v), normal, edge, part and instance.
     spare: [Option<Image>; 7],
 }
 
-/// Tiles that see a patch or a mesh.
+/// The tiles that show a patch or a mesh.
 struct Squares {
     pass: Arc<SeenSquares>,
     buffer: Buffer,
@@ -118,23 +119,23 @@ impl Shading {
         Ok(Self { passes: Arc::clone(passes), squares, spare })
     }
 
-    /// Spare images are drawn into; what they held goes.
+    /// Discards the contents of the spare images, before drawing.
     pub(super) fn begin(&self, cmd: &Commands<'_>) {
         let again = (Access::COLOUR_WRITE.discarded(), Access::COLOUR_WRITE);
         barrier::images(cmd, &self.spare.iter().flatten().map(|image| (image, again.0, again.1)).collect::<Vec<_>>());
     }
 
-    /// The image in place of the one of this number that the host does not want.
+    /// The spare image in place of the host's image of this number.
     pub(super) fn spare(&self, number: usize) -> Option<&Image> {
         self.spare[number].as_ref()
     }
 
-    /// The pass into the host's targets; `None` where samples make all of them.
+    /// The pass for the host's targets; `None` if samples make all of them.
     pub(super) fn resolve(&self) -> Option<&resolve::Resolve> {
         self.passes.resolve.as_ref()
     }
 
-    /// By `pass`, what is seen, into the frame's targets.
+    /// Draws the visible surfaces into the frame's targets with `pass`.
     pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, pass: &resolve::Resolve) {
         self.find_squares(frame, cmd);
         let (s, v) = (frame.scene, &frame.stages.visibility);
@@ -166,7 +167,7 @@ impl Shading {
         frame.under_sun(cmd, |sun| pass.record(cmd, &bindings, kinds, sun, &frame.resolved_into(), frame.depth));
     }
 
-    /// Which part and instance the pixels' centres see, into the host's images.
+    /// Writes the part and the instance at each pixel's centre into the host's images.
     pub(super) fn numbers(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let (s, v) = (frame.scene, &frame.stages.visibility);
         let (Some(pass), Some(into), Some(sources)) = (&self.passes.numbers, frame.numbers, &s.sources) else { return };
@@ -181,7 +182,7 @@ impl Shading {
         pass.record(cmd, &bindings, into);
     }
 
-    /// Where pass `resolve` looks for patches and meshes.
+    /// Finds the tiles that pass `resolve` draws for patches and meshes.
     fn find_squares(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let Some(Squares { pass, buffer }) = &self.squares else { return };
         let v = &frame.stages.visibility;
@@ -197,7 +198,7 @@ impl Shading {
 }
 
 impl<'a> Frame<'a> {
-    /// What pass `resolve` draws into, cleared to what is where nothing is seen, unless the host keeps its picture.
+    /// The targets of pass `resolve`, cleared to the values without a surface, or loaded if the host's picture stays.
     fn resolved_into(&self) -> Vec<Attachment<'a>> {
         let nowhere = [Load::ColourF32(self.background)].into_iter().chain(NOWHERE);
         let cleared = |(attachment, nowhere): (&Attachment<'a>, Load)| match attachment.load {

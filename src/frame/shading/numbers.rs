@@ -1,10 +1,10 @@
-//! Pass `numbers`: which part and instance each pixel sees.
+//! Pass `numbers`: the part and the instance visible in each pixel.
 //!
 //! ```text
 //!   visibility ─▶ patch or mesh instance ─▶ instance of the scene ─sources─▶ the model's part and instance
 //! ```
 //!
-//! Reads: everything that `Bindings` names. Writes: the host's images of numbers; that of edges begins with 0.
+//! Reads: everything that `Bindings` names. Writes: the host's images of numbers, and 0 to the image of edges.
 
 use crate::frame::common::draw::Draw;
 use crate::gpu::{
@@ -28,7 +28,7 @@ pub(crate) struct Bindings<'a> {
     pub items: &'a TexelBuffer,
     pub visibility: &'a Image,
     pub others: &'a Image,
-    /// Some buffer where there are no meshes.
+    /// A placeholder in scenes without meshes.
     pub mesh_instances: &'a Buffer,
 }
 
@@ -39,7 +39,7 @@ impl Numbers {
         Ok(Self { pipeline: Draw { colour: &colour, ..draw }.pipeline(device)? })
     }
 
-    /// One triangle over the images of edges, parts and instances, which are 0 before unless the host keeps them.
+    /// Draws one triangle over the images of edges, parts and instances, which are loaded or 0.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, into: [Attachment<'_>; 3]) {
         let cleared = |attachment: Attachment<'_>| match attachment.load {
             Load::Discard => Load::ColourU32([0; 4]),

@@ -3,11 +3,11 @@
 //! ```text
 //!   item, (u, v) of the triangle ──Newton──▶ (u, v) whose exact point projects to the pixel's centre
 //!   triangle of a mesh ──plane──▶   │
-//!   side of a Boolean solid ─────▶  │        a pipeline for each kind of thing: each leaves the others'
-//!   nothing ──clear─────────────▶   │        pixels alone; with a sun each asks whether it reaches the point.
-//!                                   │        Drawn over the tiles that may see it
+//!   side of a Boolean solid ─────▶  │        a pipeline for each kind of surface discards other pixels; with a
+//!   nothing ──clear─────────────▶   │        sun, it tests whether the sun's light reaches the point; each draws
+//!                                   │        only the tiles that may show its surfaces
 //!                                   ├──▶ colour, depth into the host's targets
-//!                                   └──▶ depth, face, (u, v), normal images, when asked for
+//!                                   └──▶ depth, face, (u, v), normal images, if the host has them
 //! ```
 //!
 //! Reads: everything that `Bindings` names. Writes: the targets.
@@ -27,12 +27,13 @@ use ash::vk;
 pub(crate) const AOV_FORMATS: [vk::Format; 4] =
     [vk::Format::R32_SFLOAT, vk::Format::R32_UINT, vk::Format::R32G32_SFLOAT, vk::Format::R32G32B32A32_SFLOAT];
 
-/// Format of what is behind layers, and of what pass `coverage` mixes: linear colour and depth.
+/// Format of the images behind layers and of the images that pass `coverage` mixes: linear colour and depth.
 pub(crate) const BEHIND_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// The pass: a pipeline for each kind of thing that the scene has.
+/// The pass: one pipeline for each kind of surface in the scene.
 pub(crate) struct Resolve {
-    /// Samples that see nothing, where those of a pixel are added up: one cleared to it would have it under what it sees.
+    /// Draws the background of samples without a surface. A sum of samples cleared to the background would add it to
+    /// every sample.
     background: Option<Pipeline>,
     patches: Option<Pipeline>,
     meshes: Option<Pipeline>,
@@ -40,32 +41,34 @@ pub(crate) struct Resolve {
     operands: Option<Pipeline>,
 }
 
-/// What the scene asks of the pass.
+/// The kinds of surfaces that the pass draws.
 #[derive(Clone, Copy)]
 pub(crate) struct Kinds {
-    /// Beside those that bound operands.
+    /// Patches other than those of operands.
     pub patches: bool,
     pub rational: bool,
-    /// Some patches do not go on as those beside them would.
+    /// Some face has several patches that do not follow one equation.
     pub pieces: bool,
     /// Some patch has a fine net.
     pub fine: bool,
     pub meshes: bool,
-    /// Boolean ones.
+    /// Boolean solids.
     pub solids: Option<SolidKinds>,
     /// Patches bound operands of Boolean solids.
     pub operands: bool,
     /// The key light is a sun.
     pub sun: bool,
+    /// Styles may show curvature.
+    pub curvature: bool,
 }
 
-/// The fragment shaders of a scene, one for each kind of thing.
+/// The fragment shaders of a scene, one for each kind of surface.
 struct Shaders {
     patches: &'static Shader,
     meshes: &'static Shader,
     solids: &'static Shader,
     operands: &'static Shader,
-    /// In the pipelines' names.
+    /// The light's name, in the pipelines' names.
     light: &'static str,
 }
 
@@ -85,25 +88,25 @@ const SUN: Shaders = Shaders {
     light: ", sun",
 };
 
-/// What Boolean solids ask of the pass.
+/// The kinds of surfaces of Boolean solids.
 #[derive(Clone, Copy)]
 pub(crate) struct SolidKinds {
     /// The most general kind of their surfaces: `abi::SURFACE_*`.
     pub surfaces: u32,
-    /// It is known which tiles may see them.
+    /// There are lists of the tiles that may show them.
     pub tiles: bool,
-    /// Some of their operands have no equations.
+    /// Some operand has no equations.
     pub shells: bool,
 }
 
-/// Formats that the host draws into.
+/// Formats of the host's targets.
 #[derive(Clone, Copy)]
 pub(crate) struct Formats {
     pub colour: vk::Format,
     pub depth: Option<vk::Format>,
-    /// There are images of depth, face, (u, v) and normal.
+    /// Whether there are images of depth, face, (u, v) and normal.
     pub aovs: [bool; 4],
-    /// And of edges, parts and instances.
+    /// Whether there are images of edges, parts and instances.
     pub numbers: [bool; 3],
 }
 
@@ -117,37 +120,39 @@ impl Formats {
     }
 }
 
-/// Where the picture goes.
+/// The images that the pass draws into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Destination {
     /// The host's targets.
     Targets,
-    /// The sum of a pixel's samples, of the colour's format. The host's depth hides what is behind it, and stays.
+    /// The sum of a pixel's samples, in the colour's format. The host's depth is tested and not written.
     Sum,
-    /// The host's targets but for the colour, which is made of samples.
+    /// The host's targets except for the colour, which is made of samples.
     AllButColour,
-    /// What is behind layers, in the colour's place.
+    /// The image behind layers, in the colour's place.
     Behind {
-        /// Of the host's target.
+        /// Whether the host's depth is written.
         writes_depth: bool,
     },
-    /// What pass `coverage` or `border_mix` mixes, in the colour's place: as what is behind layers.
+    /// The image that pass `coverage` or `border_mix` mixes, in the colour's place and in the same format as behind
+    /// layers.
     Unmixed,
 }
 
-/// Buffers and images for patches, in binding order.
+/// Buffers and images of the pipeline for patches, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub placed: Placed<'a>,
     pub instances: &'a TexelBuffer,
     pub visibility: &'a Image,
-    /// The visibility image again where the scene has no trims, or nothing but patches.
+    /// The image of meshes and solids; the visibility image again if the scene has no trims, or only patches.
     pub others: &'a Image,
-    /// How many tiles the picture has, and the squares of them that see a patch or a mesh; `None` in scenes without.
+    /// The picture's number of tiles, and the squares of tiles that show a patch or a mesh; `None` in scenes without
+    /// them.
     pub squares: Option<(u32, &'a Buffer)>,
 }
 
-/// Buffers and images for meshes, in binding order; `squares` of [`Bindings`] follow.
+/// Buffers and images of the pipeline for meshes, in binding order; `squares` of [`Bindings`] follow.
 pub(crate) struct MeshBindings<'a> {
     pub frame: &'a Buffer,
     pub views: &'a Buffer,
@@ -158,32 +163,32 @@ pub(crate) struct MeshBindings<'a> {
     pub positions: &'a Buffer,
     pub normals: &'a Buffer,
     pub visibility: &'a Image,
-    /// The visibility image again where the scene has no trims.
+    /// The visibility image again if the scene has no trims.
     pub others: &'a Image,
 }
 
-/// Buffers and image for Boolean solids, in binding order.
+/// Buffers and images of the pipeline for Boolean solids, in binding order.
 pub(crate) struct SolidBindings<'a> {
     pub frame: &'a Buffer,
     pub primitives: Primitives<'a>,
     pub visibility: &'a Image,
-    /// The visibility image again where the scene has no trims.
+    /// The visibility image again if the scene has no trims.
     pub others: &'a Image,
-    /// How many tiles the picture has, and the squares of them that may see a solid; `None` where nobody asked.
+    /// The picture's number of tiles, and the squares of tiles that may show a solid; `None` without such lists.
     pub tiles: Option<(u32, &'a Buffer)>,
-    /// (u, v) of spline faces that bound operands.
+    /// (u, v) of spline faces of operands.
     pub operand_uv: Option<&'a Image>,
-    /// `None` where every operand has equations.
+    /// `None` if every operand has equations.
     pub shells: Option<ShellBindings<'a>>,
 }
 
-/// Of meshes that bound operands, in binding order.
+/// Buffers of operands' meshes, in binding order.
 pub(crate) struct ShellBindings<'a> {
     pub instances: &'a Buffer,
     pub meshes: &'a Buffer,
     pub triangles: &'a Buffer,
     pub positions: &'a Buffer,
-    /// Surfaces in whose planes triangles lie.
+    /// The surface of each triangle that shares its plane.
     pub planes: &'a Buffer,
     pub views: &'a Buffer,
 }
@@ -221,6 +226,7 @@ impl Resolve {
         let of_all = [
             (constant::HAS_AOVS, u32::from(formats.has_aovs())),
             (constant::BEHIND, u32::from(behind)),
+            (constant::SHOWS_CURVATURE, u32::from(kinds.curvature)),
             (constant::SOLIDS_HAVE, kinds.solids.map_or(abi::SURFACE_PLANE, |s| s.surfaces)),
         ];
         let of_patches = [
@@ -245,8 +251,8 @@ impl Resolve {
         Ok(Self { background, patches, meshes, solids, operands })
     }
 
-    /// Over the tiles that see a patch or a mesh, or may see a Boolean solid, for those; into what `colour` and `depth`
-    /// are cleared to, or keep. `sun`: what [`Kinds::sun`] asks for.
+    /// Draws each kind of surface over the tiles that may show it, into `colour` and `depth`, which are cleared or
+    /// loaded. `sun` has the resources for [`Kinds::sun`].
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
@@ -280,7 +286,7 @@ impl Resolve {
                 cmd.draw_instances(0..6, 0..count);
             }
             if let (Some(pipeline), Some(s)) = (&self.solids, solids) {
-                // the shader has these bindings in every scene, and reads them only where there are shells
+                // the shader declares these bindings in every scene, and reads them only with shells
                 let shells = s
                     .shells
                     .as_ref()

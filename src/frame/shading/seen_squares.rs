@@ -1,4 +1,4 @@
-//! Pass `seen_squares`: the squares of tiles in which a patch or a mesh is seen.
+//! Pass `seen_squares`: the squares of tiles that show a patch or a mesh.
 //!
 //! Reads: `frame`, the visibility images. Writes: `seen_squares`. Twin: `src/twin/squares.rs`.
 
@@ -16,9 +16,9 @@ pub(crate) struct SeenSquares {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub visibility: &'a Image,
-    /// The visibility image again where the scene has no trims, or nothing but patches.
+    /// The image of meshes and solids; the visibility image again if the scene has no trims, or only patches.
     pub others: &'a Image,
-    /// The side of the square that each tile draws, in tiles, or 0.
+    /// The side, in tiles, of the square that begins at each tile, or 0.
     pub squares: &'a Buffer,
 }
 

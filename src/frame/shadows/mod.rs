@@ -1,4 +1,4 @@
-//! The sun: what passes that light points read of it.
+//! The sun's buffers, for passes that light points.
 
 use super::{Frame, WRITE_TO_READ};
 use crate::bindings::{Primitives, SUN_BINDINGS};
@@ -6,10 +6,10 @@ use crate::gpu::{Access, Commands, Resource, TexelBuffer};
 use crate::scene::SunTiles;
 
 impl<'a> Frame<'a> {
-    /// The sun's buffers, in their order; `None` in a scene without one.
+    /// The sun's buffers in binding order; `None` without a sun.
     pub(super) fn sun_bindings(&self) -> Option<[Resource<'a>; SUN_BINDINGS]> {
         let sun = self.sun?;
-        // where nothing casts shadows the shader reads but the first
+        // if nothing casts shadows, the shader reads only the first
         let (tiles, leaves) = self.scene.sun.as_ref().map_or((sun, sun), |s| (&s.tiles, &s.leaves));
         let (points, words, quads) = (&self.scene.points, &self.scene.items, &self.scene.patches);
         let of = |which: fn(&'a SunTiles) -> Option<&'a TexelBuffer>, none: &'a TexelBuffer| {
@@ -30,7 +30,7 @@ impl<'a> Frame<'a> {
         Some(std::array::from_fn(|_| all.next().expect("as many as SUN_BINDINGS")))
     }
 
-    /// Draws with the sun, which counts the rays to it that the driver cut off.
+    /// Draws with the sun's buffers, and counts the rays to the sun that a driver cut short.
     pub(super) fn under_sun(&self, cmd: &Commands<'_>, draw: impl FnOnce(Option<&[Resource<'_>; SUN_BINDINGS]>)) {
         let bindings = self.sun_bindings();
         let counted = WRITE_TO_READ.0 | Access::INDIRECT_READ;

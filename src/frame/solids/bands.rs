@@ -1,4 +1,4 @@
-//! Bands of rows of tiles: whose lists are made at a time.
+//! Bands of rows of tiles, whose lists are made one band at a time.
 //!
 //! ```text
 //!   one band     lists ─▶ solid_events                    …  resolve ─▶ solid_layers
@@ -13,26 +13,26 @@ use crate::gpu::{Access, Buffer, Commands, barrier};
 use std::mem::offset_of;
 use std::ops::Range;
 
-/// Rows of pixels whose lists are made at a time.
+/// The rows of pixels of one band.
 #[derive(Clone, Debug)]
 pub(crate) struct Band {
     pub rows: Range<u32>,
-    /// There is no other.
+    /// The band is the whole picture.
     pub is_whole: bool,
 }
 
-/// Who reads lists.
+/// Accesses that read lists.
 fn readers() -> Access {
     Access::COMPUTE_READ | Access::VERTEX_READ | Access::FRAGMENT_READ
 }
 
-/// Who reads constants, which also stand in for lists that a scene has not: nobody reads those, but they are bound.
+/// Accesses to constants. They are also bound in place of absent lists, which no shader reads.
 fn of_constants() -> Access {
     Access::UNIFORM_READ | readers()
 }
 
 impl Frame<'_> {
-    /// From the top down.
+    /// All bands, from the top down.
     pub(crate) fn bands(&self) -> impl Iterator<Item = Band> + use<> {
         let height = self.stages.visibility.image.size().1;
         let each = self.stages.solids.as_ref().map_or(height, |solids| solids.band_rows * abi::TILE);
@@ -41,13 +41,13 @@ impl Frame<'_> {
             .map(move |top| Band { rows: top..(top + each).min(height), is_whole: each >= height })
     }
 
-    /// Its tiles, numbered through the picture.
+    /// The band's tiles, numbered through the picture.
     pub(crate) fn tiles_of(&self, band: &Band) -> Range<u32> {
         let across = self.stages.visibility.image.size().0.div_ceil(abi::TILE);
         across * (band.rows.start / abi::TILE)..across * band.rows.end.div_ceil(abi::TILE)
     }
 
-    /// Tells the passes where the band is, and gives them the lists of the one before.
+    /// Writes the band's place for the passes. The passes of the last band must have read their lists.
     pub(crate) fn begin_band(&self, cmd: &Commands<'_>, solids: &Solids, band: &Band) {
         if band.is_whole {
             return;
@@ -70,7 +70,7 @@ impl Frame<'_> {
         barrier::buffers(cmd, &[(self.constants, Access::TRANSFER_WRITE, of_constants())]);
     }
 
-    /// Before the lists of all bands are made once more: what they count begins again.
+    /// Clears the lists' counters, before the lists of all bands are made again.
     pub(crate) fn count_bands_again(&self, cmd: &Commands<'_>) {
         let counters = &self.stages.common.counters;
         let counted = Access::COMPUTE_WRITE | Access::INDIRECT_READ;

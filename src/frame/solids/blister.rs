@@ -3,19 +3,19 @@
 //! ```text
 //!   layer k    peel       the nearest face behind layer k - 1, of every primitive that may bound a solid there
 //!              wait       stencil: label 0 in pixels that are not locked
-//!              ask        for each switch of the Blist, in order: where label = name
+//!              test       for each switch of the Blist, in order: where label = name
 //!                           within?  parity 1            (its triangles, or its span)
 //!                           label = without where parity is 0, label = within and parity 0 where it is 1
-//!              lock       where label = inside: the layer's face is found; no later layer sees the pixel
+//!              lock       where label = inside: the layer's face is found; later layers skip the pixel
 //!
 //!   stencil    7 parity │ 6 locked │ 5-0 label
 //! ```
 //!
-//! A label becomes another by turning over the bits that differ, since a stencil test that compares with the one cannot
-//! store the other. Reads: everything that `Bindings` names, and the images. Writes: the images, `counters`. Source: J.
-//! Hable, J. Rossignac, *Blister: GPU-based rendering of Boolean combinations of free-form triangulated shapes*,
-//! SIGGRAPH 2005. Departures: depths that are equal are equal to the bit, so no face is tested against its own
-//! primitive's rounding; whose a face is that several share is told as the other ways tell it.
+//! A stencil operation cannot compare with one value and store another, so a label changes by inverting the bits that
+//! differ. Reads: everything that `Bindings` names, and the images. Writes: the images, `counters`. Source: J. Hable,
+//! J. Rossignac, *Blister: GPU-based rendering of Boolean combinations of free-form triangulated shapes*, SIGGRAPH
+//! 2005. Departures: equal depths are equal to the bit, so rounding never puts a face on the wrong side of its own
+//! primitive; if several primitives share a face, its owner is found as in the other ways.
 
 use crate::bindings::Primitives;
 use crate::frame::common::draw::Draw;
@@ -27,23 +27,23 @@ use crate::shaders::{self, Shader, constant};
 use ash::vk;
 use std::ops::Range;
 
-/// Of layers and of what is found: a word of `visible.glsl`, and the depth.
+/// Format of layers and of found faces: a word of `visible.glsl`, and the depth.
 pub(crate) const LAYER_FORMAT: vk::Format = vk::Format::R32G32_UINT;
-/// Of the depth test among the faces of a layer.
+/// Format of the depth test among the faces of a layer.
 pub(crate) const LAYER_DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
 const PARITY: u32 = 0x80;
 const LOCKED: u32 = 0x40;
 const LABEL: u32 = 0x3f;
 
-/// Which faces are peeled; bits as in `blister.glsl`.
+/// The faces that are peeled; bits as in `blister.glsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Peel {
-    /// Where rays enter what adds and leave what is taken away.
+    /// Faces where rays enter leaves that add, or exit leaves that subtract.
     pub entries: bool,
-    /// The reverse.
+    /// Faces where rays exit leaves that add, or enter leaves that subtract.
     pub exits: bool,
-    /// What was found before locks no pixel: the search begins there.
+    /// Faces found earlier do not lock their pixels; the search starts from them.
     pub unlocks: bool,
 }
 
@@ -64,17 +64,17 @@ pub(crate) struct Blister {
     show: Show,
 }
 
-/// The same of meshes.
+/// The pipelines for meshes.
 struct Meshes {
     peel: Pipeline,
     within: Pipeline,
 }
 
-/// How the result gets among everything else.
+/// The pipeline that draws the result among all other surfaces.
 enum Show {
     /// As it was found.
     Found(Pipeline),
-    /// With its owner by the walk of pass `solid_events`.
+    /// With the owner found by the walk of pass `solid_events`.
     Owned(Pipeline),
 }
 
@@ -83,27 +83,27 @@ pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub primitives: Primitives<'a>,
     pub rects: &'a Buffer,
-    /// Which leaf an instance draws.
+    /// The leaf that each instance draws.
     pub order: &'a Buffer,
     pub counters: &'a Buffer,
     /// `None` without meshes.
     pub meshes: Option<MeshBindings<'a>>,
-    /// Starts, leaves and entries of tiles; `None` with meshes, whose faces show as they are found.
+    /// Starts, leaves and entries of tiles; `None` with meshes, whose faces keep their found owner.
     pub tiles: Option<(&'a TexelBuffer, &'a TexelBuffer, &'a TexelBuffer)>,
 }
 
-/// Those of meshes.
+/// Buffers of meshes.
 #[derive(Clone, Copy)]
 pub(crate) struct MeshBindings<'a> {
     pub views: &'a Buffer,
     pub meshes: &'a Buffer,
     pub triangles: &'a Buffer,
     pub positions: &'a Buffer,
-    /// Surfaces in whose planes triangles lie.
+    /// The surface of each triangle that shares its plane.
     pub planes: &'a Buffer,
 }
 
-/// What a layer is drawn into, and the one before.
+/// A layer, and the layer before it.
 #[derive(Clone, Copy)]
 pub(crate) struct Layer<'a> {
     pub before: &'a Image,
@@ -112,8 +112,8 @@ pub(crate) struct Layer<'a> {
 }
 
 impl Blister {
-    /// `surfaces`: the most general kind, `abi::SURFACE_*`; `meshes`: whether some operand is a mesh. `visibility` and `depth` are
-    /// the formats of what the result is shown in.
+    /// `surfaces`: the most general kind, `abi::SURFACE_*`; `meshes`: whether some operand is a mesh. `visibility` and
+    /// `depth` are the formats of the images that show the result.
     pub(crate) fn new(
         device: &Device,
         (surfaces, meshes): (u32, bool),
@@ -159,7 +159,7 @@ impl Blister {
         })
     }
 
-    /// Draws leaves of `order` and meshes, `(corners, what of them)` each, into a layer that was cleared to nothing.
+    /// Draws leaves of `order` and meshes, each as corners and the faces to peel, into a cleared layer.
     pub(crate) fn peel(
         &self,
         cmd: &Commands<'_>,
@@ -190,8 +190,8 @@ impl Blister {
         });
     }
 
-    /// Within rendering to the stencil image: every pixel that is not locked begins at label 0. The layer is the
-    /// `nth`, 1 the first.
+    /// While rendering to the stencil image: sets label 0 in every pixel that is not locked. `nth` is the layer's
+    /// number, from 1.
     pub(crate) fn wait(&self, cmd: &Commands<'_>, b: &Bindings<'_>, layer: &Image, nth: u32) {
         let resources = [b.frame.into(), b.counters.into(), layer.into()];
         cmd.bind(&self.wait, &resources, &nth.to_ne_bytes());
@@ -199,7 +199,7 @@ impl Blister {
         cmd.draw(3, 0, 1);
     }
 
-    /// Pixels at label `name` whose point is within the leaf at `place` of the order get parity 1.
+    /// Sets parity 1 in pixels with label `name` whose point is inside the leaf at `place` of the order.
     pub(crate) fn within(&self, cmd: &Commands<'_>, b: &Bindings<'_>, layer: &Image, place: u32, name: u32) {
         let mut resources: Vec<Resource<'_>> = b.of_leaves().collect();
         resources.push(layer.into());
@@ -209,7 +209,7 @@ impl Blister {
         cmd.draw_instances(0..6, place..place + 1);
     }
 
-    /// The same of meshes, one instance and its corners each.
+    /// The same for meshes; each has an instance and its corners.
     pub(crate) fn within_meshes<'m>(
         &self,
         cmd: &Commands<'_>,
@@ -228,10 +228,11 @@ impl Blister {
         }
     }
 
-    /// From label `name` to the next one.
+    /// Replaces label `name` by the next one.
     pub(crate) fn turn(&self, cmd: &Commands<'_>, name: u32, within: u32, without: u32) {
         cmd.bind(&self.turn, &[], &[]);
-        // first those without: they could not be told from pixels that go from `name` to `name` afterwards
+        // parity 0 first: afterwards, pixels that stay at `name` with parity 0 could not be distinguished from the
+        // others
         for (parity, next) in [(0, without), (PARITY, within)] {
             let changes = name ^ next | parity;
             if changes != 0 {
@@ -241,15 +242,15 @@ impl Blister {
         }
     }
 
-    /// Within rendering to `found` and the stencil image: pixels that ended at label `end`.
+    /// While rendering to `found` and the stencil image: locks the pixels that ended at label `end`.
     pub(crate) fn lock(&self, cmd: &Commands<'_>, layer: &Image, end: u32) {
         cmd.bind(&self.lock, &[layer.into()], &[]);
-        // locked ones stay at their label too, but the layer has nothing there
+        // locked pixels also stay at their label, but the layer has no face there
         cmd.stencil(LOCKED | end, LABEL, LOCKED);
         cmd.draw(3, 0, 1);
     }
 
-    /// One triangle over the picture; what is there already stays where it is nearer.
+    /// Draws one triangle over the picture; nearer surfaces stay.
     pub(crate) fn show(
         &self,
         cmd: &Commands<'_>,
@@ -259,7 +260,7 @@ impl Blister {
     ) {
         let (pipeline, resources): (_, Vec<Resource<'_>>) = match (&self.show, b.tiles) {
             (Show::Owned(pipeline), Some((starts, leaves, entries))) => {
-                // fragments, of which there are none
+                // fragments: none
                 let lists: [Resource<'_>; 3] = [starts.into(), leaves.into(), entries.into()];
                 let fragments = [b.frame.into(), b.frame.into(), leaves.into()];
                 let rest = [b.counters.into(), found.into()];
@@ -276,12 +277,12 @@ impl Blister {
 }
 
 impl Bindings<'_> {
-    /// What the shaders of leaves read first.
+    /// The first resources of the shaders for leaves.
     fn of_leaves(&self) -> impl Iterator<Item = Resource<'_>> {
         [self.frame.into()].into_iter().chain(self.primitives.resources())
     }
 
-    /// What the shaders of meshes read, but for the images.
+    /// The resources of the shaders for meshes, except the images.
     fn of_meshes<'b>(&'b self, m: MeshBindings<'b>) -> Vec<Resource<'b>> {
         let mesh = [m.views, m.meshes, m.triangles, m.positions];
         let sides = [self.primitives.surfaces, self.primitives.surface_places];

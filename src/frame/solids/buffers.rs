@@ -1,4 +1,4 @@
-//! Lists and images of Boolean solids that several passes share, and what all of them take.
+//! Lists and images of Boolean solids that several passes share, and their sizes.
 
 use super::tiles::counted;
 use super::{Solids, Way};
@@ -9,9 +9,9 @@ use crate::gpu::{Buffer, GpuError, Image, Texel, TexelBuffer};
 use crate::picture::PoolBytes;
 use ash::vk;
 
-/// Faces peeled off by way `blister`.
+/// The layers that way `blister` peels.
 pub(crate) struct LayerImages {
-    /// In turn.
+    /// Used in turn.
     pub layers: [Image; 2],
     pub found: Image,
     pub depth: Image,
@@ -31,7 +31,7 @@ impl LayerImages {
     }
 }
 
-/// Where the ray of each pixel of a band crosses operands without equations.
+/// The crossings of each pixel's ray, in a band, with operands without equations.
 pub(crate) struct FragmentBuffers {
     pub counts: Buffer,
     pub starts: Buffer,
@@ -49,7 +49,7 @@ impl FragmentBuffers {
     }
 }
 
-/// Elements of the longest list whose prefix sum is made.
+/// Length of the longest list whose prefix sum is computed.
 pub(crate) fn scanned(room: &Room<'_>) -> u32 {
     let counts = room.counts;
     let in_tiles = counts.leaves > 0 && !(counts.blister && counts.shells > 0);
@@ -59,7 +59,7 @@ pub(crate) fn scanned(room: &Room<'_>) -> u32 {
 }
 
 impl Solids {
-    /// Bytes of what the way to draw Boolean solids takes beside what every frame has.
+    /// Bytes of the buffers and images that only Boolean solids need.
     pub(crate) fn bytes(&self) -> Vec<PoolBytes> {
         let sum = |name: &str, bytes: &[u64]| PoolBytes { name: name.to_owned(), bytes: bytes.iter().sum() };
         let blocks = self

@@ -1,4 +1,4 @@
-//! How much the lists of Boolean solids, and what they count, have room for.
+//! Sizes of the lists of Boolean solids and of their counters.
 
 use super::lists::{Entries, Lists, WHOLE};
 use crate::abi::constants::scene::{FAILED_FRAGMENTS, FAILED_LAYERS, FAILED_RAY_SEGMENTS, FAILED_TILE_LEAVES};
@@ -6,28 +6,29 @@ use crate::abi::{BLOCK, Counters, TILE, TileLeaf};
 use crate::frame::capacities::grown;
 use crate::frame::counts::{Counts, SMALLER, TooMany};
 
-/// To begin with.
+/// First guess of the leaves in a tile.
 const LEAVES_IN_A_TILE: u32 = 16;
-/// Crossings of operands, in any case.
+/// Fewest crossings of operands for which there is room.
 const FEWEST_FRAGMENTS: u32 = 1 << 14;
-/// Layers of faces recorded in any case.
+/// Fewest layers of faces that are recorded.
 const FEWEST_LAYERS: u32 = 4;
-/// Of faces, each of which asks every primitive.
+/// Most layers of faces; each layer tests every primitive.
 const MOST_LAYERS: u32 = 1 << 10;
-/// Of a ray, each as long as a driver lets a loop be: what is left then is counted as clamps.
+/// Most segments of a ray, each as long as the driver's limit on loops. Rays not finished by then are counted as
+/// clamps.
 pub(crate) const MOST_RAY_SEGMENTS: u32 = 64;
 
-/// Room for what only the GPU can count of them.
+/// The sizes of lists whose length only the GPU computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Capacities {
     pub block_leaves: u32,
     pub tile_leaves: u32,
     pub fragments: u32,
-    /// Rows of tiles in a band, for whose lists these two have room; [`WHOLE`]: one band.
+    /// Rows of tiles in a band, for which the two lists have room; [`WHOLE`]: one band.
     pub band_rows: u32,
-    /// That way `blister` peels.
+    /// Layers that way `blister` peels.
     pub layers: u32,
-    /// Of each ray of way `events`, one where the other ended.
+    /// Segments of each ray of way `events`, one after the other.
     pub ray_segments: u32,
 }
 
@@ -44,14 +45,14 @@ impl Capacities {
         }
     }
 
-    /// The same, with room for so many crossings of operands, and for a quarter more.
+    /// The same, with room for `crossings` crossings of operands and a quarter more.
     pub(crate) fn expecting(self, crossings: u64, counts: Counts) -> Self {
         let wanted = u32::try_from(crossings + crossings / 4).unwrap_or(u32::MAX);
         Self { fragments: if counts.has_fragments() { self.fragments.max(wanted) } else { 0 }, ..self }
     }
 
-    /// The same, with room for a few leaves in every tile of a picture of this size, where a storage buffer of `range`
-    /// bytes and the budget have it: most often that is enough at once.
+    /// The same, with room for a few leaves in every tile of the picture, if a storage buffer of `range` bytes and the
+    /// budget allow it; mostly that suffices at once.
     pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), range: u32) -> Result<Self, TooMany> {
         let lists = counts.lists(size, range);
         let mut band_rows = self.band_rows;
@@ -81,11 +82,11 @@ impl Capacities {
     }
 
     fn with(self, room: Entries) -> Self {
-        // what one storage buffer holds has a number of 32 bits
+        // lengths of lists in one storage buffer are 32-bit numbers
         Self { tile_leaves: room.tile_leaves as u32, fragments: room.fragments as u32, ..self }
     }
 
-    /// Rows of tiles in a band, and room for their lists, where a frame reported `c`.
+    /// Rows of tiles in a band, and room for their lists, after a frame with counters `c`.
     fn banded(self, c: &Counters, lists: &Lists) -> Result<Self, TooMany> {
         let entries =
             |tile_leaves: u32, fragments: u32| Entries { tile_leaves: tile_leaves.into(), fragments: fragments.into() };
@@ -126,8 +127,9 @@ impl Capacities {
         Ok(Self { band_rows, ..self }.with(room))
     }
 
-    /// Four times as many ray segments as did not suffice; else one, 4, 16, … of which the last had nothing to do, or was the
-    /// last that may be. What rays did with lists that lacked something does not count.
+    /// Four times as many ray segments if they did not suffice. Otherwise the smallest of 1, 4, 16, … whose last
+    /// segment was unused, at most [`MOST_RAY_SEGMENTS`]. Unchanged if lists overflowed, since rays were then
+    /// incomplete.
     fn ray_segments(self, c: &Counters, size: (u32, u32), range: u32) -> Result<u32, TooMany> {
         let grown = match c.failed {
             0 => (0..)
@@ -147,14 +149,15 @@ impl Capacities {
         Ok(grown.min(MOST_RAY_SEGMENTS))
     }
 
-    /// Buffers made for these take as much as those made for `others`.
+    /// Whether buffers made for `self` have the same sizes as buffers made for `others`.
     pub(crate) fn takes_as_much(self, others: Self) -> bool {
         let ray_segments =
             if (self.ray_segments > 1) == (others.ray_segments > 1) { others.ray_segments } else { self.ray_segments };
         Self { layers: others.layers, ray_segments, ..self } == others
     }
 
-    /// What the frame that reported `c` would have needed; see [`Capacities::grown`](crate::frame::capacities::Capacities::grown).
+    /// The sizes that the frame with counters `c` needed; see
+    /// [`Capacities::grown`](crate::frame::capacities::Capacities::grown).
     pub(crate) fn grown(self, c: &Counters, counts: Counts, size: (u32, u32), range: u32) -> Result<Self, TooMany> {
         let most_leaves = range / size_of::<TileLeaf>() as u32;
         if !counts.events {
@@ -186,7 +189,7 @@ impl Capacities {
 mod tests {
     use super::*;
 
-    /// Every storage buffer of Vulkan's least capable device.
+    /// The storage buffer range that every Vulkan device supports.
     const RANGE: u32 = 1 << 27;
 
     fn first() -> Capacities {
@@ -197,7 +200,7 @@ mod tests {
         had.grown(c, Counts::default(), (640, 480), RANGE)
     }
 
-    /// One layer more than were needed, so that it is seen to be empty; twice as many where some were wanting.
+    /// One layer more than needed, which must be empty; twice as many if layers were missing.
     #[test]
     fn layers_follow_the_view() {
         let peels = Capacities::first(Counts { leaves: 3, blister: true, ..Default::default() });
@@ -224,14 +227,14 @@ mod tests {
             had = grown(had, &ended).unwrap();
             assert_eq!(had.ray_segments, ray_segments);
         }
-        // as the view needs
+        // as many as the view needs
         let of = |c| grown(had, &c).unwrap().ray_segments;
         assert_eq!(of(Counters { ray_segments: 63, ..Default::default() }), MOST_RAY_SEGMENTS);
         assert_eq!(of(Counters { ray_segments: 64, ..Default::default() }), MOST_RAY_SEGMENTS);
         assert_eq!(of(Counters { ray_segments: 3, ..Default::default() }), 4);
         assert_eq!(of(Counters { ray_segments: 1, ..Default::default() }), 4);
         assert_eq!(of(Counters::default()), 1);
-        // lists that lack something say nothing of rays
+        // after an overflow, counts of ray segments are meaningless
         let both = Counters { failed: FAILED_RAY_SEGMENTS | FAILED_TILE_LEAVES, tile_leaves: 99, ..Default::default() };
         assert_eq!(grown(first(), &both).unwrap().ray_segments, 1);
         assert!(had.takes_as_much(Capacities { ray_segments: 4, ..had }) && !had.takes_as_much(first()));

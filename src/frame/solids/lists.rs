@@ -1,35 +1,36 @@
-//! Bands of rows of tiles: how many rows of way `events` have their lists made at a time.
+//! The number of rows of tiles whose lists way `events` makes at a time.
 //!
 //! ```text
 //!   picture  ┌────────────┐
-//!            │ row 0      │  lists made, rays followed     as many rows at a time as have room: one band, the
-//!            │ row 1      │                                whole picture, where all of them have
+//!            │ row 0      │  lists made, rays followed     as many rows at a time as fit; if all rows fit,
+//!            │ row 1      │                                one band: the whole picture
 //!            ├────────────┤
 //!            │ row 2      │  the same buffers again
 //!            └────────────┘
 //! ```
 //!
-//! A frame tells what all rows want, the band with most, and the row with most. Where one band does not do, the first
-//! guess is by the mean of all rows, which the densest rows may exceed; the second is by the row with most, and holds.
+//! A frame counts the entries of all rows, of the largest band and of the largest row. If one band does not suffice,
+//! the next guess uses the mean of all rows, which the densest rows may exceed. The guess after that uses the largest
+//! row and suffices.
 
 use crate::abi::{Fragment, TILE, TileLeaf};
 use crate::frame::common::scan;
 use crate::frame::counts::{SMALLER, TooMany};
 use crate::gpu::Buffer;
 
-/// Rows of tiles in the only band.
+/// Rows of tiles of a single band.
 pub(crate) const WHOLE: u32 = u32::MAX;
 
-/// What the lists may take.
+/// Limits of the lists' sizes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Limits {
-    /// Bytes of one storage buffer.
+    /// Most bytes of one storage buffer.
     pub range: u32,
-    /// Bytes of all lists of a band.
+    /// Most bytes of all lists of a band.
     pub budget: u64,
 }
 
-/// Entries of the lists.
+/// Numbers of entries of the lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Entries {
     pub tile_leaves: u64,
@@ -45,12 +46,12 @@ impl Entries {
         Self { tile_leaves: times(self.tile_leaves), fragments: times(self.fragments) }
     }
 
-    /// And a quarter more.
+    /// A quarter more.
     pub fn with_spare(self) -> Self {
         Self { tile_leaves: self.tile_leaves + self.tile_leaves / 4, fragments: self.fragments + self.fragments / 4 }
     }
 
-    /// Of each as much as there is, or as is wanted and a quarter more.
+    /// The larger of `self` and, where it does not suffice, `wanted` and a quarter more.
     pub fn grown(self, wanted: Self) -> Self {
         let spare = wanted.with_spare();
         let one = |had: u64, wanted: u64, spare: u64| if wanted > had { spare } else { had };
@@ -60,7 +61,7 @@ impl Entries {
         }
     }
 
-    /// No more than a storage buffer of `range` bytes holds.
+    /// At most as many as a storage buffer of `range` bytes holds.
     pub fn within(self, range: u32) -> Self {
         let most = |bytes: usize| u64::from(range) / bytes as u64;
         Self {
@@ -69,7 +70,7 @@ impl Entries {
         }
     }
 
-    /// Whether these are enough.
+    /// Whether these suffice.
     pub fn hold(self, wanted: Self) -> bool {
         self.tile_leaves >= wanted.tile_leaves && self.fragments >= wanted.fragments
     }
@@ -79,7 +80,7 @@ impl Entries {
     }
 }
 
-/// The lists of a picture of some size.
+/// The lists of a picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lists {
     pub size: (u32, u32),
@@ -94,8 +95,8 @@ impl Lists {
         self.size.1.div_ceil(TILE)
     }
 
-    /// Bytes of what is counted for each tile and each pixel of so many rows, and of the entries and squares of all
-    /// tiles: see `TileBuffers` and `FragmentBuffers`.
+    /// Bytes of the counters of each tile and pixel of `rows` rows, and of the entries and squares of all tiles: see
+    /// `TileBuffers` and `FragmentBuffers`.
     fn counted_bytes(&self, rows: u32) -> u64 {
         let words = |n: u64| (n * size_of::<u32>() as u64).next_multiple_of(Buffer::LEAST_BYTES);
         let of_row = u64::from(self.size.0.div_ceil(TILE));
@@ -109,27 +110,27 @@ impl Lists {
         u64::from(self.size.0) * u64::from(rows.saturating_mul(TILE).min(self.size.1))
     }
 
-    /// Whether there is room for these lists of so many rows.
+    /// Whether lists of so many rows fit into the limits.
     pub fn hold(&self, rows: u32, entries: Entries) -> bool {
         let [leaves, fragments] = entries.bytes();
         let range = u64::from(self.limits.range);
-        // a word a pixel: its count of crossings, or the point where its ray resumes
+        // one word a pixel: its number of crossings, or the point where its ray resumes
         let counted = self.pixels(rows) < u64::from(scan::MAX_COUNT)
             && size_of::<u32>() as u64 * (self.pixels(rows) + 1) <= range;
         counted && leaves.max(fragments) <= range && self.counted_bytes(rows) + leaves + fragments <= self.limits.budget
     }
 
-    /// The most rows for which there is room where a row wants so much; 0 where there is none for one.
+    /// The most rows that fit if each needs `row`; 0 if not even one fits.
     pub fn most_rows(&self, row: Entries) -> u32 {
         (1..=self.rows()).rev().find(|rows| self.hold(*rows, row.times(*rows, 1))).unwrap_or(0)
     }
 
-    /// Rows of each of as many bands as there are with so many rows each, about the same number.
+    /// Rows of a band, if the picture is divided into equal bands of at most `rows` rows.
     pub fn even(&self, rows: u32) -> u32 {
         self.rows().div_ceil(self.rows().div_ceil(rows.max(1)).max(1)).min(rows)
     }
 
-    /// As much room as there is for entries that are wanted, in their proportion, but no more than they are.
+    /// Room for the wanted entries. If not all fit, as much as there is, in proportion.
     pub fn shared(&self, rows: u32, wanted: Entries) -> Entries {
         let [leaves, fragments] = wanted.bytes();
         let left = self.limits.budget.saturating_sub(self.counted_bytes(rows)).min(leaves + fragments);
@@ -143,7 +144,7 @@ impl Lists {
         }
     }
 
-    /// Why there is no room for a row that wants so much.
+    /// The error for a row that does not fit.
     pub fn no_room(&self, row: Entries) -> TooMany {
         let counted = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
         let [leaves, fragments] = row.bytes();
@@ -190,8 +191,8 @@ mod tests {
             let most = LISTS.most_rows(row);
             assert!(most > 0 && most < LISTS.rows(), "{most}");
             assert!(LISTS.hold(most, row.times(most, 1)) && !LISTS.hold(most + 1, row.times(most + 1, 1)));
-            // 10 tiles and 16 rows of 160 pixels, of 2 words each; a word at each list's end, and two of each of 80
-            // tiles; each list of words whole texels of four
+            // 10 tiles and 16 rows of 160 pixels, with 2 words each; one word at each list's end, and two for each of
+            // 80 tiles; each list of words is a whole number of texels of four
             let words = |n: u64| n.div_ceil(4) * 16;
             let bytes = |rows: u64| {
                 let counted = [10 * rows, 10 * rows + 1, 80, 80, 2560 * rows, 2560 * rows + 1].map(words);
@@ -232,7 +233,7 @@ mod tests {
     const RANGE: u32 = 1 << 20;
     const SIZE: (u32, u32) = (160, 480);
 
-    /// What a frame reports whose rows of tiles want so many leaves and fragments.
+    /// The counters of a frame whose rows of tiles need these leaves and fragments.
     fn drawn(had: Capacities, rows: &[(u32, u32)]) -> Counters {
         let sum = |rows: &[(u32, u32)]| rows.iter().fold((0, 0), |(a, b), (c, d)| (a + c, b + d));
         let most = |all: &[(u32, u32)]| all.iter().fold((0, 0), |(a, b): (u32, u32), (c, d)| (a.max(*c), b.max(*d)));
@@ -251,7 +252,7 @@ mod tests {
         }
     }
 
-    /// Records until the frame is complete; returns how often it was, too.
+    /// Records until the frame is complete; also returns the number of recordings.
     fn settled(mut had: Capacities, counts: Counts, rows: &[(u32, u32)]) -> Result<(Capacities, u32), TooMany> {
         for recorded in 1..9 {
             had = had.for_picture(counts, SIZE, RANGE)?;
@@ -270,7 +271,7 @@ mod tests {
         panic!("not settled: {had:?}");
     }
 
-    /// Whatever the rows want: at most three recordings, unless one of them alone wants too much.
+    /// Any rows need at most three recordings, unless one row alone does not fit.
     #[test]
     fn frames_settle_within_their_limits() {
         let counts = |solid_budget| Counts { leaves: 40, shells: 1, events: true, solid_budget, ..Counts::default() };
@@ -292,7 +293,7 @@ mod tests {
             let fits = |row: &(u32, u32)| lists.hold(1, entries(*row));
             match settled(Capacities::first(counts), counts, &rows) {
                 Err(_) => {
-                    // the most leaves and the most fragments need not be in one row
+                    // the most leaves and the most fragments may be in different rows
                     let most = drawn(Capacities::first(counts), &rows);
                     assert!(!lists.hold(1, entries((most.row_tile_leaves, most.row_fragments))), "{case}");
                     refused += 1;
@@ -303,7 +304,7 @@ mod tests {
                     let whole = settled_at.band_rows >= 30;
                     assert_eq!(whole, lists.hold(30, entries(all)), "{case}: {settled_at:?}");
                     banded += u32::from(!whole);
-                    // a view of nothing is one band again
+                    // an empty view is one band again
                     if !whole && lists.hold(30, Entries::NONE) {
                         let nothing = drawn(settled_at, &[(0, 0); 30]);
                         assert!(settled_at.grown(&nothing, counts, SIZE, RANGE).unwrap().band_rows >= 30, "{case}");
@@ -314,7 +315,7 @@ mod tests {
         assert!(banded > 100 && refused > 30, "{banded} in bands, {refused} refused");
     }
 
-    /// More than 32 bits count: the row with most tells enough.
+    /// If the counters exceed 32 bits, the largest row suffices to choose bands.
     #[test]
     fn what_cannot_be_counted_is_drawn_in_bands_that_can() {
         let counts = Counts { leaves: 4, shells: 1, events: true, ..Counts::default() };

@@ -1,13 +1,13 @@
-//! Boolean solids: what each tile sees, and where each pixel's ray enters.
+//! Boolean solids: the leaves that each tile may show, and the point where each pixel's ray enters a solid.
 //!
 //! ```text
 //!   leaves ──solid_rects──▶ rects ──solid_blocks, solid_tiles (each: count, scan, list)──▶ leaves of each tile
 //!          ──solid_fold──▶ their Blist ──solid_squares──▶ tiles that are drawn
-//!          ──solid_events──▶ visibility of what is no patch, depth
+//!          ──solid_events──▶ visibility of meshes and solids, depth
 //!   operands ──operand_mesh, operand_patch (each: count, scan, fill)──▶ fragments of each pixel
 //!            ──operand_sort──▶ in order ──▲
 //!
-//!   the lists of tiles and pixels, and what is drawn from them, band after band where they are large: bands.rs
+//!   if the lists of tiles and pixels are too large, they are made and drawn band by band: bands.rs
 //! ```
 
 pub(crate) mod bands;
@@ -53,21 +53,21 @@ pub(crate) struct Passes {
     operands: Option<Arc<ShellPasses>>,
 }
 
-/// What finds the faces, and which leaves each tile sees.
+/// The passes of the way that finds the faces, and the passes that list each tile's leaves.
 enum WayPasses {
     Events(Arc<solid_events::SolidEvents>, Arc<TilePasses>),
     Cst(Arc<solid_cst::SolidCst>, Arc<TilePasses>),
-    /// Layers that are peeled of meshes need no tiles.
+    /// Way `blister`; without tiles if it peels meshes.
     Blister(Arc<Blister>, Option<Arc<TilePasses>>),
 }
 
-/// There are lists of the leaves that each tile sees: not where layers are peeled of meshes.
+/// Whether there are lists of each tile's leaves: not for way `blister` with meshes.
 pub(super) fn has_tiles(data: &SceneData) -> bool {
     data.solids.blister.is_none() || data.solids.shell_leaves.is_empty()
 }
 
 impl Passes {
-    /// `None` when the scene has no Boolean solid.
+    /// `None` in scenes without Boolean solids.
     pub(super) fn new(device: &Device, data: &SceneData, trim: Option<&TrimTest>) -> Result<Option<Self>, GpuError> {
         let Some(surfaces) = data.solids.kinds() else { return Ok(None) };
         let shells = !data.solids.shell_leaves.is_empty();
@@ -106,13 +106,13 @@ pub(crate) struct Solids {
     band_rows: u32,
     way: Way,
     operands: Option<Operands>,
-    /// (u, v) of spline faces that bound operands.
+    /// (u, v) of spline faces of operands.
     operand_uv: Option<Image>,
-    /// Where rays go on from, a word a pixel of a band; where one segment did not suffice.
+    /// The point where each ray resumes, one word a pixel of a band; only if rays need several segments.
     resume_points: Option<Buffer>,
 }
 
-/// What finds the faces, and which leaves each tile sees.
+/// The buffers of the way that finds the faces, and the lists of each tile's leaves.
 enum Way {
     Events(Arc<solid_events::SolidEvents>, Box<Tiles>),
     Cst(Arc<solid_cst::SolidCst>, Box<Tiles>),
@@ -145,7 +145,7 @@ impl Solids {
         })
     }
 
-    /// Which leaves each tile of a band sees; `None` where layers are peeled of meshes.
+    /// The lists of leaves for a band's tiles; `None` for way `blister` with meshes.
     pub(super) fn tiles(&self) -> Option<&Tiles> {
         match &self.way {
             Way::Events(_, tiles) | Way::Cst(_, tiles) => Some(tiles),
@@ -153,12 +153,12 @@ impl Solids {
         }
     }
 
-    /// Where rays cross operands without equations.
+    /// The crossings of rays with operands without equations.
     pub(super) fn fragments(&self) -> Option<&FragmentBuffers> {
         self.operands.as_ref().map(|operands| &operands.fragments)
     }
 
-    /// Before each drawing: what the passes count, and the images, whose contents go.
+    /// Before each drawing: clears the counters, and discards the images' contents.
     pub(super) fn begin(&self, cmd: &Commands<'_>) {
         if let Some(f) = self.fragments() {
             cmd.fill(&f.counts, 0);
@@ -170,23 +170,23 @@ impl Solids {
     }
 }
 
-/// Where the parts of Boolean solids are, model axes, seen from this frame's eye.
+/// Places of surfaces and leaves, in model axes relative to this frame's eye.
 #[derive(Clone, Copy)]
 pub(crate) struct Centres<'a> {
     pub leaves: &'a Buffer,
     pub surfaces: &'a TexelBuffer,
 }
 
-/// The plane at which rays begin.
+/// The plane at which rays start.
 #[derive(Clone, Copy)]
 pub(crate) struct Near {
-    /// Along the view axis.
+    /// Distance along the view axis.
     pub depth: f32,
-    /// It may be within the Boolean solids.
+    /// Whether the plane may be inside the Boolean solids.
     pub may_cut: bool,
 }
 
-/// The stage, and what a frame gives it.
+/// The stage, and a frame's inputs to it.
 pub(super) struct SolidParts<'a> {
     pub(super) stage: &'a Solids,
     pub(super) scene: &'a scene::Solids,
@@ -194,7 +194,7 @@ pub(super) struct SolidParts<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// `None` when the scene has no Boolean solid.
+    /// `None` in scenes without Boolean solids.
     pub(super) fn solids(&self) -> Option<SolidParts<'a>> {
         Some(SolidParts {
             stage: self.stages.solids.as_ref()?,
@@ -205,7 +205,7 @@ impl<'a> Frame<'a> {
 }
 
 impl<'a> SolidParts<'a> {
-    /// Which leaves each tile sees, then the pixels.
+    /// Makes the lists of leaves, then draws the pixels.
     pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let (stage, s) = (self.stage, self.scene);
         let (w, r) = WRITE_TO_READ;
@@ -230,7 +230,7 @@ impl<'a> SolidParts<'a> {
         }
     }
 
-    /// What rays through a band's pixels may meet.
+    /// Makes the lists of everything that rays through a band's pixels may meet.
     pub(super) fn lists(&self, frame: &Frame<'_>, cmd: &Commands<'_>, band: &Band) {
         frame.begin_band(cmd, self.stage, band);
         if let Some(tiles) = self.stage.tiles() {
@@ -241,13 +241,13 @@ impl<'a> SolidParts<'a> {
         }
     }
 
-    /// The faces that a band's pixels see.
+    /// Draws the faces that a band's pixels show.
     fn band(&self, frame: &Frame<'_>, cmd: &Commands<'_>, band: &Band) {
         let (stage, s) = (self.stage, self.scene);
         let w = WRITE_TO_READ.0;
         let (v, counters) = (&frame.stages.visibility, &frame.stages.common.counters);
         let seen = v.of_others();
-        // meshes came before
+        // meshes are drawn before
         let drawn = frame.scene.meshes.is_some();
         let colour = Attachment { image: seen, load: if drawn { Load::Keep } else { Load::ColourU32([0; 4]) } };
         let depth = Attachment { image: &v.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
@@ -294,7 +294,7 @@ impl<'a> SolidParts<'a> {
         v.drawn_again(cmd, seen);
     }
 
-    /// What pass `resolve` needs of them.
+    /// The resources of pass `resolve`.
     pub(super) fn resolve(&self, frame: &Frame<'a>) -> resolve::SolidBindings<'a> {
         let v = &frame.stages.visibility;
         resolve::SolidBindings {
@@ -316,8 +316,8 @@ impl<'a> SolidParts<'a> {
     }
 }
 
-/// The rays of a band's pixels, from event to event; again and again from where they came to, where a driver ends long
-/// loops.
+/// Follows the rays of a band's pixels from event to event. If a driver ends long loops, it draws several times, and
+/// each time the rays resume where they stopped.
 fn ray_segments(
     frame: &Frame<'_>,
     cmd: &Commands<'_>,
@@ -336,7 +336,7 @@ fn ray_segments(
     );
     for nth in 0..of {
         if bindings.resume_points.is_some() {
-            // by the segment before, of this band or another, or of another sample
+            // writes by the segment before, of this band, another band or another sample
             cmd.after(Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE);
         }
         if nth > 0 {

@@ -1,12 +1,12 @@
-//! Pass `operand_mesh`: where rays cross the meshes around operands of Boolean solids.
+//! Pass `operand_mesh`: the crossings of rays with the meshes of operands.
 //!
 //! ```text
-//!   triangles ──raster, no depth test──▶ fragments of each pixel: counted, then stored where the prefix sum
-//!                                        says: shell, side, depth of the triangle's plane
+//!   triangles ──raster, no depth test──▶ fragments of each pixel: counted, then stored from the pixel's prefix sum
+//!                                        on: shell, side, depth of the triangle's plane
 //! ```
 //!
-//! Reads: everything that `Bindings` names but what it writes. Writes: `counts`; the second time `counts`,
-//! which go down to 0 again, and `fragments`.
+//! Reads: everything that `Bindings` names except its outputs. Writes: `counts`; in the second step `counts`, which
+//! return to 0, and `fragments`.
 
 use crate::frame::common::draw::Draw;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Pipeline, Resource, TexelBuffer};
@@ -26,10 +26,10 @@ pub(crate) struct Bindings<'a> {
     pub meshes: &'a Buffer,
     pub triangles: &'a Buffer,
     pub positions: &'a Buffer,
-    /// Surfaces in whose planes triangles lie.
+    /// The surface of each triangle that shares its plane.
     pub planes: &'a Buffer,
     pub surfaces: &'a TexelBuffer,
-    /// Model axes, seen from the eye.
+    /// In model axes, relative to the eye.
     pub surface_places: &'a TexelBuffer,
     pub counts: &'a Buffer,
     pub starts: &'a Buffer,

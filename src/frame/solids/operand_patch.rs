@@ -1,12 +1,12 @@
-//! Pass `operand_patch`: where rays cross the spline faces around operands of Boolean solids.
+//! Pass `operand_patch`: the crossings of rays with the spline faces of operands.
 //!
 //! ```text
-//!   sub-patches ──stages of pass `visibility`──▶ fragments of each pixel: counted, then stored where the
-//!                 ──trim test, Newton──▶         prefix sum says: shell, patch, (u, v), exact depth
+//!   sub-patches ──stages of pass `visibility`──▶ fragments of each pixel: counted, then stored from the pixel's
+//!                 ──trim test, Newton──▶         prefix sum on: shell, patch, (u, v), exact depth
 //! ```
 //!
-//! Reads: everything that `Bindings` names but what it writes. Writes: `counts`; the second time `counts`,
-//! which go down to 0 again, and `fragments`.
+//! Reads: everything that `Bindings` names except its outputs. Writes: `counts`; in the second step `counts`, which
+//! return to 0, and `fragments`.
 
 use crate::abi::Counters;
 use crate::bindings::Placed;
@@ -38,16 +38,17 @@ pub(crate) struct Bindings<'a> {
     pub counts: &'a Buffer,
     pub starts: &'a Buffer,
     pub fragments: &'a Buffer,
-    /// What the trim test reads, in its order.
+    /// The trim test's resources, in its order.
     pub trim: &'a [Resource<'a>],
-    /// Sides that faces share; in scenes where they do.
+    /// Sides that faces share; `None` without any.
     pub links: Option<&'a Buffer>,
     pub draws: &'a Buffer,
     pub counters: &'a Buffer,
 }
 
 impl OperandPatch {
-    /// `plain`: the scene has patches without a trim test; `linked`: faces share sides; `trimmed`: how the others are trimmed, if there are any.
+    /// `plain`: the scene has patches without a trim test; `linked`: faces share sides; `trimmed`: the trim test of the
+    /// others.
     pub(crate) fn new(
         device: &Device,
         rational: bool,

@@ -1,10 +1,10 @@
-//! Pass `operand_sort`: the fragments of each pixel in order, entering and leaving in turn.
+//! Pass `operand_sort`: sorts the fragments of each pixel, so that entries and exits alternate.
 //!
 //! ```text
-//!   E2 L1 E1 L2 e1 ──by shell, by depth──▶ E1 e1 L1 │ E2 L2 ──what follows in turn──▶ E1 L1 │ E2 L2
+//!   E2 L1 E1 L2 e1 ──by shell, by depth──▶ E1 e1 L1 │ E2 L2 ──the alternating ones──▶ E1 L1 │ E2 L2
 //! ```
 //!
-//! Reads: everything that `Bindings` names but what it writes. Writes: `counts`, `fragments`, `counters`.
+//! Reads: everything that `Bindings` names except its outputs. Writes: `counts`, `fragments`, `counters`.
 //! Twin: `src/twin/operand_sort.rs`.
 
 use crate::frame::common::kernel::Kernel;
@@ -21,7 +21,7 @@ pub(crate) struct OperandSort {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub leaves: &'a Buffer,
-    /// Model axes, seen from the eye.
+    /// In model axes, relative to the eye.
     pub leaf_centres: &'a Buffer,
     /// A leaf of each shell.
     pub shell_leaves: &'a Buffer,
@@ -37,8 +37,8 @@ impl OperandSort {
         Ok(Self { kernel })
     }
 
-    /// One thread a pixel of these columns of the picture, and rows of the band: where there may be fragments. The first
-    /// row is that of a tile.
+    /// One thread for each pixel of these columns of the picture and rows of the band, which contain all fragments. The
+    /// first row is the first of a tile.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, columns: Range<u32>, rows: Range<u32>) {
         if columns.is_empty() || rows.is_empty() {
             return;

@@ -1,4 +1,4 @@
-//! Where rays cross operands without equations: fragments of each pixel of a band, counted, stored and put in order.
+//! Crossings of rays with operands without equations: fragments of each pixel of a band, counted, stored and sorted.
 
 use super::bands::Band;
 use super::buffers::FragmentBuffers;
@@ -31,7 +31,7 @@ impl ShellPasses {
     }
 }
 
-/// The passes, and their fragments.
+/// The passes and their fragments.
 pub(super) struct Operands {
     passes: Arc<ShellPasses>,
     pub(super) fragments: FragmentBuffers,
@@ -42,7 +42,7 @@ impl Operands {
         Ok(Self { passes: Arc::clone(passes), fragments: FragmentBuffers::new(room)? })
     }
 
-    /// The fragments of operands without equations, in a band: counted, stored, put in order.
+    /// Counts, stores and sorts the fragments of a band.
     pub(super) fn record(
         &self,
         frame: &Frame<'_>,
@@ -93,7 +93,7 @@ impl Operands {
         };
         let (w, r) = WRITE_TO_READ;
         let drawn = Access::FRAGMENT_WRITE;
-        // by the drawing before, of another band or another sample
+        // reads by the drawing before, of another band or another sample
         let followed = Access::FRAGMENT_READ | r;
         barrier::buffers(
             cmd,

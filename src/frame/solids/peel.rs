@@ -1,14 +1,14 @@
-//! Way `blister`: layer after layer, until no pixel needs another.
+//! Way `blister`: peels layer after layer until every pixel is decided.
 //!
 //! ```text
-//!   a camera in doubt of being within:  layer = the near plane ─ask─▶ pixels outside are found
-//!                                       peel what ends, ask, …        and the others where they get outside
-//!                                          │ found
-//!                                          ▼
-//!   layer before = that, or the near plane; peel what begins, ask, lock, …      ──▶ found ──▶ visibility, depth
+//!   if the camera may be inside:         layer = the near plane ─test─▶ pixels outside are found
+//!                                        peel exits, test, …            the others where they get outside
+//!                                           │ found
+//!                                           ▼
+//!   layer before = found, or the near plane; peel entries, test, lock, …      ──▶ found ──▶ visibility, depth
 //! ```
 //!
-//! As many layers are recorded as the frame before needed, and one that finds nothing; a frame that needs more is
+//! Records as many layers as the previous frame needed, and one that must find nothing. If the frame needs more, it is
 //! recorded again.
 
 use super::SolidParts;
@@ -19,7 +19,7 @@ use crate::gpu::{Access, Attachment, Commands, Image, ImageAccess, Load, barrier
 use crate::scene::{self, Asked};
 use std::ops::Range;
 
-/// Everything that a layer needs.
+/// The inputs of a layer.
 struct Parts<'a> {
     pass: &'a Blister,
     scene: &'a scene::Blister,
@@ -29,12 +29,12 @@ struct Parts<'a> {
     shells: Vec<Vec<(u32, Range<u32>)>>,
 }
 
-/// What is looked for.
+/// The kind of face that is searched.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Search {
-    /// Where rays that begin within the solid get out of it.
+    /// The exit of rays that start inside the solid.
     Outside,
-    /// Where rays enter it.
+    /// The entry of rays into the solid.
     Inside,
 }
 
@@ -43,7 +43,7 @@ const READ: Access = Access::FRAGMENT_READ;
 const NOTHING: Load = Load::ColourU32([0; 4]);
 
 impl SolidParts<'_> {
-    /// The faces of the solids, into the visibility image and depth.
+    /// Draws the faces of the solids into the visibility image and depth.
     pub(super) fn peel(
         &self,
         frame: &Frame<'_>,
@@ -69,7 +69,7 @@ impl SolidParts<'_> {
         cmd.after(Access::FRAGMENT_WRITE, Access::COMPUTE_WRITE);
     }
 
-    /// `None` where the scene was made for another way.
+    /// `None` if the scene uses another way.
     fn peeled<'b>(&'b self, frame: &'b Frame<'_>, pass: &'b Blister, images: &'b LayerImages) -> Option<Parts<'b>> {
         let s = self.scene;
         let (scene, order) = s.blister.as_ref()?;
@@ -99,7 +99,7 @@ impl SolidParts<'_> {
 }
 
 impl Parts<'_> {
-    /// Peels from the layer `start` on: for the inside, from where the search for the outside left `found`.
+    /// Peels from the layer `start` on. The search for entries starts where the search for exits left `found`.
     fn search(&self, frame: &Frame<'_>, cmd: &Commands<'_>, start: &Image, search: Search) {
         let images = self.images;
         for k in 0..frame.capacities.solids.layers {
@@ -114,7 +114,7 @@ impl Parts<'_> {
             }
             self.ask(cmd, image, search, k + 1);
         }
-        // whoever waits still wants more layers than there are
+        // pixels that still wait need more layers than are recorded
         let last = &images.layers[(frame.capacities.solids.layers as usize + 1) % 2];
         let stencil = Attachment { image: &images.stencil, load: Load::Keep };
         barrier::images(cmd, &[(&images.stencil, Access::DEPTH_WRITE, Access::DEPTH_WRITE)]);
@@ -142,8 +142,8 @@ impl Parts<'_> {
         barrier::images(cmd, &[(layer.image, DRAWN, READ)]);
     }
 
-    /// Which of the layer's faces are the ones looked for. `nth`: 1 for the first that was peeled; a walk from its
-    /// beginning clears the stencil.
+    /// Finds the layer's faces that the search needs. `nth` is the layer's number, from 1; 0 and a first layer start a
+    /// walk and clear the stencil.
     fn ask(&self, cmd: &Commands<'_>, layer: &Image, search: Search, nth: u32) {
         let Parts { pass, scene, images, .. } = self;
         let stencil = &images.stencil;

@@ -1,4 +1,4 @@
-//! Pass `solid_blocks`: which leaves each block of tiles may see; `count`, prefix sum, `list`.
+//! Pass `solid_blocks`: lists the leaves that each block of tiles may show; `count`, prefix sum, `list`.
 //!
 //! Reads: `frame`, `rects`, `starts`. Writes: `counts`, then `leaves`, in Blist order.
 
@@ -27,12 +27,12 @@ impl SolidBlocks {
         Ok(Self { count: kernel("solid blocks (count)", 0)?, list: kernel("solid blocks (list)", 1)? })
     }
 
-    /// One thread for each of `runs` of leaves of all blocks.
+    /// Counts; one thread for each of `runs`, the runs of leaves of all blocks.
     pub(crate) fn count(&self, cmd: &Commands<'_>, b: &Bindings<'_>, runs: u32) {
         record(cmd, &self.count, b, runs);
     }
 
-    /// As [`count`](Self::count), after the prefix sum.
+    /// Lists, after the prefix sum; threads as in [`count`](Self::count).
     pub(crate) fn list(&self, cmd: &Commands<'_>, b: &Bindings<'_>, runs: u32) {
         record(cmd, &self.list, b, runs);
     }

@@ -1,4 +1,4 @@
-//! Pass `solid_cst`: the faces of each leaf of the Boolean solids, trimmed by the others.
+//! Pass `solid_cst`: draws the faces of each leaf of the Boolean solids, trimmed by the other leaves.
 //!
 //! ```text
 //!   leaf ──its tiles──▶ two triangles ──▶ ends of its span ──Blist in front and behind──▶ face or not
@@ -30,9 +30,9 @@ pub(crate) struct Bindings<'a> {
     pub tile_leaves: &'a TexelBuffer,
     pub tile_entries: &'a Buffer,
     pub rects: &'a Buffer,
-    /// Which leaf an instance draws, as `trimmed_leaf.glsl` says.
+    /// The leaf that each instance draws, as in `trimmed_leaf.glsl`.
     pub order: &'a Buffer,
-    /// `clamps`: ends of leaves that a driver did not let be followed through the Blist.
+    /// `clamps`: ends of leaves whose walk through the Blist a driver cut short.
     pub counters: &'a Buffer,
 }
 
@@ -55,7 +55,7 @@ impl SolidCst {
         Ok(Self { pipeline })
     }
 
-    /// One instance for each of `drawn`, the length of the order; what is there already stays where it is nearer.
+    /// One instance for each of `drawn`, the length of the order; nearer surfaces stay.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,

@@ -1,12 +1,12 @@
-//! Pass `solid_events`: where each pixel's ray enters the Boolean solid.
+//! Pass `solid_events`: finds the point where each pixel's ray enters a Boolean solid.
 //!
 //! ```text
 //!   leaves of the tile ──▶ spans of the ray ──▶ events in order ──▶ Blist behind each ──▶ first outside→inside
 //! ```
 //!
-//! Reads: everything that `Bindings` names. Writes: the visibility image (side, depth) and depth, beside what
-//! pass `visibility` drew; of spline faces the image of (u, v). Needs no storage per pixel beside the fragments of
-//! operands without equations, unless a driver ends long loops: then rays go on in segments, from where they came to.
+//! Reads: everything that `Bindings` names. Writes: the visibility image (side, depth) and depth, in addition to pass
+//! `visibility`; for spline faces, the image of (u, v). Per pixel it stores only the fragments of operands without
+//! equations; if a driver ends long loops, also the point where the ray's next segment resumes.
 
 use crate::abi;
 use crate::bindings::Primitives;
@@ -18,17 +18,17 @@ use crate::shaders::{self, constant};
 use ash::vk;
 use std::ops::Range;
 
-/// Of the image of (u, v) of spline faces: packed as in the visibility image.
+/// Format of the image of (u, v) of spline faces: packed as in the visibility image.
 pub(crate) const OPERAND_UV_FORMAT: vk::Format = vk::Format::R32_UINT;
 
-/// What the scene has.
+/// The kinds of surfaces in the scene.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Kinds {
     /// The most general kind of surface: `abi::SURFACE_*`.
     pub surfaces: u32,
     /// Some operand has no equations.
     pub shells: bool,
-    /// Some of those are spline parts.
+    /// Some operand is a spline part.
     pub patches: bool,
     /// There are items that rays are followed through.
     pub followed: bool,
@@ -46,26 +46,27 @@ pub(crate) struct Bindings<'a> {
     pub tile_starts: &'a TexelBuffer,
     pub tile_leaves: &'a TexelBuffer,
     pub tile_entries: &'a TexelBuffer,
-    /// Where rays cross operands without equations; `None` where there are none.
+    /// Crossings of rays with operands without equations; `None` without such operands.
     pub fragments: Option<Fragments<'a>>,
-    /// `clamps`: rays that a driver did not let come to their end.
+    /// `clamps`: rays that a driver cut short.
     pub counters: &'a Buffer,
     pub tile_squares: &'a Buffer,
-    /// Where the next segment goes on, a word a pixel of the band; where there are several.
+    /// The point where each ray's next segment resumes, one word a pixel of the band; `None` with one segment.
     pub resume_points: Option<&'a Buffer>,
 }
 
-/// One of the ray segments of a drawing's rays.
+/// One segment of a drawing's rays.
 #[derive(Clone, Copy)]
 pub(crate) struct RaySegment {
-    /// From 0.
+    /// Number, from 0.
     pub nth: u32,
     pub of: u32,
-    /// Rays that do not come to their end in the last of them are clamps; else the frame asks for more.
+    /// It is the last possible segment: rays that it does not finish are clamps. Otherwise they make the frame report
+    /// failure.
     pub is_most: bool,
 }
 
-/// Of each pixel, sorted.
+/// The sorted fragments of each pixel.
 pub(crate) struct Fragments<'a> {
     pub starts: &'a Buffer,
     pub counts: &'a Buffer,
@@ -97,8 +98,8 @@ impl SolidEvents {
         Ok(Self { pipeline })
     }
 
-    /// The squares that begin at one of the `tiles`, in these rows of the picture; what is there already stays where it
-    /// is nearer. `uv` where the scene has spline operands.
+    /// Draws the squares that begin at one of `tiles`, in these rows of the picture; nearer surfaces stay. `uv` in
+    /// scenes with spline operands.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
@@ -107,7 +108,7 @@ impl SolidEvents {
         (rows, tiles): (Range<u32>, Range<u32>),
         segment: RaySegment,
     ) {
-        // the shader has these bindings in every scene, and reads them only where there are shells
+        // the shader declares these bindings in every scene, and reads them only with shells
         let none = Fragments { starts: b.frame, counts: b.frame, all: b.tile_leaves };
         let f = b.fragments.as_ref().unwrap_or(&none);
         let lists: [Resource<'_>; 3] = [b.tile_starts.into(), b.tile_leaves.into(), b.tile_entries.into()];

@@ -1,8 +1,7 @@
-//! Pass `solid_fold`: the Blist of each tile, without the leaves that the tile does not see.
+//! Pass `solid_fold`: the Blist of each tile, reduced to the leaves that the tile may show.
 //!
-//! Reads: `frame`, `leaves`, `tile_starts`. Writes: exits of `tile_leaves`, `tile_entries`; of `counters` the `clamps`, tiles
-//! whose loops a driver ended.
-//! Twin: `src/twin/solid_fold.rs`.
+//! Reads: `frame`, `leaves`, `tile_starts`. Writes: exits of `tile_leaves`, `tile_entries`, and the counter `clamps`:
+//! tiles whose loops a driver ended. Twin: `src/twin/solid_fold.rs`.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};
@@ -19,7 +18,7 @@ pub(crate) struct Bindings<'a> {
     pub leaves: &'a Buffer,
     pub tile_starts: &'a Buffer,
     pub tile_leaves: &'a Buffer,
-    /// Where each tile's walk begins.
+    /// The first leaf of each tile's walk.
     pub tile_entries: &'a Buffer,
     pub counters: &'a Buffer,
 }

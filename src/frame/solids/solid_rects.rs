@@ -15,7 +15,7 @@ pub(crate) struct SolidRects {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub leaves: &'a Buffer,
-    /// Of the leaves, model axes, seen from the eye.
+    /// Centres of leaves, in model axes relative to the eye.
     pub centres: &'a Buffer,
     pub rects: &'a Buffer,
 }

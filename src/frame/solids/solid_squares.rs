@@ -1,4 +1,4 @@
-//! Pass `solid_squares`: which squares of tiles are drawn where Boolean solids may be seen.
+//! Pass `solid_squares`: the squares of tiles that may show Boolean solids.
 //!
 //! Reads: `frame`, `tile_entries`. Writes: `tile_squares`. Twin: `src/twin/squares.rs`.
 
@@ -14,9 +14,9 @@ pub(crate) struct SolidSquares {
 /// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    /// Where each tile's walk begins.
+    /// The first leaf of each tile's walk.
     pub tile_entries: &'a Buffer,
-    /// The side of the square that each tile draws, in tiles, or 0.
+    /// The side, in tiles, of the square that begins at each tile, or 0.
     pub tile_squares: &'a Buffer,
 }
 

@@ -1,4 +1,4 @@
-//! Pass `solid_tiles`: which leaves each tile may see, of those of its block; `count`, prefix sum, `list`.
+//! Pass `solid_tiles`: lists the leaves of its block that each tile may show; `count`, prefix sum, `list`.
 //!
 //! Reads: `frame`, `rects`, `block_starts`, `block_leaves`, `starts`. Writes: `counts`, then `leaves`, in
 //! Blist order; `counters`.
@@ -37,7 +37,7 @@ impl SolidTiles {
         record(cmd, &self.count, b, tiles);
     }
 
-    /// As [`count`](Self::count), after the prefix sum.
+    /// Lists, after the prefix sum; threads as in [`count`](Self::count).
     pub(crate) fn list(&self, cmd: &Commands<'_>, b: &Bindings<'_>, tiles: u32) {
         record(cmd, &self.list, b, tiles);
     }

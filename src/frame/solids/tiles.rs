@@ -1,4 +1,4 @@
-//! Which leaves each block of tiles sees, then each tile of a band, and their Blist.
+//! The leaves that each block of tiles may show, then those of each tile of a band, and their Blist.
 
 use super::bands::Band;
 use super::{SolidParts, solid_blocks, solid_fold, solid_squares, solid_tiles};
@@ -30,9 +30,9 @@ impl TilePasses {
 /// The passes, and their lists.
 pub(crate) struct Tiles {
     passes: Arc<TilePasses>,
-    /// Of leaves, of all blocks.
+    /// Runs of leaves of all blocks.
     runs: u32,
-    /// In the picture.
+    /// Tiles in the picture.
     pub tiles: u32,
     pub block_counts: Buffer,
     pub block_starts: Buffer,
@@ -40,12 +40,12 @@ pub(crate) struct Tiles {
     pub tile_counts: Buffer,
     pub tile_starts: TexelBuffer,
     pub tile_leaves: TexelBuffer,
-    /// These two of all tiles of the picture.
+    /// Entry and square of every tile of the picture.
     pub tile_entries: TexelBuffer,
     pub tile_squares: Buffer,
 }
 
-/// Runs of leaves of all blocks, and tiles of a band.
+/// Number of runs of leaves of all blocks, and of tiles of a band.
 pub(super) fn counted(room: &Room<'_>) -> [u32; 2] {
     let runs = room.squares(TILE * BLOCK) * room.counts.leaves.div_ceil(LEAF_RUN);
     [runs, room.squares(TILE).min(room.size.0.div_ceil(TILE) * room.band_rows())]
@@ -74,7 +74,7 @@ impl Tiles {
         })
     }
 
-    /// Which leaves each block of tiles sees.
+    /// Lists the leaves of each block of tiles.
     pub(super) fn blocks(&self, frame: &Frame<'_>, cmd: &Commands<'_>, solids: &SolidParts<'_>) {
         let (w, r) = WRITE_TO_READ;
         let blocks = solid_blocks::Bindings {
@@ -93,7 +93,7 @@ impl Tiles {
         cmd.after(w, r);
     }
 
-    /// Which leaves each tile of a band sees, and their Blist.
+    /// Lists the leaves of each tile of a band, and makes their Blist.
     pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, solids: &SolidParts<'_>, band: &Band) {
         let (w, r) = WRITE_TO_READ;
         let count = frame.tiles_of(band).len() as u32;

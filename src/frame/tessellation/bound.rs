@@ -1,4 +1,4 @@
-//! Pass `bound`: which patches can be seen, and how finely each must be divided.
+//! Pass `bound`: finds the patches that may be visible, and bounds how finely each must be divided.
 //!
 //! ```text
 //!    box of the patch ──▶ outside the picture? all of it turned away? ──▶ tau = 0

@@ -1,14 +1,14 @@
-//! How many sub-patches and draws there is room for.
+//! Sizes of the lists of sub-patches and draws.
 
 use crate::abi::constants::scene::FAILED_DRAWS;
 use crate::abi::{Counters, SubPatch};
 use crate::frame::capacities::grown;
 use crate::frame::counts::{Counts, FEWER_PARTS, TooMany};
 
-/// In a view of the whole scene, where most items are a sub-patch of few segments.
+/// Vertices of an item in a view of the whole scene, where most items are one sub-patch of few segments.
 const VERTICES_OF_AN_ITEM: u64 = 16;
 
-/// Room for what only the GPU can count.
+/// The sizes of lists whose length only the GPU computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Capacities {
     pub sub_patches: u32,
@@ -21,13 +21,14 @@ impl Capacities {
         Self { sub_patches: counts.items.saturating_add(256), draws: 256 }
     }
 
-    /// The same, with room for the draws of a scene whose items have a few vertices each, so many of which make a draw.
+    /// The same, with room for the draws of a scene whose items have a few vertices each. `draw_vertices`: vertices of
+    /// one draw.
     pub(crate) fn drawn_by(self, counts: Counts, draw_vertices: u32) -> Self {
         let draws = u64::from(counts.items) * VERTICES_OF_AN_ITEM / u64::from(draw_vertices);
         Self { draws: self.draws.max(draws as u32), ..self }
     }
 
-    /// What the frame that reported `c` would have needed.
+    /// The sizes that the frame with counters `c` needed.
     pub(crate) fn grown(self, c: &Counters, range: u32) -> Result<Self, TooMany> {
         let wanted = c.plain.saturating_add(c.trimmed);
         let bytes = size_of::<SubPatch>();
@@ -44,7 +45,7 @@ impl Capacities {
 mod tests {
     use super::*;
 
-    /// A driver that takes few vertices a draw gets many draws of a large scene at once.
+    /// A driver with few vertices a draw gets many draws of a large scene at once.
     #[test]
     fn draws_follow_the_scene() {
         let counts = Counts { items: 1 << 20, ..Default::default() };

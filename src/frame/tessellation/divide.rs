@@ -1,4 +1,4 @@
-//! The frame's part that says how finely patches are divided: pass `bound`, or one to compare with in its place.
+//! Computes how finely patches are divided: by pass `bound`, or by a baseline's pass.
 
 use crate::bindings::Bounded;
 use crate::frame::Frame;

@@ -1,8 +1,8 @@
-//! Pass `emit`: the list of sub-patches and the draws that cover it.
+//! Pass `emit`: writes the list of sub-patches and the draws that cover it.
 //!
 //! ```text
 //!    vertices before an item  0 ..... draw_vertices ..... 2 draw_vertices ....
-//!    draw that gets it        |   0   |        1         |        2
+//!    draw that covers it      |   0   |        1         |        2
 //! ```
 //!
 //! Reads: `frame`, `factors`, `sub_patch_starts`, `vertex_starts`, `in_sight`.
@@ -22,11 +22,11 @@ pub(crate) struct Emit {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub factors: &'a Buffer,
-    /// Sums of the counts, one more than there are.
+    /// Prefix sums of the counts, one more than there are counts.
     pub sub_patch_starts: &'a Buffer,
-    /// Likewise.
+    /// Prefix sums of the numbers of vertices, likewise.
     pub vertex_starts: &'a Buffer,
-    /// The list.
+    /// The list of sub-patches.
     pub sub_patches: &'a Buffer,
     pub draws: &'a Buffer,
     pub counters: &'a Buffer,

@@ -1,7 +1,7 @@
-//! How finely each patch of the placed parts in sight is divided, and the sub-patches and draws that follow.
+//! Divides each patch of the placed parts in sight, and makes the sub-patches and draws.
 //!
 //! ```text
-//!   bound    tau per patch ──occlusion::cull_early──▶ 0 for what lay behind others
+//!   bound    tau per patch ──occlusion::cull_early──▶ 0 for patches that were hidden
 //!   split    segments per side
 //!     │(scan) sub-patches, vertices
 //!   emit     list and draws
@@ -44,8 +44,8 @@ impl Passes {
     }
 }
 
-/// The stage. Its lists are bound by whatever draws patches; in a scene without patches they are empty, and there are no
-/// passes.
+/// The stage. Every pass that draws patches binds its lists. In a scene without patches they are empty, and there are
+/// no passes.
 pub(crate) struct Tessellation {
     passes: Option<Arc<Passes>>,
     pub taus: Buffer,
@@ -72,7 +72,7 @@ impl Tessellation {
         })
     }
 
-    /// Divides every patch that may be seen.
+    /// Divides every patch that may be visible.
     pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let Some(passes) = &self.passes else { return };
         let (w, r) = WRITE_TO_READ;
@@ -84,7 +84,7 @@ impl Tessellation {
         self.split(frame, cmd);
     }
 
-    /// Patches into sub-patches, and what draws those that are to be drawn.
+    /// Makes sub-patches and their draws.
     pub(super) fn split(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let Some(p) = &self.passes else { return };
         let (s, c) = (frame.scene, &frame.stages.common);
@@ -124,7 +124,7 @@ impl Tessellation {
         cmd.after(w, Access::VERTEX_READ | Access::INDIRECT_READ | w);
     }
 
-    /// Before patches are divided a second time: what was read of the first is read no more.
+    /// Before patches are divided a second time: the reads of the first division must be complete.
     pub(super) fn begin_again(&self, cmd: &Commands<'_>) {
         let (w, r) = WRITE_TO_READ;
         cmd.after(w | Access::VERTEX_READ, r | w);

@@ -4,8 +4,8 @@
 //! ```text
 //!         A (tau 100, 2 sub-patches)        B (tau 30)
 //!    ┌───────────┬───────────┐
-//!    │    64     │    64     │      the side that A and B share gets 128 segments, seen from
-//!    ├───────────┴───────────┤      both, so B is cut in two as well: 64 + 64
+//!    │    64     │    64     │      the side that A and B share gets 128 segments in both,
+//!    ├───────────┴───────────┤      so B is cut in two as well: 64 + 64
 //!    │    64     │    64     │
 //!    └───────────┴───────────┘
 //! ```
@@ -33,13 +33,13 @@ pub(crate) struct Bindings<'a> {
     pub taus: &'a Buffer,
     /// [`Factors`](crate::abi::Factors) per item.
     pub factors: &'a Buffer,
-    /// Per item in sight: plain, then trimmed.
+    /// For each item in sight: plain, then trimmed.
     pub sub_patch_counts: &'a Buffer,
-    /// Likewise.
+    /// Vertices, likewise.
     pub vertex_counts: &'a Buffer,
     /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight.
     pub in_sight: &'a Buffer,
-    /// Sides that faces share; in scenes where they do.
+    /// Sides that faces share; `None` without any.
     pub links: Option<&'a Buffer>,
 }
 

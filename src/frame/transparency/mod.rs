@@ -1,4 +1,4 @@
-//! What is seen through, and lengths within solids.
+//! Transparent solids and highlights, and lengths within solids.
 //!
 //! ```text
 //!   resolve ──▶ behind ─┐
@@ -23,25 +23,25 @@ use std::sync::Arc;
 
 /// The passes of scenes whose rays are followed through solids.
 pub(crate) struct Passes {
-    /// Into the host's colour, or each of a pixel's samples.
+    /// For the host's colour, or for each of a pixel's samples.
     colour: Option<SolidLayers>,
     first: Option<SolidLayers>,
     thickness: Option<SolidLayers>,
 }
 
-/// Which of them one drawing needs.
+/// The images that one drawing needs.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Drawing {
-    /// The only one.
+    /// All of them: the only drawing.
     Whole,
-    /// One of a pixel's samples.
+    /// The colour of one sample.
     Sample,
-    /// What is no colour, beside samples.
+    /// All images but the colour, which samples make.
     Beside,
 }
 
 impl Passes {
-    /// `None` when nothing is followed.
+    /// `None` if no rays are followed.
     pub(super) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<Self>, GpuError> {
         let Some(surfaces) = data.solids.kinds().filter(|_| data.solids.is_followed()) else { return Ok(None) };
         let kinds = Kinds {
@@ -73,7 +73,7 @@ impl Passes {
 /// The stage.
 pub(crate) struct Transparency {
     passes: Arc<Passes>,
-    /// What is seen behind layers: linear colour and depth.
+    /// The surfaces behind layers: linear colour and depth.
     pub behind: Image,
 }
 
@@ -83,7 +83,7 @@ impl Transparency {
         Ok(Self { passes: Arc::clone(passes), behind })
     }
 
-    /// What pass `resolve` draws into where something is drawn in layers before it.
+    /// The image that pass `resolve` draws into if layers are drawn over it.
     pub(super) fn behind_layers(&self) -> Option<&Image> {
         self.passes.colour.as_ref().map(|_| &self.behind)
     }
@@ -113,7 +113,7 @@ impl Transparency {
 
     fn band(&self, frame: &Frame<'_>, cmd: &Commands<'_>, (solids, drawing): (&SolidParts<'_>, Drawing), band: &Band) {
         let (c, s, passes) = (&frame.stages.common, frame.scene, &self.passes);
-        // a ray is followed where it is known what its tile sees
+        // following a ray needs its tile's list
         let Some(tiles) = solids.stage.tiles() else { return };
         let bindings = Bindings {
             frame: frame.constants,
@@ -140,7 +140,7 @@ impl Transparency {
         let depth = frame.depth.as_ref().map(Attachment::again);
         if let Some(pass) = passes.colour.as_ref().filter(|_| drawing != Drawing::Beside) {
             drawn_again(frame, cmd);
-            // colours are laid over what is there
+            // colours are blended over the target
             let load = match frame.colour[0].load {
                 Load::Discard => Load::ColourF32([0.0; 4]),
                 load => load,
@@ -161,7 +161,7 @@ impl Transparency {
     }
 }
 
-/// The targets are drawn into once more.
+/// A barrier before the targets are drawn into again.
 fn drawn_again(frame: &Frame<'_>, cmd: &Commands<'_>) {
     let colour = frame.colour.iter().map(|a| (a.image, Access::COLOUR_WRITE, Access::COLOUR_WRITE));
     let depth = frame.depth.iter().map(|a| (a.image, Access::DEPTH_WRITE, Access::DEPTH_WRITE));
@@ -169,7 +169,7 @@ fn drawn_again(frame: &Frame<'_>, cmd: &Commands<'_>) {
 }
 
 impl Frame<'_> {
-    /// No ray is within a solid where there is none.
+    /// Clears the lengths within solids in a scene without solids.
     pub(super) fn no_thickness(&self, cmd: &Commands<'_>) {
         if let Some(target) = self.thickness.filter(|_| self.stages.transparency.is_none()) {
             cmd.rendering(target.image.size(), &[target], None, || {});

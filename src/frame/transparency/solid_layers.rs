@@ -1,14 +1,14 @@
-//! Pass `solid_layers`: the pixel's ray, followed through solids that are told apart.
+//! Pass `solid_layers`: follows each pixel's ray through distinct solids.
 //!
 //! ```text
-//!   behind (what pass `resolve` saw) ──┐
-//!   leaves of the tile, item by item ──┴──▶ layers, front to back ──▶ colour, over what is behind
-//!                                                                 ├─▶ images of the first of them
-//!                                                                 └─▶ length within solids
+//!   behind (the colours of pass `resolve`) ──┐
+//!   leaves of the tile, item by item ────────┴──▶ layers, front to back ──▶ colour, over the colours behind
+//!                                                                        ├─▶ images of the first layer
+//!                                                                        └─▶ length within solids
 //! ```
 //!
-//! Reads: everything that `Bindings` names. Writes: the targets; of the counters `clamps`, `contacts` and `overlaps`.
-//! Needs no storage per pixel beside `behind` and the fragments of operands without equations.
+//! Reads: everything that `Bindings` names. Writes: the targets, and the counters `clamps`, `contacts` and `overlaps`.
+//! Per pixel it stores only `behind` and the fragments of operands without equations.
 
 use crate::bindings::{Primitives, SUN_BINDINGS, SUN_OWN};
 use crate::frame::common::draw::Draw;
@@ -23,34 +23,34 @@ use std::ops::Range;
 /// Format of the image of thickness.
 pub(crate) const THICKNESS_FORMAT: vk::Format = vk::Format::R32_SFLOAT;
 
-/// What rays are followed for: a pipeline each.
+/// The output for which rays are followed; each has its own pipeline.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum For {
-    /// The colour, laid over the target.
+    /// The colour, blended over the target.
     Colour(vk::Format),
     /// The colour, added to the sum of a pixel's samples.
     Sample(vk::Format),
-    /// Beside the colour's target, which stays, those of the images `aovs`; and the host's depth.
+    /// The images `aovs` of the first layer, and the host's depth. The colour target is bound and stays.
     First { colour: vk::Format, aovs: &'static [vk::Format] },
-    /// The length within solids, its only target.
+    /// The length within solids, the only target.
     Thickness,
 }
 
-/// What the scene has.
+/// The kinds of surfaces in the scene.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Kinds {
     /// The most general kind of surface: `abi::SURFACE_*`.
     pub surfaces: u32,
     /// Some operand has no equations.
     pub shells: bool,
-    /// Some of those are spline parts, some with unequal weights.
+    /// Some operand is a spline part; some patches have unequal weights.
     pub patches: bool,
     pub rational: bool,
-    /// Some patches do not go on as those beside them would.
+    /// Some face has several patches that do not follow one equation.
     pub pieces: bool,
-    /// Some patch of theirs has a fine net.
+    /// Some operand's patch has a fine net.
     pub fine: bool,
-    /// Linear colour and opacity of contacts and overlaps, where they are wanted.
+    /// Linear colour and opacity of contacts and overlaps, if they are highlighted.
     pub marks: Option<[[f32; 4]; 2]>,
     /// The key light is a sun.
     pub sun: bool,
@@ -67,11 +67,11 @@ pub(crate) struct SolidLayers {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub primitives: Primitives<'a>,
-    /// Model axes, seen from the eye.
+    /// In model axes, relative to the eye.
     pub leaf_centres: &'a Buffer,
     pub tile_starts: &'a Buffer,
     pub tile_leaves: &'a TexelBuffer,
-    /// Where rays cross operands without equations: starts, counts, all; `None` where there are none.
+    /// Crossings of rays with operands without equations: starts, counts, all; `None` without such operands.
     pub fragments: Option<(&'a Buffer, &'a Buffer, &'a TexelBuffer)>,
     pub counters: &'a Buffer,
     pub behind: &'a Image,
@@ -82,14 +82,14 @@ pub(crate) struct Bindings<'a> {
     pub items: &'a Buffer,
     pub points: &'a TexelBuffer,
     pub instances: &'a Buffer,
-    /// What [`Kinds::sun`] asks for.
+    /// The resources for [`Kinds::sun`].
     pub sun: Option<[Resource<'a>; SUN_BINDINGS]>,
-    /// Of meshes that bound operands: meshes, triangles, positions, planes; `None` where there are none.
+    /// Meshes of operands: meshes, triangles, positions, planes; `None` without any.
     pub shells: Option<[&'a Buffer; 4]>,
 }
 
 impl SolidLayers {
-    /// `depth`: of the host's target. What is hidden behind it stays so; only [`For::First`] writes it.
+    /// `depth` is the format of the host's target. Surfaces behind it stay hidden; only [`For::First`] writes it.
     pub(crate) fn new(
         device: &Device,
         purpose: For,
@@ -106,7 +106,7 @@ impl SolidLayers {
             }
             For::Thickness => (2, "thickness", vec![target(THICKNESS_FORMAT, Blend::Replace)]),
         };
-        // lengths within solids are in no light
+        // lengths within solids are not lit
         let sun = kinds.sun && number != 2;
         let marks = kinds.marks.filter(|_| number == 0);
         let writes = matches!(purpose, For::First { .. });
@@ -136,7 +136,7 @@ impl SolidLayers {
         Ok(Self { pipeline, marks: marks.unwrap_or_default(), sun })
     }
 
-    /// One triangle over these rows of the targets.
+    /// Draws one triangle over these rows of the targets.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
@@ -145,7 +145,7 @@ impl SolidLayers {
         depth: Option<Attachment<'_>>,
         rows: Range<u32>,
     ) {
-        // the shader has these bindings in every scene, and reads them only where there are shells
+        // the shader declares these bindings in every scene, and reads them only with shells
         let (starts, counts, fragments) = b.fragments.unwrap_or((b.frame, b.frame, b.tile_leaves));
         let shells = b.shells.unwrap_or([b.frame; 4]);
         let placed = [b.views, b.face_instances, b.faces, b.patches, b.items];

@@ -1,4 +1,4 @@
-//! How many scan lines, and crossings of them, the trim table has room for.
+//! Sizes of the trim table: scan lines, and their crossings.
 
 use crate::abi::Counters;
 use crate::frame::capacities::grown;
@@ -9,7 +9,7 @@ use crate::picture::TakenWay;
 /// The first flip and the number of flips.
 type Row = [u32; 2];
 
-/// Room for what only the GPU can count.
+/// The sizes of lists whose length only the GPU computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Capacities {
     pub rows: u32,
@@ -27,7 +27,7 @@ impl Capacities {
         }
     }
 
-    /// What the frame that reported `c` would have needed.
+    /// The sizes that the frame with counters `c` needed.
     pub(crate) fn grown(self, c: &Counters, counts: Counts, range: u32) -> Result<Self, TooMany> {
         let rows = ("scan lines", c.wanted_rows);
         let intercepts = ("crossings of scan lines", c.intercepts);

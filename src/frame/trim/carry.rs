@@ -1,10 +1,10 @@
-//! Pass `carry`: the winding number that each row of a strip with several bins begins with: what crosses its scan line in
-//! the bins before.
+//! Pass `carry`: the winding number at the start of each row of a strip with several bins, from the crossings of its
+//! scan line in the bins before.
 //!
 //! ```text
 //!   bin               0     1     2     3
 //!   crossings add up  +1    0     -1    0      as pass `cross` counted them
-//!   begins with        0    1     1     0
+//!   at the start      0    1     1     0
 //! ```
 //!
 //! Reads: `frame`, `strips`, `wide_strips`. Writes: `row_windings`. Twin: `src/twin/carry.rs`.

@@ -1,8 +1,8 @@
-//! Pass `cross`: every linear segment of a trim curve meets every scan line that it crosses.
+//! Pass `cross`: intersects every linear segment of a trim curve with every scan line that it crosses.
 //!
 //! ```text
-//!   count    row_counts[row] += 1, border cells marked           one thread a segment, as many
-//!   (scan)   row_starts = sums                                   as pass `sizes` found
+//!   count    row_counts[row] += 1, border cells marked           one thread a segment; pass `sizes` found
+//!   (scan)   row_starts = sums                                   their number
 //!   insert   intercepts[row_starts[row] + place] = u, direction
 //! ```
 //!
@@ -21,7 +21,7 @@ pub(crate) struct Cross {
     insert: Kernel,
 }
 
-/// Its buffers, in binding order, and the dispatches.
+/// Its buffers in binding order, and the dispatches.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub face_instances: &'a TexelBuffer,
@@ -36,14 +36,14 @@ pub(crate) struct Bindings<'a> {
     pub intercepts: &'a Buffer,
     /// `glsl/include/border_cells.glsl`.
     pub border_cells: &'a Buffer,
-    /// What crosses each row adds up to, where strips have several bins.
+    /// The sum of each row's crossings, if strips have several bins.
     pub row_windings: Option<&'a Buffer>,
-    /// Written by pass `sizes`; this pass's is the first.
+    /// Written by pass `sizes`; the first is that of this pass.
     pub dispatches: &'a Buffer,
 }
 
 impl Cross {
-    /// `bins`: strips of some face have several bins. `marks`: where curves pass is asked for.
+    /// `bins`: strips of some face have several bins. `marks`: some pass reads the cells that curves cross.
     pub(crate) fn new(device: &Device, bins: bool, marks: bool) -> Result<Self, GpuError> {
         let kernel = |name, insert: bool| {
             let roles =
@@ -58,7 +58,7 @@ impl Cross {
         Self::record(cmd, &self.count, b);
     }
 
-    /// Writes them.
+    /// Stores the intercepts.
     pub(crate) fn insert(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
         Self::record(cmd, &self.insert, b);
     }
@@ -77,7 +77,7 @@ impl Cross {
             b.row_counts.into(),
             b.intercepts.into(),
             b.border_cells.into(),
-            // not written where there are none
+            // not written without bins
             b.row_windings.unwrap_or(b.frame).into(),
         ];
         kernel.record_indirect(cmd, &resources, (b.dispatches, 0));

@@ -1,13 +1,13 @@
-//! Pass `density`: pixels that each v-strip of a trimmed face can cover.
+//! Pass `density`: the pixels that each v-strip of a trimmed face can cover.
 //!
 //! ```text
 //!    cell = part of a patch in a bin of a strip:   |S_v| x pixels per unit / strips  = height_px
 //!    strip height = largest of its visible cells; 0 when none is visible
 //! ```
 //!
-//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `cells`, `cell_items`. Writes: `strip_heights`, `face_speeds`,
-//! `seen_bins`. `frame` and `views` are those of what the table is made of: this view, or a wider one that serves those from near
-//! by (`src/scene/view_cell.rs`). Twin: `src/twin/density.rs`.
+//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `cells`, `cell_items`. Writes: `strip_heights`,
+//! `face_speeds`, `seen_bins`. `frame` and `views` are those of the view for which the table is made: this view, or a
+//! wider one that serves all views of its cell (`src/scene/view_cell.rs`). Twin: `src/twin/density.rs`.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};
@@ -28,11 +28,11 @@ pub(crate) struct Bindings<'a> {
     pub cells: &'a Buffer,
     /// Face instance of each cell.
     pub cell_items: &'a Buffer,
-    /// Float bits, zero before.
+    /// Float bits; cleared before.
     pub strip_heights: &'a Buffer,
-    /// Float bits of pixels per unit u, v; zero before.
+    /// Float bits of pixels per unit of u and v; cleared before.
     pub face_speeds: &'a Buffer,
-    /// A bit for each bin of a strip, where strips have several; zero before.
+    /// One bit for each bin of a strip, if strips have several; cleared before.
     pub seen_bins: Option<&'a Buffer>,
 }
 
@@ -56,7 +56,7 @@ impl Density {
             b.cell_items,
             b.strip_heights,
             b.face_speeds,
-            // neither read nor written then
+            // neither read nor written without bins
             b.seen_bins.unwrap_or(b.frame),
         ]
         .map(Into::into);

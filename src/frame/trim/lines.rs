@@ -19,7 +19,7 @@ pub(crate) struct Bindings<'a> {
     pub strip_counts: &'a Buffer,
     /// `clamps`.
     pub counters: &'a Buffer,
-    /// A bit for each bin of a strip, where strips have several.
+    /// One bit for each bin of a strip, if strips have several.
     pub seen_bins: Option<&'a Buffer>,
 }
 
@@ -33,7 +33,7 @@ impl Lines {
 
     /// One thread for each of `bins`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, bins: u32) {
-        // not read where there are none
+        // not read without bins
         let seen_bins = b.seen_bins.unwrap_or(b.frame);
         let resources = [b.frame, b.strip_heights, b.strip_counts, b.counters, seen_bins].map(Into::into);
         self.kernel.record(cmd, &resources, bins);

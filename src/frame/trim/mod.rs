@@ -2,12 +2,12 @@
 //!
 //! ```text
 //!   way      scene buffers   buffers of the frame   passes before the draw     what the test reads
-//!   table    TableScene      table::Buffers         table.rs: density … sort   those
-//!   exact    ExactScene      none                   none                       the scene's
+//!   table    TableScene      table::Buffers         table.rs: density … sort   table::Buffers
+//!   exact    ExactScene      none                   none                       ExactScene
 //! ```
 //!
-//! A scene uses one way; the others' passes, pipelines and buffers do not exist. Whatever the way, its
-//! test is compiled into the passes `visibility` and `gap_fill` ([`TrimTest`](crate::shaders::TrimTest)).
+//! A scene uses one way; passes, pipelines and buffers of the other ways do not exist. The test of the way is compiled
+//! into the passes `visibility` and `gap_fill` ([`TrimTest`](crate::shaders::TrimTest)).
 
 pub(crate) mod capacities;
 pub(crate) mod carry;
@@ -43,7 +43,7 @@ pub(crate) enum Passes {
 }
 
 impl Passes {
-    /// `None` when no patch is trimmed.
+    /// `None` if no patch is trimmed.
     pub(super) fn new(device: &Device, data: &SceneData) -> Result<Option<Self>, GpuError> {
         Ok(match data.trim_way() {
             None => None,
@@ -82,7 +82,7 @@ impl Trim {
         })
     }
 
-    /// Clears what the passes before the draw count.
+    /// Clears the counters of the passes before the draw.
     pub(super) fn begin(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         match self {
             Self::Table(table) => table.begin(frame, cmd),
@@ -92,14 +92,14 @@ impl Trim {
         }
     }
 
-    /// The u-intercept table, where the scene is trimmed by it and the frame before has left none.
+    /// Makes the u-intercept table, in scenes trimmed by it, unless the previous frame's is valid.
     pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, times: &mut Timestamps) {
         if let Self::Table(table) = self {
             frame.unless_made(cmd, table, || times.scope(cmd, "trim table", || table.record(frame, cmd)));
         }
     }
 
-    /// Trim textures, where the scene is trimmed by them: after patches are divided.
+    /// Makes trim textures, in scenes trimmed by them, after patches are divided.
     #[cfg(feature = "baselines")]
     pub(super) fn record_baseline(&self, frame: &Frame<'_>, cmd: &Commands<'_>, times: &mut Timestamps) {
         if let Self::Baseline(trim) = self {
@@ -107,7 +107,7 @@ impl Trim {
         }
     }
 
-    /// What the trim test reads, in its order.
+    /// The trim test's resources, in its order.
     pub(super) fn test<'a>(&'a self, frame: &Frame<'a>) -> Vec<Resource<'a>> {
         match self {
             Self::Table(table) => table.test(),

@@ -1,4 +1,4 @@
-//! Pass `segments`: linear segments of each trim curve, enough for the view.
+//! Pass `segments`: the number of linear segments of each trim curve that the view needs.
 //!
 //! ```text
 //!    n >= sqrt(bend . speed / chord_px)       chords within chord_px of the curve
@@ -27,7 +27,7 @@ pub(crate) struct Bindings<'a> {
     pub strip_starts: &'a TexelBuffer,
     pub face_speeds: &'a Buffer,
     pub segment_counts: &'a Buffer,
-    /// A bit for each bin of a strip, where strips have several.
+    /// One bit for each bin of a strip, if strips have several.
     pub seen_bins: Option<&'a Buffer>,
 }
 
@@ -50,7 +50,7 @@ impl Segments {
             b.strip_starts.into(),
             b.face_speeds.into(),
             b.segment_counts.into(),
-            // not read where there are none
+            // not read without bins
             b.seen_bins.unwrap_or(b.frame).into(),
         ];
         self.kernel.record(cmd, &resources, curves);

@@ -1,5 +1,5 @@
-//! Pass `sizes`: where the rows of each v-strip are; rows and segments of the whole trim table, and the dispatches that
-//! follow from them.
+//! Pass `sizes`: the first row of each v-strip, the numbers of rows and segments in the trim table, and the dispatches
+//! that follow from them.
 //!
 //! Reads: `frame`, `strip_starts`, `segment_starts`. Writes: `dispatches`, `strips`, `counters`.
 //! Twin: `src/twin/sizes.rs`.
@@ -18,12 +18,12 @@ pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub strip_starts: &'a Buffer,
     pub segment_starts: &'a Buffer,
-    /// Of passes cross and sort.
+    /// Dispatch arguments of passes `cross` and `sort`.
     pub dispatches: &'a Buffer,
-    /// Where the rows of each are, at its first bin.
+    /// The rows of each strip, stored at its first bin.
     pub strips: &'a Buffer,
     pub counters: &'a Buffer,
-    /// A bit for each bin of a strip, where strips have several.
+    /// One bit for each bin of a strip, if strips have several.
     pub seen_bins: Option<&'a Buffer>,
 }
 
@@ -37,7 +37,7 @@ impl Sizes {
 
     /// One thread for each of `bins`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, bins: u32) {
-        // not read where there are none
+        // not read without bins
         let seen_bins = b.seen_bins.unwrap_or(b.frame);
         let resources = [b.frame, b.strip_starts, b.segment_starts, b.dispatches, b.strips, b.counters, seen_bins];
         let resources = resources.map(Into::into);

@@ -1,12 +1,13 @@
-//! Pass `sort`: each row in order of u, reduced to the places where inside and outside change.
+//! Pass `sort`: sorts each row by u, and reduces it to the places where inside and outside change.
 //!
 //! ```text
 //!   intercepts   ↑  ↑  ↓  ↑  ↓  ↓        winding   0 1 2 1 2 1 0
 //!   flips        |              |        inside    0 1 1 1 1 1 0
 //! ```
 //!
-//! Reads: `frame`, `row_starts`, `row_total`, `row_windings`, `dispatches`. Writes: `rows` (of each its first
-//! flip, and its number of flips twice, 1 more where it begins inside), `intercepts`, `counters`. Twin: `src/twin/sort.rs`.
+//! Reads: `frame`, `row_starts`, `row_total`, `row_windings`, `dispatches`. Writes: `rows` (for each row its first
+//! flip, and its number of flips twice, plus 1 if it starts inside), `intercepts`, `counters`. Twin:
+//! `src/twin/sort.rs`.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, TexelBuffer};
@@ -21,15 +22,15 @@ pub(crate) struct Sort {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub row_starts: &'a TexelBuffer,
-    /// Intercepts of all rows.
+    /// Number of intercepts in all rows.
     pub row_total: &'a Buffer,
     /// Two words a row.
     pub rows: &'a Buffer,
     pub intercepts: &'a Buffer,
     pub counters: &'a Buffer,
-    /// What each row begins with, where strips have several bins.
+    /// The winding number at the start of each row, if strips have several bins.
     pub row_windings: Option<&'a Buffer>,
-    /// Written by pass `sizes`; this pass's is the second.
+    /// Written by pass `sizes`; the second is that of this pass.
     pub dispatches: &'a Buffer,
 }
 

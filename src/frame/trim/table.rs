@@ -1,14 +1,14 @@
-//! The trim table: the u-intercepts of this view, and of others from as far or from near by.
+//! The trim table: the u-intercepts of this view and of all views that the table serves.
 //!
 //! ```text
 //!   cells ──density──▶ strip heights ──lines──(scan)──▶ rows
 //!   curves ──segments──(scan)──▶ chords ──sizes──▶ dispatches
 //!   chords ──cross: count──(scan)──▶ cross: insert──▶ intercepts ──sort──▶ flips of each row
-//!                 ╰──▶ row windings ──carry──▶ what rows begin with ──╯       only where strips have several bins
+//!                 ╰──▶ row windings ──carry──▶ windings at row starts ──╯     only if strips have several bins
 //! ```
 //!
-//! A table is made once and stays until there is a view that it does not serve (`scene::trimmed`), or an edit; `kept.rs` tells
-//! how.
+//! A table stays valid until a view that it does not serve (`scene::trimmed`), or an edit; `src/frame/reuse.rs`
+//! restores it.
 
 use super::{carry, cross, density, lines, segments, sizes, sort};
 use crate::abi::{BORDER_BANDS, BORDER_COLUMNS, Counters, StripRows};
@@ -20,7 +20,7 @@ use crate::scene::SceneData;
 use std::mem::offset_of;
 use std::sync::Arc;
 
-/// Where curves pass in a bin, a bit a cell: `glsl/include/border_cells.glsl`.
+/// The cells of a bin that curves cross, one bit a cell: `glsl/include/border_cells.glsl`.
 pub(crate) type BorderCells = [u8; (BORDER_BANDS * BORDER_COLUMNS / 8) as usize];
 
 /// The passes of the trim table.
@@ -31,7 +31,7 @@ pub(crate) struct Passes {
     sizes: sizes::Sizes,
     cross: cross::Cross,
     sort: sort::Sort,
-    /// `None` where each strip has one bin.
+    /// `None` if each strip has one bin.
     carry: Option<Arc<carry::Carry>>,
 }
 
@@ -44,7 +44,7 @@ impl Passes {
             lines: lines::Lines::new(device, bins)?,
             segments: segments::Segments::new(device, bins)?,
             sizes: sizes::Sizes::new(device, bins)?,
-            // operands ask where curves pass
+            // passes for operands read the cells that curves cross
             cross: cross::Cross::new(device, bins, data.has_operands)?,
             sort: sort::Sort::new(device, bins)?,
             carry: bins.then(|| carry::Carry::new(device)).transpose()?.map(Arc::new),
@@ -52,7 +52,7 @@ impl Passes {
     }
 }
 
-/// The passes, the table, and what leads to it.
+/// The passes, the table, and the buffers from which it is made.
 pub(crate) struct Table {
     passes: Arc<Passes>,
     strip_heights: Buffer,
@@ -63,21 +63,21 @@ pub(crate) struct Table {
     segment_starts: TexelBuffer,
     dispatches: Buffer,
     strips: TexelBuffer,
-    /// While rows are filled how many intercepts each has, a word a row; then of each row its first flip, and its
-    /// number of flips twice, 1 more where it begins inside.
+    /// While rows are filled: the number of intercepts of each, one word a row. Then for each row its first flip, and
+    /// its number of flips twice, plus 1 if it starts inside.
     rows: TexelBuffer,
     row_starts: TexelBuffer,
     row_total: Buffer,
     intercepts: TexelBuffer,
-    /// Of scenes with spline operands: only those ask.
+    /// Written only in scenes with spline operands, whose passes read it.
     border_cells: TexelBuffer,
-    /// `None` where each strip has one bin.
+    /// `None` if each strip has one bin.
     bins: Option<Bins>,
-    /// What was counted when the table was made.
+    /// The counters when the table was made.
     pub counters: Buffer,
 }
 
-/// What strips with several bins need.
+/// The buffers of strips with several bins.
 struct Bins {
     carry: Arc<carry::Carry>,
     seen: Buffer,
@@ -115,26 +115,26 @@ impl Table {
         })
     }
 
-    /// Clears what the passes count.
+    /// Clears the passes' counters.
     pub(crate) fn begin(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         if !frame.keeps_table {
             self.counted().for_each(|buffer| cmd.fill(buffer, 0));
         }
     }
 
-    /// Zero when the frame begins.
+    /// The buffers that are zero when the frame begins.
     fn counted(&self) -> impl Iterator<Item = &Buffer> {
         let of_bins = self.bins.iter().flat_map(|bins| [&bins.seen, &bins.row_windings]);
         let all: [&Buffer; 4] = [&self.strip_heights, &self.face_speeds, &self.rows, &self.border_cells];
         all.into_iter().chain(of_bins)
     }
 
-    /// What the look-up reads, in the order of `glsl/include/trim.glsl`.
+    /// The buffers of the look-up, in the order of `glsl/include/trim.glsl`.
     pub(crate) fn test(&self) -> Vec<Resource<'_>> {
         [&self.strips, &self.rows, &self.intercepts, &self.border_cells].map(Resource::from).to_vec()
     }
 
-    /// Records the passes; what the trim test reads is then ready for it.
+    /// Records the passes, and the barrier before the trim test.
     pub(crate) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let Some(trims) = frame.scene.table() else { return };
         let (s, b, counts) = (frame.scene, &frame.stages.common, frame.counts);

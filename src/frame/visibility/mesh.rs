@@ -5,11 +5,11 @@
 //!                  └── k / 3 ──▶ triangle ──▶ image: mesh instance, triangle;  depth
 //! ```
 //!
-//! A vertex is transformed once for each of its triangles: only so does a pixel learn its triangle
-//! without a geometry shader, which not every device has.
+//! A vertex is transformed once for each of its triangles. Without a geometry shader, which not every device has, a
+//! pixel can get its triangle's number only this way.
 //!
-//! Reads: everything that `Bindings` names. Writes: depth and, in scenes without trims, the visibility
-//! image; else the image `others`, which pass `gap_fill` looks through. Both begin cleared.
+//! Reads: everything that `Bindings` names. Writes: depth and, in scenes without trims, the visibility image; with
+//! trims, the image `others`, which pass `gap_fill` reads. Both begin cleared.
 
 use crate::bindings::Primitives;
 use crate::frame::common::draw::Draw;
@@ -22,19 +22,19 @@ use std::ops::Range;
 
 /// The pass.
 pub(crate) struct Mesh {
-    /// Of meshes that are seen from both sides, and of those that are seen from outside.
+    /// For meshes drawn from both sides, and for meshes drawn from outside only.
     both: Option<Pipeline>,
     outward: Option<Pipeline>,
 }
 
-/// What the scene has, and its volume.
+/// The kinds of meshes in the scene, and its volume.
 #[derive(Clone, Copy)]
 pub(crate) struct Kinds {
-    /// Meshes that are seen from both sides.
+    /// Meshes drawn from both sides.
     pub both: bool,
-    /// Meshes that are seen from outside only.
+    /// Meshes drawn from outside only.
     pub outward: bool,
-    /// The most general kind of surface of the volume that trims the scene, where one does.
+    /// The most general kind of surface of the volume that trims the scene; `None` without one.
     pub volume: Option<u32>,
 }
 
@@ -45,7 +45,7 @@ pub(crate) struct Bindings<'a> {
     pub mesh_instances: &'a Buffer,
     pub triangles: &'a Buffer,
     pub positions: &'a Buffer,
-    /// The volume that trims the scene; `None` where there is none.
+    /// The volume that trims the scene; `None` without one.
     pub volume: Option<Primitives<'a>>,
 }
 
@@ -77,8 +77,8 @@ impl Mesh {
         })
     }
 
-    /// One draw for each of `draws`: a range of corners of the scene's triangles, and the mesh instances
-    /// that show them. Those from `outward` on are seen from outside only.
+    /// One draw for each of `draws`: a range of corners of the scene's triangles, and their mesh instances. Draws from
+    /// `outward` on are drawn from outside only.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,

@@ -1,5 +1,5 @@
-//! What each pixel sees: triangles of meshes, then patches before them. Boolean solids are drawn between the two by a stage
-//! of their own.
+//! The visible surface of each pixel: triangles of meshes, then patches. The stage of Boolean solids draws between the
+//! two.
 
 pub(crate) mod mesh;
 pub(crate) mod patches;
@@ -17,13 +17,13 @@ use std::sync::Arc;
 pub(crate) struct Passes {
     patches: PatchPass,
     mesh: mesh::Mesh,
-    /// The patches without a trim test, to compare with.
+    /// Draws the patches without a trim test, to measure the test.
     #[cfg(feature = "baselines")]
     untested: Option<PatchPass>,
 }
 
 impl Passes {
-    /// `test`: how faces are trimmed, where some are.
+    /// `test`: the trim test; `None` if no face is trimmed.
     pub(super) fn new(device: &Device, data: &SceneData, test: Option<&TrimTest>) -> Result<Self, GpuError> {
         let volume = data.volume.as_ref().and_then(SolidData::kinds);
         let kinds = Kinds {
@@ -49,9 +49,9 @@ impl Passes {
 /// The stage: its passes and images.
 pub(crate) struct Visibility {
     passes: Arc<Passes>,
-    /// Patch instance and (u, v), or what is no patch.
+    /// Patch instance and (u, v); also meshes and solids, if they have no image of their own.
     pub image: Image,
-    /// What is no patch, where gap filling needs it apart.
+    /// Meshes and solids, if gap filling needs them in an image of their own.
     pub others: Option<Image>,
     pub depth: Image,
 }
@@ -65,7 +65,7 @@ impl Visibility {
             vk::ImageUsageFlags::empty()
         };
         let apart = counts.trim.is_some() && (counts.mesh_instances > 0 || counts.leaves > 0);
-        // pixels of them are read back
+        // pixels are read back
         let usage = DRAWN_AND_READ | vk::ImageUsageFlags::TRANSFER_SRC;
         let others = || room.image("visibility of others", VISIBILITY_FORMAT, usage);
         Ok(Self {
@@ -80,12 +80,12 @@ impl Visibility {
         })
     }
 
-    /// Where what is no patch is drawn.
+    /// The image that meshes and solids are drawn into.
     pub(super) fn of_others(&self) -> &Image {
         self.others.as_ref().unwrap_or(&self.image)
     }
 
-    /// The images were read by the frame before; their contents go.
+    /// Discards the images' contents, after the previous frame has read them.
     pub(super) fn begin(&self, cmd: &Commands<'_>) {
         let read = (Access::COMPUTE_READ | Access::FRAGMENT_READ).discarded();
         let others = self.others.iter().map(|image| (image, read, Access::COLOUR_WRITE));
@@ -94,7 +94,7 @@ impl Visibility {
         barrier::images(cmd, &fixed.into_iter().chain(others).collect::<Vec<_>>());
     }
 
-    /// Meshes first: what hides them may be in doubt.
+    /// Draws the meshes. They come first because patches in front of them may lie in gaps.
     pub(super) fn meshes(&self, frame: &Frame<'_>, cmd: &Commands<'_>, m: &MeshBuffers) {
         let bindings = mesh::Bindings {
             frame: frame.constants,
@@ -109,18 +109,18 @@ impl Visibility {
         self.drawn_again(cmd, seen);
     }
 
-    /// Orders what was drawn into `seen` and the depth before what is drawn next.
+    /// A barrier between two drawings into `seen` and the depth.
     pub(super) fn drawn_again(&self, cmd: &Commands<'_>, seen: &Image) {
         let (colour, depth) = (Access::COLOUR_WRITE, Access::DEPTH_WRITE);
         barrier::images(cmd, &[(seen, colour, colour), (&self.depth, depth, depth)]);
     }
 
-    /// The patches, with the trim test of the scene. `again`: over what was drawn before.
+    /// Draws the patches, with the trim test of the scene. `again`: over an earlier drawing of this frame.
     pub(super) fn patches(&self, frame: &Frame<'_>, cmd: &Commands<'_>, test: &[Resource<'_>], again: bool) {
         self.patches_by(&self.passes.patches, frame, cmd, (test, again));
     }
 
-    /// The patches without a test, into images that are cleared again: for what tests cost.
+    /// Draws the patches without a test, into images that are cleared afterwards, to measure the test.
     #[cfg(feature = "baselines")]
     pub(super) fn untested(&self, frame: &Frame<'_>, cmd: &Commands<'_>, times: &mut super::Scopes<'_>) {
         let Some(pass) = &self.passes.untested else { return };

@@ -6,8 +6,8 @@
 //!        trimmed  frag  trim test of one way          ▶ item, (u, v)   depth, depths of skirts
 //! ```
 //!
-//! Reads: everything that `Bindings` names but the images. Writes: the visibility image and depth
-//! (reversed: 1 at the near plane), which begin cleared or with what is no patch; `border_depths`, cleared before.
+//! Reads: everything that `Bindings` names except the images. Writes: the visibility image and depth (reversed: 1 at
+//! the near plane), which begin cleared or with meshes and solids; `border_depths`, cleared before.
 
 use crate::abi::Counters;
 use crate::bindings::{Placed, Primitives};
@@ -25,26 +25,26 @@ pub(crate) const VISIBILITY_FORMAT: vk::Format = vk::Format::R32G32_UINT;
 /// Format of the pass's own depth image.
 pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
-/// The pass: a pipeline for each kind of patch that the scene has.
+/// The pass: one pipeline for each kind of patch in the scene.
 pub(crate) struct Visibility {
     plain: Option<Pipeline>,
     trimmed: Option<Pipeline>,
 }
 
-/// What the scene asks of the pass.
+/// The kinds of patches in the scene.
 #[derive(Clone, Copy)]
 pub(crate) struct Kinds<'a> {
     pub rational: bool,
     pub plain: bool,
     /// Faces share sides.
     pub linked: bool,
-    /// How faces are trimmed, where some are.
+    /// The trim test; `None` if no face is trimmed.
     pub trimmed: Option<&'a TrimTest>,
     /// Some strip of the trim table has several bins.
     pub bins: bool,
-    /// Some patches bound operands of Boolean solids: they are not drawn here.
+    /// Some patches belong to operands of Boolean solids and are not drawn here.
     pub operands: bool,
-    /// A volume trims the scene; its most general kind of surface.
+    /// The most general kind of surface of the volume that trims the scene; `None` without one.
     pub volume: Option<u32>,
 }
 
@@ -57,11 +57,11 @@ pub(crate) struct Bindings<'a> {
     pub instances: &'a TexelBuffer,
     /// The nearest depth of a border; in scenes with trims only.
     pub border_depths: Option<&'a Image>,
-    /// What the trim test reads, in its order.
+    /// The trim test's resources, in its order.
     pub trim: &'a [Resource<'a>],
-    /// The volume that trims the scene; `None` where there is none.
+    /// The volume that trims the scene; `None` without one.
     pub volume: Option<Primitives<'a>>,
-    /// Sides that faces share; in scenes where they do.
+    /// Sides that faces share; `None` without any.
     pub links: Option<&'a Buffer>,
     pub draws: &'a Buffer,
     pub counters: &'a Buffer,

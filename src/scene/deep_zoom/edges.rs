@@ -1,9 +1,9 @@
-//! Edges as a cut sees them: halved in `f64` until each piece is no larger than a window, each about its own centre.
+//! Edges of a cut: halved in `f64` until each piece is no larger than a window, and stored relative to its own centre.
 //!
 //! ```text
 //!   edge of the whole model ─▶ outside the view? left out ─▶ wider than a window? halved ─▶ a piece with its own placement
 //! ```
-//!
+//! Edges refer to faces by their numbers in the whole model, so all windows of a face count as that face.
 //! Own faces have the numbers of the whole model's, so windows of one face are one face to an edge.
 
 use super::{Cut, MOST_DEPTH, Sight, WINDOW_PX};
@@ -17,7 +17,7 @@ use glam::{DAffine3, DVec4};
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-/// The edges of a model's parts, found when they are first asked for; what a cut shows does not depend on that.
+/// The edges of a model's parts, found at the first request.
 #[derive(Clone, Debug, Default)]
 pub(in crate::scene) struct KnownEdges(Arc<OnceLock<Result<Vec<Edges>, UndrawnEdges>>>);
 
@@ -28,7 +28,7 @@ impl PartialEq for KnownEdges {
 }
 
 impl KnownEdges {
-    /// The given edges, one entry a part.
+    /// Edges that are known already, one entry a part.
     pub(in crate::scene) fn found(edges: Vec<Edges>) -> Self {
         Self(Arc::new(OnceLock::from(Ok(edges))))
     }
@@ -43,13 +43,13 @@ impl KnownEdges {
     }
 }
 
-/// Before each number the sum of those before it, which begins with `first`.
+/// The sums of all earlier numbers, starting at `first`.
 fn sums(numbers: impl Iterator<Item = usize>, first: usize) -> Vec<usize> {
     let before = |sum: &mut usize, n: usize| Some(std::mem::replace(sum, *sum + n));
     numbers.scan(first, before).collect()
 }
 
-/// Pieces of a curve that the view sees, none larger than a window.
+/// The pieces of a curve in the view, none larger than a window.
 fn halve(piece: &Bezier<DVec4>, sight: &Sight, depth: u32, pieces: &mut Vec<Bezier<DVec4>>) {
     let bounds = piece.points.iter().fold(Bounds::EMPTY, |all, p| all.with(p.point()));
     let Some(pixels) = sight.of_box((bounds.min, bounds.max)) else { return };
@@ -62,7 +62,7 @@ fn halve(piece: &Bezier<DVec4>, sight: &Sight, depth: u32, pieces: &mut Vec<Bezi
 }
 
 impl Cut {
-    /// Part and instance of the whole model, from 1 on, that an instance of the cut is from.
+    /// Part and instance of the whole model, from 1 on, to which an instance of the cut belongs.
     pub(in crate::scene) fn source_of(&self, instance: usize, whole: &Model) -> [u32; 2] {
         let instance = self.sources[instance].instance;
         [whole.instances[instance].part as u32 + 1, instance as u32 + 1]
@@ -70,7 +70,7 @@ impl Cut {
 }
 
 impl SceneData {
-    /// Finds the edges of the model that the cut is of.
+    /// Finds the edges of the model from which the cut was made.
     pub(crate) fn find_edges_of_cut(
         &mut self,
         whole: &Model,
@@ -81,7 +81,7 @@ impl SceneData {
         let first_faces = sums(whole.parts.iter().map(|part| part.faces.len()), 0);
         let numbers = sums(edges.iter().map(|e| e.edges.len() + e.of_meshes.len()), 1);
         let mut data = EdgeData::new(settings, self.faces.len(), cut.edges.clone());
-        // of each instance that is seen: the cut's part that has its meshes
+        // for each visible instance: the part of the cut with its meshes
         let mut seen: BTreeMap<usize, Option<usize>> = BTreeMap::new();
         for (nth, (source, &(_, first))) in cut.sources.iter().zip(&self.parts).enumerate() {
             let part = whole.instances[source.instance].part;

@@ -1,9 +1,9 @@
-//! A trim loop as a window sees it.
+//! A trim loop restricted to a window.
 //!
 //! ```text
-//!        ╭────────╮                        what lies on one side of the window goes along a chord, moved to
-//!    ╭───╯  ┌──┐  │         ┌──────┐       a frame about it; that changes no winding number within:
-//!    │   ───┼╮ │  │  ─────▶ │ ┌──┐ │       curve, chord and moved chord lie in the same half plane
+//!        ╭────────╮                        curves on one side of the window become a chord on a frame around it;
+//!    ╭───╯  ┌──┐  │         ┌──────┐       winding numbers within stay the same: curve, chord and moved chord lie
+//!    │   ───┼╮ │  │  ─────▶ │ ┌──┐ │       in the same half plane
 //!    ╰──────┴┴─┴──╯         ├─┼╮ │ │
 //!           window          └─┴┴─┴─┘
 //! ```
@@ -12,13 +12,13 @@ use crate::model::TrimLoop;
 use crate::spline::{Bezier, Control};
 use glam::{DVec2, DVec3};
 
-/// The frame lies so many of the window's widths outside.
+/// Distance from the window to the frame, in widths of the window.
 const FRAME: f64 = 1.0;
-/// Halvings of a curve: parameters end there.
+/// Most halvings of a curve: `f64` parameters resolve no more.
 const MOST_DEPTH: u32 = 52;
 
-/// The loop as seen from the rectangle `lo..hi`: the same curves within, the same winding numbers there, no points farther
-/// away than its width. `None` where nothing is left of it.
+/// The loop for the rectangle `lo..hi`: the same curves and winding numbers within, no point farther away than its
+/// width. `None` if no curve is left.
 pub(super) fn clipped(trim_loop: &TrimLoop, lo: DVec2, hi: DVec2) -> Option<TrimLoop> {
     let reach = (hi - lo) * FRAME;
     let mut clip = Clip { lo, hi, frame: (lo - reach, hi + reach), run: None, curves: Vec::new() };
@@ -27,7 +27,7 @@ pub(super) fn clipped(trim_loop: &TrimLoop, lo: DVec2, hi: DVec2) -> Option<Trim
     if clip.curves.is_empty() {
         return None;
     }
-    // both ends of a joint were moved alike, but for rounding; the whole loop is right too, only less exact
+    // both ends of a joint were moved alike, except for rounding; the whole loop is correct too, only less exact
     Some(TrimLoop::new(clip.curves, (hi - lo) * 1e-6).unwrap_or_else(|_| trim_loop.clone()))
 }
 
@@ -35,7 +35,7 @@ struct Clip {
     lo: DVec2,
     hi: DVec2,
     frame: (DVec2, DVec2),
-    /// Where a run of curves on the same side began, where it is, and on which sides all of it lies.
+    /// The run of curves on the same side: its start, its end, and a bit for each side on which all of it lies.
     run: Option<(DVec2, DVec2, u32)>,
     curves: Vec<Bezier<DVec3>>,
 }

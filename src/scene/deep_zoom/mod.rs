@@ -1,4 +1,4 @@
-//! Deep zoom: what a view sees of a model, cut out in `f64` so that single precision resolves it.
+//! Deep zoom: cuts the visible part out of a model in `f64`, so that single precision resolves it.
 //!
 //! ```text
 //!   face, its patches              the view sees          a part each, about its own centre
@@ -9,16 +9,17 @@
 //!   └──────┴──────┴──────┘         └────────┘  pixels wide
 //! ```
 //!
-//! Control points are single-precision numbers relative to their part's centre, (u, v) to their face's domain: both
-//! resolve 2⁻²⁴ of what they span. A face that spans so many pixels that this shows is replaced by *windows* of at most
-//! [`WINDOW_PX`] pixels, each a face of a part of its own with the face's number, colour and sense. Only windows that
-//! the view sees are made, so memory follows the view, not the zoom. Windows overlap by a margin: next to each other
-//! they show the same surface, and no crack between them. Everything else that is seen stays as it is.
+//! Control points are single-precision numbers relative to their part's centre; (u, v) is relative to the face's
+//! domain. Both resolve 2⁻²⁴ of their range. If a face covers so many pixels that this error shows, *windows* of at
+//! most [`WINDOW_PX`] pixels replace it. Each window is a face of a part of its own, with the face's number, colour and
+//! sense. Only visible windows are made, so memory follows the view, not the zoom. Windows overlap by a margin:
+//! adjacent windows show the same surface, without a crack. All other visible faces stay as they are.
 //!
-//! What is cut is what a camera sees that serves all views from near by (`scene/view_cell.rs`): while a view hardly changes,
-//! nothing is made or uploaded. What is seen through is not cut: a ray is followed through all of it.
+//! The cut is made for the camera of a view cell (`scene/view_cell.rs`), which serves every view in that cell: while
+//! the view hardly changes, nothing is made or uploaded. Transparent parts are not cut, because rays are followed
+//! through all of them.
 //!
-//! Cost: a face's patches are cut once and kept; a view costs some 50 µs a window and patch near it.
+//! Cost: a face's patches are cut once and stored; a view costs some 50 µs for each window and each patch near it.
 
 mod edges;
 mod loops;
@@ -33,84 +34,98 @@ use crate::spline::{Patch, PatchGrid};
 use crate::trim::{LoopIndex, RectSide};
 pub(super) use edges::KnownEdges;
 use glam::{DMat4, DVec2, DVec3, DVec4};
+use std::ops::Range;
 
-/// A part of half a diagonal of more pixels than this is cut. Rounding of its points, some 4 units of 2⁻²⁴, is then
-/// 1/128 pixel, a fifth of what the tessellation may be off by; and a face's 8 v-strips need half of the scan lines that
-/// they can have.
+/// A part is cut if half its diagonal is longer than this, in pixels. At this size, rounding moves its points by some 4
+/// units of 2⁻²⁴, or 1/128 pixel: a fifth of the tessellation's deviation. A face's 8 v-strips then need half of the
+/// scan lines that they can have.
 const MOST_PX: f64 = 32_768.0;
-/// Windows are this large at most: (u, v) within one is stored with 2⁻¹⁶, from where Newton's method starts.
+/// Largest size of a window: (u, v) in it is stored with 2⁻¹⁶, close enough for Newton's method to start from.
 const WINDOW_PX: f64 = 8_192.0;
-/// Of a window's width, on each side, but no more than [`MARGIN_PX`] of its diagonal: what lies in margins is drawn twice.
+/// Margin on each side, as a share of a window's width, but at most [`MARGIN_PX`] of its diagonal. Surfaces in margins
+/// are drawn twice.
 const MARGIN: f64 = 1.0 / 16.0;
 const MARGIN_PX: f64 = 64.0;
-/// Beyond the picture, in pixels.
+/// Pixels beyond the picture in which windows are made, too.
 const BESIDE_PX: f64 = 4.0;
-/// A view with more windows gets the last ones larger; the frame then counts clamps where they do not suffice.
+/// Most windows of a view. The last ones become larger if there would be more; the frame counts a clamp where one is
+/// too large.
 const MOST_WINDOWS: usize = 4096;
-/// Halvings of a patch; 2⁻⁴⁵ is where `f64` parameters end too.
+/// Most halvings of a patch: `f64` parameters end at 2⁻⁴⁵, too.
 const MOST_DEPTH: u32 = 90;
 
-/// Cuts what views see out of one model. Keeps the patches of faces that were seen close up.
+/// Makes the cuts of one model for its views. Stores the patches of faces that a view has shown close up.
 #[derive(Debug)]
 pub(crate) struct DeepZoom {
-    /// Of each part, of each face.
+    /// Every face of every part.
     faces: Vec<Vec<Known>>,
-    /// Of each part, meshes included; and of the solids.
+    /// Bounds of each part with its meshes, and of the solids.
     bounds: Vec<Bounds>,
     solids: Bounds,
     edges: KnownEdges,
-    /// What was told last; `None`: nothing that holds.
+    /// What the last view uploaded; `None` if that upload failed.
     held: Option<Held>,
 }
 
-/// What a view wants uploaded.
+/// What a view needs uploaded.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum DeepZoomUpload {
-    /// What was wanted last serves this view, too; at first that is the model as it is.
+    /// Nothing: the last upload serves this view, too.
     Same,
-    /// The model as it is.
+    /// The whole model.
     Whole,
-    /// This in its place.
+    /// This cut in place of the last upload.
     Cut(Box<Cut>),
 }
 
-/// What views from near by see of a model.
+/// The cut of a model for one view cell.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cut {
-    /// Faces that are seen, or windows of them.
+    /// The visible faces, or windows of them.
     pub(crate) model: Model,
-    /// Of each of its parts: how large is what its views would show, were they [`VIEW_PX`] wide. Units of the part.
+    /// For each of its parts: the extent of a picture [`VIEW_PX`] wide, in units of the part.
     pub(super) extents: Vec<f64>,
-    /// Of each of its parts, where it is from.
+    /// For each of its parts: the instance and faces that it comes from.
     pub(super) sources: Vec<Source>,
-    /// What all views that it serves see is seen by this camera.
+    /// The camera of the view cell. It sees everything that the cell's views see.
     pub(super) camera: Camera,
-    /// The edges of the whole model, once somebody asks.
+    /// The edges of the whole model, found at the first request.
     pub(super) edges: KnownEdges,
 }
 
-/// Where a part of a cut is from.
+/// The origin of a part of a cut.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Source {
-    /// Of the whole model.
+    /// Instance of the whole model.
     pub instance: usize,
-    /// Its faces, of the instance's part.
+    /// Faces of that instance's part.
     pub faces: Vec<usize>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Held {
     Whole,
-    /// What this camera sees.
+    /// A cut for this camera.
     Cut(Camera),
 }
 
-/// What is known of a face.
+/// A face, its bounds, and its patches once they are cut.
 #[derive(Debug)]
 struct Known {
-    /// Of the control points.
+    /// Bounds of the control points.
     bounds: (DVec3, DVec3),
     cut: Option<(PatchGrid, LoopIndex)>,
+}
+
+/// Of each face of a part: nothing but its control points has been looked at.
+fn known(part: &Part) -> Vec<Known> {
+    part.faces.iter().map(|face| Known { bounds: face.surface.bounds(), cut: None }).collect()
+}
+
+/// Around the Boolean solids that have an end.
+fn bounds_of_solids(model: &Model) -> Bounds {
+    let solids = model.solids.iter().map(Solid::bounds).filter(|b| b.min.is_finite() && b.max.is_finite());
+    solids.fold(Bounds::EMPTY, Bounds::union)
 }
 
 /// One instance seen by the camera.
@@ -125,7 +140,7 @@ struct Sight {
 }
 
 impl Cut {
-    /// Of a part of it and a face of that: the face of the whole model's part.
+    /// The face, in the whole model's part, of a face of one of the cut's parts.
     pub(crate) fn face_of(&self, part: usize, face: usize) -> usize {
         self.sources[part].faces[face]
     }
@@ -144,7 +159,7 @@ impl Sight {
         }
     }
 
-    /// Pixels per part unit where the box is seen nearest; `None` where nothing of it is.
+    /// Pixels per part unit at the nearest visible point of the box; `None` if the box is not visible.
     fn of_box(&self, (min, max): (DVec3, DVec3)) -> Option<f64> {
         let (mut outside, mut nearest) = (63u32, f64::INFINITY);
         for corner in (Bounds { min, max }).corners() {
@@ -165,13 +180,13 @@ impl Sight {
         (outside == 0).then(|| self.pixels / w)
     }
 
-    /// The same by the box around a patch, as pass `bound` sees it: its hull may stay farther away.
+    /// The same for a patch, by its box as in pass `bound`: its convex hull may be farther away.
     fn of_patch(&self, patch: &Patch) -> Option<f64> {
         self.of_box(patch.bounds())
     }
 }
 
-/// What is seen of one placed part: its faces, and whether each is too close to be drawn as it is.
+/// The visible faces of one placed part, and whether each is too close to be drawn as it is.
 struct Seen {
     placed: usize,
     sight: Sight,
@@ -192,7 +207,7 @@ struct Window {
 }
 
 impl Window {
-    /// With a margin of that share of its width on each side.
+    /// The window with a margin of this share of its width on each side.
     fn wider(self, share: f64) -> Self {
         let wider = |(a, b): (f64, f64)| (a - (b - a) * share, b + (b - a) * share);
         Self { u: wider(self.u), v: wider(self.v) }
@@ -200,24 +215,39 @@ impl Window {
 }
 
 impl DeepZoom {
-    /// Of a model that has been uploaded as it is. Looks at nothing but control points.
+    /// For a model that is uploaded as a whole. Reads only the control points.
     pub(crate) fn new(model: &Model) -> Self {
-        let known = |face: &Face| Known { bounds: face.surface.bounds(), cut: None };
-        let faces = model.parts.iter().map(|part| part.faces.iter().map(known).collect()).collect();
-        let solids = model.solids.iter().map(Solid::bounds).filter(|b| b.min.is_finite() && b.max.is_finite());
+        let faces = model.parts.iter().map(known).collect();
         Self {
             faces,
             bounds: model.parts.iter().map(Part::control_bounds).collect(),
-            solids: solids.fold(Bounds::EMPTY, Bounds::union),
+            solids: bounds_of_solids(model),
             edges: KnownEdges::default(),
             held: Some(Held::Whole),
         }
     }
 
-    /// What to upload for this view of `model`, in place of what was told last. Its parts are those of the model that this
-    /// was made for, and so are their loops; its instances are as many, and shown like this.
+    /// These parts of the model, and its Boolean solids, are others now; or the model's last parts are gone.
+    pub(crate) fn change(&mut self, model: &Model, parts: Range<usize>) {
+        self.faces.resize_with(model.parts.len(), Vec::new);
+        self.bounds.resize(model.parts.len(), Bounds::EMPTY);
+        for (number, part) in parts.clone().zip(model.parts.get(parts).into_iter().flatten()) {
+            self.faces[number] = known(part);
+            self.bounds[number] = part.control_bounds();
+        }
+        self.solids = bounds_of_solids(model);
+        self.edges = KnownEdges::default();
+    }
+
+    /// The model is loaded as it is.
+    pub(crate) fn hold_whole(&mut self) {
+        self.held = Some(Held::Whole);
+    }
+
+    /// What to upload for this view of `model`, in place of the last upload. The model must have the parts and loops
+    /// that this was made for. It has the same number of instances, drawn as `shown` says.
     ///
-    /// Cost where that serves this view, too: some 0.2 µs an instance; and a placed face, where one may be close.
+    /// Cost if the last upload still serves: some 0.2 µs an instance, and as much a placed face if one may be close.
     pub(crate) fn of(&mut self, model: &Model, shown: &[Shown], camera: &Camera) -> DeepZoomUpload {
         let seen = if self.may_be_close(model, shown, camera) { self.seen(model, shown, camera) } else { Vec::new() };
         if !seen.iter().any(Seen::is_close) {
@@ -248,12 +278,12 @@ impl DeepZoom {
         DeepZoomUpload::Cut(Box::new(near))
     }
 
-    /// What was told last was not uploaded: the next view is told again.
+    /// The last upload failed: the next view uploads again.
     pub(crate) fn forget(&mut self) {
         self.held = None;
     }
 
-    /// Around what is shown of the model.
+    /// A ball around the visible instances.
     fn ball(&self, model: &Model, shown: &[Shown]) -> Option<Ball> {
         let visible = model.instances.iter().zip(shown).filter(|(_, shown)| shown.visible);
         let bounds = visible.map(|(instance, _)| (self.bounds[instance.part], instance));
@@ -261,7 +291,7 @@ impl DeepZoom {
         Ball::around(placed.fold(self.solids, Bounds::union))
     }
 
-    /// False where no face is: each lies in the box of its part.
+    /// False if no face is close: each face lies in its part's box.
     fn may_be_close(&self, model: &Model, shown: &[Shown], camera: &Camera) -> bool {
         model.instances.iter().zip(shown).filter(|(_, shown)| shown.visible).any(|(instance, _)| {
             let bounds = self.bounds[instance.part];
@@ -270,14 +300,14 @@ impl DeepZoom {
         })
     }
 
-    /// What a camera sees of each placed part.
+    /// The faces of each placed part that a camera sees.
     fn seen(&mut self, model: &Model, shown: &[Shown], camera: &Camera) -> Vec<Seen> {
         let spans: Vec<f64> = self.faces.iter().map(|faces| span(faces)).collect();
         let coarse = |(placed, instance): (usize, &Instance)| {
             let sight = Sight::new(camera, instance);
             let faces = self.faces[instance.part].iter().enumerate();
             let span = spans[instance.part];
-            // what is seen through is followed through all of it
+            // rays are followed through all of a transparent part
             let part = &model.parts[instance.part];
             let whole = part.closed && !instance.is_opaque(part);
             let close = |k: &Known| sight.of_box(k.bounds).map(|pixels| pixels * span > MOST_PX);
@@ -301,7 +331,8 @@ impl DeepZoom {
         all
     }
 
-    /// Boxes that hold what is seen, in the model's coordinates; of what is close, no larger than they are far from the eye.
+    /// Boxes around the visible faces, in model coordinates. Boxes of close faces are no larger than their distance
+    /// from the eye.
     fn boxes(&mut self, model: &Model, seen: &Seen, eye: DVec3) -> Vec<Bounds> {
         let instance = &model.instances[seen.placed];
         let mut boxes = Vec::new();
@@ -319,7 +350,7 @@ impl DeepZoom {
         boxes
     }
 
-    /// What is seen of one placed part: its faces as they are, and windows of those that are `close`.
+    /// Adds one placed part to the cut: its faces as they are, and windows of the close ones.
     fn add(&mut self, near: &mut Cut, part: &Part, instance: &Instance, seen: &Seen) {
         let Seen { sight, faces, .. } = seen;
         let numbers: Vec<usize> = faces.iter().filter(|(_, close)| !close).map(|(f, _)| *f).collect();
@@ -352,7 +383,7 @@ impl DeepZoom {
     }
 }
 
-/// The largest distance from the middle of the faces' control points.
+/// Half the diagonal of the box around the faces' control points.
 fn span(faces: &[Known]) -> f64 {
     let all = faces.iter().map(|f| f.bounds).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
     all.map_or(0.0, |(lo, hi)| (hi - lo).length() / 2.0)
@@ -364,13 +395,13 @@ impl Known {
     }
 }
 
-/// A box of part coordinates as it is placed.
+/// A placed box of part coordinates, in model coordinates.
 fn placed((min, max): (DVec3, DVec3), instance: &Instance) -> Bounds {
     let corners = Bounds { min, max }.corners().map(|corner| instance.transform.transform_point3(corner));
     corners.into_iter().fold(Bounds::EMPTY, Bounds::with)
 }
 
-/// Boxes around what is seen of a patch, none larger than it is far from the eye.
+/// Boxes around the visible pieces of a patch, none larger than its distance from the eye.
 fn near_boxes(patch: &Patch, sight: &Sight, at: (&Instance, DVec3), depth: u32, boxes: &mut Vec<Bounds>) {
     if sight.of_patch(patch).is_none() {
         return;
@@ -387,7 +418,7 @@ fn near_boxes(patch: &Patch, sight: &Sight, at: (&Instance, DVec3), depth: u32, 
     near_boxes(&b, sight, at, depth - 1, boxes);
 }
 
-/// By its control net.
+/// Whether the control net is longer along u than along v.
 fn is_longer_along_u(patch: &Patch) -> bool {
     let length = |points: &mut dyn Iterator<Item = DVec3>| {
         let first = points.next();
@@ -400,8 +431,8 @@ fn is_longer_along_u(patch: &Patch) -> bool {
     rows.fold(0.0, f64::max) >= columns.fold(0.0, f64::max)
 }
 
-/// Halves what is seen of `patch`, which is `window` of its face, until it is small enough. Windows with their margins, and
-/// pixels per unit of each.
+/// Halves the visible part of `patch`, which covers `window` of its face, until the pieces are small enough. Collects
+/// windows with their margins, and the pixels per unit of each.
 fn halve(patch: &Patch, window: Window, sight: &Sight, depth: u32, windows: &mut Vec<(Window, f64)>) {
     let Some(pixels) = sight.of_patch(patch) else { return };
     let (lo, hi) = patch.bounds();
@@ -421,8 +452,8 @@ fn halve(patch: &Patch, window: Window, sight: &Sight, depth: u32, windows: &mut
     halve(&b, high, sight, depth - 1, windows);
 }
 
-/// The face over a window, `None` where it is trimmed away; all of it where the window is so small that knots no longer
-/// differ.
+/// The face over a window; `None` if it is trimmed away. The whole face if the window is so small that its knots
+/// coincide.
 fn window_face(face: &Face, grid: &PatchGrid, index: &LoopIndex, window: Window) -> Option<Face> {
     let ((u0, u1), (v0, v1)) = face.surface.domain();
     let u = (window.u.0.max(u0), window.u.1.min(u1));

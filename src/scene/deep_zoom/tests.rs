@@ -4,7 +4,7 @@ use crate::model::{Projection, SurfaceKind};
 use crate::spline::{Bezier, Control, Surface};
 use glam::DAffine3;
 
-/// Three cubic curves around, from random points.
+/// A loop of three cubic curves with random control points.
 fn random_loop(r: &mut Random) -> TrimLoop {
     let mut point = || DVec3::from_point(DVec2::new(r.range(-1.0, 2.0), r.range(-1.0, 2.0)), r.range(0.5, 2.0));
     let mut points: Vec<DVec3> = (0..9).map(|_| point()).collect();
@@ -47,7 +47,7 @@ fn a_clipped_loop_winds_alike_in_the_window() {
     assert!(crossed > 150 && odd > 3000, "{crossed} windows are crossed, {odd} points are inside");
 }
 
-/// Quadratic and cubic, four by two patches, with a hole.
+/// A quadratic-by-cubic surface of four by two patches, with a hole.
 fn wavy() -> Model {
     let points = (0..5).flat_map(|j| (0..6).map(move |i| (f64::from(i), f64::from(j))));
     let points = points.map(|(x, y)| DVec4::new(x, y, (x * 1.7).sin() + (y * 2.3).cos(), 1.0)).collect();
@@ -72,7 +72,7 @@ fn wavy() -> Model {
     }
 }
 
-/// Looks at the point of (u, v) from `distance`.
+/// A camera that looks at the point at (u, v) from `distance`.
 fn camera(model: &Model, uv: DVec2, distance: f64) -> Camera {
     let target = model.instances[0].transform.transform_point3(model.parts[0].faces[0].surface.jet(uv.x, uv.y).point);
     Camera {
@@ -94,7 +94,7 @@ fn an_ordinary_view_keeps_the_model() {
     );
 }
 
-/// At (u, v) in the picture there is a window, small enough, and its surface is the face's; windows stay few.
+/// At (u, v) in the picture lies a small enough window whose surface is the face's, and the windows are few.
 #[test]
 fn windows_cover_what_is_seen() {
     let model = wavy();
@@ -140,7 +140,7 @@ fn windows_cover_what_is_seen() {
     }
 }
 
-/// Where windows meet, each reaches into the others, by little of its width: what is in several is drawn by all.
+/// Adjacent windows overlap by a small share of their width; all of them draw the overlap.
 #[test]
 fn windows_overlap_by_little() {
     let model = wavy();
@@ -160,7 +160,8 @@ fn windows_overlap_by_little() {
     }
 }
 
-/// A close view that moves by a pixel keeps what was cut, unless a cell of eyes or axes ends there; what is cut serves it.
+/// A close view that moves by a pixel reuses the cut, unless it leaves its cell of eyes or axes. The cut serves the new
+/// view.
 #[test]
 fn a_view_that_hardly_moves_keeps_what_was_cut() {
     let model = wavy();
@@ -168,7 +169,7 @@ fn a_view_that_hardly_moves_keeps_what_was_cut() {
     let whole = camera(&model, DVec2::splat(0.5), 10.0);
     let start = camera(&model, DVec2::new(0.45, 0.2), 1e-3);
     assert_eq!(deep_zoom.of(&model, &all_of(&model), &whole), DeepZoomUpload::Same);
-    let mut told = [0; 2]; // that serves, too; cut anew
+    let mut told = [0; 2]; // views that the last cut serves; views with a new cut
     for step in 0..100 {
         let by = DVec3::new(1.0, 0.5, 0.0) * 1e-3 * 0.6 / 600.0 * f64::from(step);
         let moved = Camera { eye: start.eye + by, target: start.target + by, ..start };

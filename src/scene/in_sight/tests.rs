@@ -1,4 +1,4 @@
-//! What is left out is nowhere in the picture, and what may be seen is not left out: against pass `bound`, patch by
+//! Culled parts are nowhere in the picture, and visible parts are not culled: compared with pass `bound`, patch by
 //! patch.
 
 use super::*;
@@ -18,8 +18,7 @@ fn hill() -> Model {
     placed(vec![untrimmed(Surface::new((2, 2), knots(), knots(), points.collect()).unwrap())], DAffine3::IDENTITY)
 }
 
-/// Some thousand hills of all sizes, around the eye and beside the picture, before the near plane and behind the far
-/// one.
+/// Some thousand hills of all sizes: around the eye, beside the picture, before the near plane and behind the far one.
 fn hills(random: &mut Random) -> Model {
     let mut model = hill();
     model.instances = (0..3000)
@@ -69,8 +68,8 @@ fn what_is_left_out_pass_bound_would_leave_out() {
         assert_eq!(told.iter().filter(|told| **told).count(), in_sight.items as usize, "each item once");
         let lost = taus.iter().zip(&told).filter(|(tau, told)| **tau != 0 && !**told).count();
         assert_eq!(lost, 0, "of {} in sight", in_sight.items);
-        // and the margins are thin: of what is smaller than the hill itself, a part is in sight where one of its
-        // patches is, and seldom else; of a hill around the eye the box is in sight, and perhaps no patch
+        // the margins are thin: a hill that does not surround the eye is seldom in sight without a patch in sight; a
+        // hill around the eye may be
         let of_part = case.data.boxes[0].count as usize;
         let is_small = |n: usize| case.data.placements[n].matrix3.determinant().abs() < 1000.0;
         let seen = |of_part: &[u32]| of_part.iter().any(|tau| *tau != 0);

@@ -1,4 +1,4 @@
-//! Which sides are linked, by hand and all around closed surfaces.
+//! Which sides are linked: small cases by hand, and closed surfaces all around.
 
 use super::super::SceneData;
 use super::*;
@@ -21,7 +21,7 @@ fn scene(surfaces: Vec<Surface>) -> SceneData {
         .unwrap()
 }
 
-/// The sides of the ring of a side, from it on.
+/// The sides of a side's link, starting with itself.
 fn ring(data: &SceneData, side: u32) -> Vec<u32> {
     let mut all = vec![side];
     while let Some(&last) = all.last() {
@@ -47,7 +47,8 @@ fn point(mut net: Vec<Point>, t: f64) -> DVec3 {
     DVec3::new(x, y, z) / w
 }
 
-/// As `linked_point` of `glsl/include/link.glsl`: whose piece of the ring's curve it is at `x` along a side, and where.
+/// As `linked_point` of `glsl/include/link.glsl`: the owner of the link's curve at `x` along a side, and the parameter
+/// there.
 fn of_owner(data: &SceneData, side: u32, x: f64) -> (u32, f64) {
     let of = |side: u32| {
         let place = data.links[side as usize].place;
@@ -63,7 +64,7 @@ fn of_owner(data: &SceneData, side: u32, x: f64) -> (u32, f64) {
     owners.min_by(|a, b| a.0.cmp(&b.0)).expect("every piece has an owner")
 }
 
-/// Squares side by side, in all eight ways to lay their parameters.
+/// Squares side by side, for all eight orientations of their parameters.
 #[test]
 fn a_side_is_found_however_its_neighbour_lies() {
     let one = || patch(2, 2, |u, v| DVec3::new(u - 1.0, v, 0.05 * v * v));
@@ -128,12 +129,12 @@ fn what_shares_no_side_has_no_links() {
     let plate = |z: f64| patch(1, 1, move |u, v| DVec3::new(u, v, z));
     assert!(scene(vec![plate(0.0)]).links.is_empty());
     assert!(scene(vec![plate(0.0), plate(1.0)]).links.is_empty());
-    // another degree: the same points, other control points
+    // another degree: the points are the same, the control points are not
     let square = |degree: usize| patch(degree, degree, |u, v| DVec3::new(u * degree as f64 - 1.0, v, 0.0));
     assert!(scene(vec![square(1), square(2)]).links.is_empty());
 }
 
-/// Sides of a model's first part that are shared, all of them: no border is left over.
+/// Number of shared sides of a model's first part. Asserts that no border is left over.
 fn linked_all_round(name: &str, model: &Model) -> (usize, u32) {
     let data = SceneData::new(model, SceneSettings::default()).unwrap();
     let size = data.points.iter().flatten().fold(0.0f32, |m, x| m.max(x.abs()));

@@ -1,4 +1,4 @@
-//! What way `blister` needs beside the leaves: labels for their Blist, and the order in which they are drawn.
+//! The data of way `blister` in addition to the leaves: labels for their Blist, and the order in which they are drawn.
 //!
 //! ```text
 //!   expression ─positive, fewest labels─▶ Blist ─▶ Switch: leaf, name, next when within, next when not
@@ -11,7 +11,7 @@ use crate::csg::{Blist, Convention, Labels, Tree, TreeError, covering_set};
 use crate::model::{Bounds, Camera, Primitive, outward};
 use std::ops::Range;
 
-/// Who is asked.
+/// The primitive that a switch tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Asked {
     /// The leaf at this place of [`Blister::order`].
@@ -20,7 +20,7 @@ pub(crate) enum Asked {
     Shell(u32),
 }
 
-/// One step of the walk: pixels at label `name` go on to `within` when their point is within the primitive, else to
+/// One step of the walk. Pixels with label `name` get label `within` if their point is inside the primitive, else
 /// `without`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Switch {
@@ -30,43 +30,43 @@ pub(crate) struct Switch {
     pub without: u32,
 }
 
-/// A mesh, with the leaves of the solid that it bounds.
+/// A mesh of an operand, and the roles of the operand's leaves.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct PeeledMesh {
-    /// Which operand it bounds.
+    /// The operand that it bounds.
     pub shell: u32,
-    /// Corners of its triangles.
+    /// The corners of its triangles.
     pub corners: Range<u32>,
-    /// Some leaf adds it.
+    /// Some leaf adds the operand.
     pub adds: bool,
-    /// Some leaf takes it away.
+    /// Some leaf subtracts the operand.
     pub takes_away: bool,
-    /// It is of the covering set.
+    /// The operand belongs to the covering set.
     pub covers: bool,
 }
 
-/// The walk, and what is peeled.
+/// The walk, and the leaves and meshes that are peeled.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Blister {
     pub switches: Vec<Switch>,
-    /// The labels of the two ends.
+    /// The labels of the two results.
     pub inside: Option<u32>,
     pub outside: Option<u32>,
-    /// Leaves with equations as they are drawn: all of them, then those of the covering set.
+    /// Leaves with equations in the order of drawing: all of them, then those of the covering set.
     pub order: Vec<u32>,
     pub all: Range<u32>,
     pub cover: Range<u32>,
-    /// In the order of their numbers.
+    /// Meshes of operands, in the order of their numbers.
     pub meshes: Vec<PeeledMesh>,
-    /// A covering set is known.
+    /// A covering set was found.
     pub covered: bool,
-    /// Around all leaves, model coordinates; `None` when one has no box.
+    /// The box around all leaves, in model coordinates; `None` if a leaf is unbounded.
     pub bounds: Option<Bounds>,
 }
 
 impl Blister {
-    /// For the leaves of `data`, whose expression is `tree` over `primitives`; `leaf_of`: the first leaf that shows
-    /// each primitive, as it is and complemented.
+    /// For the leaves of `data`, whose expression is `tree` over `primitives`. `leaf_of` has the first leaf of each
+    /// primitive, as it is and complemented.
     pub(super) fn new(
         data: &SolidData,
         tree: &Tree,
@@ -99,7 +99,7 @@ impl Blister {
         let cover = covering_set(&positive, |p| weight(&primitives[p as usize]));
         let covering: Vec<u32> = cover.iter().flatten().map(|&p| leaf(p, false)).collect();
         order.extend(covering.iter().filter(|&&i| !has(i, LEAF_SHELL)));
-        // of each operand: whether a leaf adds it, one takes it away, one covers
+        // for each operand: whether a leaf adds it, a leaf subtracts it, the covering set has it
         let mut roles = vec![[false; 3]; data.shell_leaves.len()];
         let shells = |i: &u32| has(*i, LEAF_SHELL);
         for i in (0..leaves.len() as u32).filter(shells) {
@@ -128,7 +128,7 @@ impl Blister {
         })
     }
 
-    /// Whether a ray may begin within the solid, or within a primitive.
+    /// Whether a ray may start inside the solid or inside a primitive.
     pub(crate) fn may_be_cut(&self, camera: &Camera) -> bool {
         let Some(bounds) = self.bounds else { return true };
         let half = (bounds.max - bounds.min) * 0.5;
@@ -138,10 +138,10 @@ impl Blister {
     }
 }
 
-/// Labels below the bit that locks a pixel.
+/// Labels are less than the bit that locks a pixel.
 const MOST_LABELS: u32 = 64;
 
-/// How much a primitive fills: half the surface of its box, to which its projection is proportional on average.
+/// The size of a primitive: half its box's surface, to which the area of its projection is proportional on average.
 fn weight(primitive: &Primitive) -> f64 {
     let bounds = primitive.bounds();
     if bounds.is_empty() {
@@ -151,7 +151,7 @@ fn weight(primitive: &Primitive) -> f64 {
     size.x * size.y + size.y * size.z + size.z * size.x
 }
 
-/// Whether rays enter each operand that is a mesh through triangles that face them, and leave it through the others.
+/// Whether every mesh operand is oriented: rays enter it through triangles that face them and leave through the others.
 pub(super) fn face_outward(data: &SolidData, coincidence: f64) -> bool {
     data.operands.iter().all(|operand| outward(&operand.primitive, coincidence).is_some())
 }

@@ -1,11 +1,11 @@
-//! The order in which leaves are drawn where each is drawn by itself.
+//! The order in which leaves are drawn if each is drawn by itself.
 
 use crate::abi::constants::trimmed_leaf::UNOWNED;
 use crate::abi::{LEAF_NEGATIVE, Leaf};
 
-/// The leaves in the order in which they are drawn. Of faces at the same depth the first wins: the solids that
-/// add before those that are taken away, then in the order of the tree. `shared`: whether some leaves share a
-/// surface; then all come once more, for faces that none of them owns.
+/// The order of drawing. Of faces at the same depth the first wins, so leaves that add come before leaves that
+/// subtract; within both, the order of the tree. If leaves share a surface (`shared`), all of them come again, for
+/// faces that no leaf owns.
 pub(crate) fn order(leaves: &[Leaf], shared: bool) -> Vec<u32> {
     let negative = |of: bool| {
         (0..).zip(leaves).filter(move |(_, leaf)| (leaf.flags & LEAF_NEGATIVE != 0) == of).map(|(i, _): (u32, _)| i)

@@ -1,8 +1,8 @@
-//! What a view sees of operands without equations: in which pixels, and how many crossings its first frame is likely to
-//! have to store.
+//! The pixels in which a view sees operands without equations, and an estimate of the crossings that its first frame
+//! stores.
 //!
 //! ```text
-//!   crossings    mesh    each triangle's area in pixels, of the part of its box that is in the picture
+//!   crossings    mesh    sum of its triangles' areas in pixels, scaled by the part of each box in the picture
 //!                part    front and back of its box
 //! ```
 
@@ -12,11 +12,11 @@ use glam::{DMat4, DVec2, DVec3};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Along the view axis, model units. What is nearer to the eye, or behind it, counts as there.
+/// Least depth along the view axis, model units. Points nearer to the eye, or behind it, are moved to this depth.
 const LEAST_DEPTH: f64 = 1e-6;
 
-/// Operands cross the rays of pixels beside their boxes, too: of samples half a pixel off, and of what is drawn beyond
-/// a border. Far more than either.
+/// Pixels beside its box in which an operand may still cross rays: samples lie up to half a pixel off, and faces are
+/// drawn beyond their borders. This is far more than both.
 const BESIDE_PX: f64 = 8.0;
 
 impl SolidData {
@@ -29,14 +29,14 @@ impl SolidData {
         }
         let (lo, hi) = view.ends(corners());
         let range = |lo: f64, hi: f64, size: u32| {
-            // numbers beyond the picture, and those of nothing, become its ends
+            // infinite coordinates, and those of no points, become the picture's ends
             let [first, end] = [lo - BESIDE_PX, hi + BESIDE_PX + 1.0].map(|x| x.clamp(0.0, size.into()) as u32);
             first..end.max(first)
         };
         [range(lo.x, hi.x, camera.size.0), range(lo.y, hi.y, camera.size.1)]
     }
 
-    /// About how many; data that [`centres_only`](Self::centres_only) are has none.
+    /// An estimate; 0 for data of [`centres_only`](Self::centres_only).
     pub(crate) fn expected_crossings(&self, camera: &Camera) -> u64 {
         let view = View::new(camera);
         let all = self.operands.iter().map(|operand| {
@@ -52,7 +52,7 @@ impl SolidData {
             let triangles: Vec<&[u32; 3]> = triangles.collect();
             triangles.par_iter().map(|t| view.covered(t.map(place))).sum()
         });
-        all.sum::<f64>() as u64 // 0 of what is not a number
+        all.sum::<f64>() as u64 // NaN gives 0
     }
 }
 
@@ -66,7 +66,7 @@ impl View {
         Self { matrix: camera.pixel_matrix(), size: DVec2::new(camera.size.0.into(), camera.size.1.into()) }
     }
 
-    /// A point that has a place in the picture's plane.
+    /// Whether the point has a place in the picture's plane.
     fn is_before(&self, p: DVec3) -> bool {
         (self.matrix * p.extend(1.0)).w > LEAST_DEPTH
     }
@@ -76,7 +76,7 @@ impl View {
         DVec2::new(q.x, q.y) / q.w.max(LEAST_DEPTH)
     }
 
-    /// Smallest and largest coordinates of points, pixels.
+    /// Smallest and largest coordinates of points, in pixels.
     fn ends(&self, points: impl Iterator<Item = DVec3>) -> (DVec2, DVec2) {
         let empty = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         points.map(|p| self.at(p)).fold(empty, |(lo, hi), p| (lo.min(p), hi.max(p)))
@@ -106,7 +106,7 @@ mod tests {
     use glam::DAffine3;
     use std::sync::Arc;
 
-    /// A tetrahedron of height 4 over a triangle of legs 30 and 20, seen from above with one pixel a unit.
+    /// A tetrahedron of height 4 over a right triangle with sides 30 and 20, seen from above at one pixel a unit.
     fn seen(at: DVec3) -> (u64, [Range<u32>; 2]) {
         let corners = [DVec3::ZERO, DVec3::X * 30.0, DVec3::Y * 20.0, DVec3::new(5.0, 5.0, 4.0)];
         let triangles = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
@@ -129,7 +129,7 @@ mod tests {
         (data.expected_crossings(&camera), pixels)
     }
 
-    /// 300 square pixels from below, and as many from above, where all of it is seen.
+    /// 300 square pixels from below, and as many from above, if the whole tetrahedron is in the picture.
     #[test]
     fn front_and_back_are_counted() {
         let (crossings, pixels) = seen(DVec3::ZERO);

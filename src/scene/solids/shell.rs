@@ -1,8 +1,8 @@
-//! Operands without equations, *shells*: meshes as arrays, spline parts as what the scene places later.
+//! Operands without equations, *shells*: meshes as arrays; spline parts as faces that the scene places later.
 //!
 //! ```text
-//!   mesh   triangle ──▶ corners: its plane; or Surface, shared with faces that coincide
-//!   part   faces ──▶ FaceData, as of a part that is drawn by itself, with the primitive's id and colour
+//!   mesh   triangle ──▶ corners, whose plane it has; or a Surface, shared with coinciding faces
+//!   part   faces ──▶ FaceData, like those of any part, with the primitive's id and colour
 //! ```
 
 use super::{SolidData, surface};
@@ -11,19 +11,19 @@ use crate::model::{Face, Mesh, Part, Primitive, Shape};
 use glam::DVec3;
 use std::ops::Range;
 
-/// A shell that still has to be placed.
+/// A shell that is not placed yet.
 #[derive(Clone, Debug)]
 pub(in crate::scene) struct Operand {
     pub primitive: Primitive,
     pub shell: u32,
-    /// Middle of its box, own coordinates.
+    /// Middle of its box, in its own coordinates.
     pub origin: DVec3,
-    /// Of [`SolidData::operand_meshes`].
+    /// Its range of [`SolidData::operand_meshes`].
     pub meshes: Range<usize>,
 }
 
 impl Operand {
-    /// The faces that bound it, if any do.
+    /// The faces of a spline part; none for meshes.
     pub fn faces(&self) -> &[Face] {
         match &self.primitive.shape {
             Shape::Part(part) => &part.faces,
@@ -32,18 +32,19 @@ impl Operand {
     }
 }
 
-/// Whether the primitive needs fragments: a mesh or part that has a volume.
+/// Whether the primitive is drawn as fragments: a mesh or part with volume.
 pub(super) fn is_shell(primitive: &Primitive) -> bool {
     !primitive.shape.is_analytic() && !primitive.bounds().is_empty()
 }
 
-/// Which triangles are so thin that their corners, rounded to single precision, would turn their planes: by more than
-/// 0.07°, a third of a step of eight bits of light. Those keep a [`Surface`](super::Surface), made in double precision.
+/// Triangles so thin that rounding their corners to single precision would turn their planes by more than 0.07°: a
+/// third of a step of light in eight bits. Such triangles have a [`Surface`](super::Surface), made in double precision.
 pub(super) struct Thin {
     height: f64,
 }
 
-/// Of the box around the operand, half its diagonal: two corners are rounded by 2⁻²⁴ of that.
+/// Least height of a triangle, as a share of half the diagonal of the operand's box; two corners are rounded by 2⁻²⁴ of
+/// that.
 const THIN: f64 = 1e-4;
 
 impl Thin {
@@ -53,14 +54,14 @@ impl Thin {
 
     pub fn is(&self, [a, b, c]: [DVec3; 3]) -> bool {
         let longest = [b - a, c - b, a - c].map(DVec3::length).into_iter().fold(0.0, f64::max);
-        // of no area, too
+        // also true for triangles without area
         (b - a).cross(c - a).length() <= self.height * longest
     }
 }
 
 impl SolidData {
-    /// Adds a primitive as the next shell, of a mesh with the surfaces of its triangles; `leaf` is the first that shows
-    /// it. Returns its number.
+    /// Adds a primitive as the next shell. `surfaces` are those of a mesh's triangles; `leaf` is the first that shows
+    /// it. Returns the shell's number.
     pub(super) fn push_shell(&mut self, surfaces: impl Iterator<Item = u32>, primitive: &Primitive, leaf: u32) -> u32 {
         let shell = self.shell_leaves.len() as u32;
         self.shell_leaves.push(leaf);
@@ -69,13 +70,13 @@ impl SolidData {
         let first = self.operand_meshes.len();
         match &primitive.shape {
             Shape::Mesh(mesh) => {
-                // a triangle may lie in what is nearly a plane, and is told by its corners then
+                // a surface that is only nearly a plane does not serve a triangle, whose corners are used instead
                 let is_plane = |number: &u32| self.places.get(*number as usize).is_some_and(|p| p.surface().is_none());
                 let planes: Vec<u32> = surfaces.map(|s| if is_plane(&s) { s } else { abi::NO_PLANE }).collect();
                 self.operand_planes.extend(planes);
                 self.push_mesh(mesh, origin, (shell, leaf), primitive);
             }
-            // the faces bound the part, or else its meshes do
+            // faces bound the part if it has any, else meshes
             Shape::Part(part) if part.faces.is_empty() => self.push_meshes(part, origin, (shell, leaf), primitive),
             _ => {}
         }
@@ -98,13 +99,13 @@ impl SolidData {
         }
     }
 
-    /// The surface in which a triangle of the mesh lies, where others may lie in it, too.
+    /// The surface of a mesh's triangle, if it has one that others may share.
     pub(in crate::scene) fn plane_of(&self, mesh: &abi::OperandMesh, triangle: u32) -> Option<u32> {
         let planes = self.operand_planes.get(mesh.first_plane as usize..)?;
         Some(planes[(triangle - mesh.first_triangle) as usize]).filter(|plane| *plane != abi::NO_PLANE)
     }
 
-    /// A mesh whose planes have been added.
+    /// Adds a mesh whose planes are already in `operand_planes`.
     fn push_mesh(&mut self, mesh: &Mesh, origin: DVec3, (shell, leaf): (u32, u32), of: &Primitive) {
         let planes = self.operand_planes.len() - mesh.triangles().len();
         let shares = self.operand_planes[planes..].iter().any(|plane| *plane != abi::NO_PLANE);
@@ -115,7 +116,7 @@ impl SolidData {
         let corners = 3 * self.operand_triangles.len() as u32;
         self.operand_meshes.push(abi::OperandMesh {
             shell,
-            instance: 0, // when it is placed
+            instance: 0, // set when it is placed
             first_triangle: self.operand_triangles.len() as u32,
             first_plane: if shares { planes as u32 } else { abi::NO_PLANE },
             mirrored: u32::from(of.transform.matrix3.determinant() < 0.0),
@@ -163,7 +164,7 @@ mod tests {
         assert_eq!((d.operand_meshes[0].first_plane, d.operand_meshes[0].leaf), (abi::NO_PLANE, 0));
     }
 
-    /// The block's bottom is in the plane of the tetrahedron's, which has one triangle there.
+    /// The bottoms of the block and of the tetrahedron lie in one plane; the tetrahedron has one triangle there.
     #[test]
     fn planes_that_others_share_are_surfaces() {
         let below = || Shape::Block { min: DVec3::new(-3.0, -3.0, -1.0), max: DVec3::new(-2.0, -2.0, 0.0) };
@@ -174,7 +175,7 @@ mod tests {
             assert_eq!(d.operand_planes[0], shared[0], "the triangle at the bottom is the first");
             assert!(d.leaf_surfaces.iter().any(|side| side.surface >> abi::SIDE_SHIFT == shared[0]));
         }
-        // of its own triangles, too: all four twice, the other way round
+        // a mesh whose own triangles share planes: all four twice, in both orientations
         let twice = TETRA.into_iter().chain(TETRA.map(|[a, b, c]| [b, a, c])).collect();
         let d = data(vec![mesh(of(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], twice))]);
         assert_eq!((d.places.len(), d.operand_planes), (4, vec![0, 1, 2, 3, 0, 1, 2, 3]));
@@ -184,7 +185,7 @@ mod tests {
     #[test]
     fn thin_triangles_keep_their_planes() {
         let thin = || tetra(2e-5);
-        // those along the short edge; the other two are as large as any
+        // the two triangles along the short edge; the other two are large
         let d = data(vec![mesh(thin())]);
         assert_eq!((d.places.len(), d.operand_planes.len()), (2, 4));
         let part = Part { meshes: vec![tetra(1.0), thin()], closed: true, ..Part::default() };

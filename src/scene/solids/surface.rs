@@ -10,7 +10,7 @@ use crate::math::eigen;
 use crate::model::{Carrier, Primitive, Quadric, Shape};
 use glam::{DAffine3, DMat3, DVec3};
 
-/// The shape of a surface that is no plane, in coordinates of its own.
+/// The shape of a surface other than a plane, in coordinates of its own.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Surface {
     /// Columns of the map from model directions.
@@ -39,9 +39,9 @@ impl Surface {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Placed {
     Plane {
-        /// Of length 1.
+        /// Unit normal.
         normal: DVec3,
-        /// A point of it.
+        /// A point of the plane.
         at: DVec3,
     },
     Round {
@@ -52,12 +52,12 @@ pub(crate) enum Placed {
 }
 
 impl Placed {
-    /// Where it is, seen from the eye, as shaders read it: of a plane its normal, and how far along it is.
+    /// Its place relative to the eye, as shaders read it; for a plane the normal and the distance along it.
     pub(crate) fn seen_from(&self, eye: DVec3) -> [f32; 4] {
         match *self {
             Self::Plane { normal, at } => {
                 let n = normal.as_vec3();
-                // of the rounded normal: the plane stays where it is
+                // the distance is along the rounded normal, so the plane stays in place
                 n.extend(n.as_dvec3().dot(at - eye) as f32).to_array()
             }
             Self::Round { centre, .. } => (centre - eye).as_vec3().extend(0.0).to_array(),
@@ -79,7 +79,7 @@ impl Placed {
         Self::Plane { normal, at: near - distance * normal }
     }
 
-    /// A surface about `centre` in the primitive's own coordinates, which are shrunk by `size`.
+    /// A surface around `centre` in the primitive's coordinates, scaled down by `size`.
     fn round(p: &Primitive, to_own: DAffine3, centre: DVec3, size: f64, surface: Surface) -> Self {
         let to_local = to_own.matrix3 * (1.0 / size);
         Self::Round { surface: surface.placed(to_local), centre: p.transform.transform_point3(centre) }
@@ -102,15 +102,15 @@ fn quadric(squares: [f64; 3], linear: f64, constant: f64) -> Surface {
     }
 }
 
-/// The inside of no point.
+/// A surface with no point inside.
 pub(super) fn nowhere(centre: DVec3) -> Placed {
     Placed::Round { surface: quadric([0.0; 3], 0.0, 1.0), centre }
 }
 
-/// Below this, relative to the largest, a coefficient of second order is the rounding of 0: the middle that
-/// it would give is nowhere near.
+/// A second-order coefficient below this share of the largest is taken as a rounded 0. The centre computed from it
+/// would be meaningless.
 const NULL: f64 = 1e-9;
-/// Below this, the axis z keeps its linear term: its middle may be far, but a piece of it is here.
+/// Below this share, the z axis keeps its linear term: the centre may be far away although the surface is near.
 const FLAT: f64 = 1e-3;
 
 /// A quadric in its own axes.
@@ -123,7 +123,7 @@ struct Local {
 }
 
 impl Local {
-    /// `near` is a point about which the quadric is wanted.
+    /// The quadric about a centre near `near`.
     fn new(q: &Quadric, near: DVec3) -> Self {
         let m = q.products * 0.5;
         let (values, vectors) =
@@ -134,7 +134,7 @@ impl Local {
         let largest = values[order[0]].abs();
         let mut squares = order.map(|k| if values[k].abs() > NULL * largest { values[k] } else { 0.0 });
         if squares[1] == 0.0 {
-            // a parabolic cylinder: what is linear goes along z
+            // a parabolic cylinder: the linear term lies along z
             let (b, c) = (q.linear.dot(axes[1]), q.linear.dot(axes[2]));
             let along = (axes[1] * b + axes[2] * c).normalize_or(axes[2]);
             (axes[1], axes[2]) = (along.cross(axes[0]), along);
@@ -157,7 +157,7 @@ impl Local {
     }
 }
 
-/// The plane of a triangle of a primitive, given in its own coordinates, with a point close to `near`; `None` where the
+/// The plane of a primitive's triangle, given in the primitive's coordinates, with its point near `near`. `None` if the
 /// primitive's transform is singular.
 pub(super) fn of_triangle(p: &Primitive, corners: [DVec3; 3], near: DVec3) -> Option<Placed> {
     match Carrier::of_triangle(corners) {
@@ -166,8 +166,8 @@ pub(super) fn of_triangle(p: &Primitive, corners: [DVec3; 3], near: DVec3) -> Op
     }
 }
 
-/// The sides of a primitive, in the order of [`Shape::carriers`]; planes get a point close to `near`. None
-/// of a part, nor of a primitive without volume.
+/// The sides of a primitive, in the order of [`Shape::carriers`]; planes get a point near `near`. Empty for parts and
+/// for primitives without volume.
 pub(super) fn sides_of(p: &Primitive, near: DVec3) -> Vec<Placed> {
     let Some(to_own) = p.to_own().filter(|_| !p.shape.bounds().is_empty()) else { return Vec::new() };
     let plane = |own: DVec3, offset: f64| Placed::plane(to_own, own, offset, near);
@@ -179,7 +179,7 @@ pub(super) fn sides_of(p: &Primitive, near: DVec3) -> Vec<Placed> {
             between(round(DVec3::Z * (height * 0.5), *radius, quadric([1.0, 1.0, 0.0], 0.0, -1.0)), *height)
         }
         Shape::Cone { bottom, top, height } => {
-            // x² + y² < (middle + slope z)², all over the larger radius
+            // x² + y² < (middle + slope z)², divided by the larger radius
             let size = bottom.max(*top);
             let (middle, slope) = ((bottom + top) * 0.5 / size, (top - bottom) / height);
             let surface = quadric([1.0, 1.0, -slope * slope], -middle * slope, -middle * middle);
@@ -189,7 +189,7 @@ pub(super) fn sides_of(p: &Primitive, near: DVec3) -> Vec<Placed> {
             let surface = Surface { is_torus: true, constant: (minor / major) as f32, ..Default::default() };
             vec![round(DVec3::ZERO, *major, surface)]
         }
-        // without a circle to run around, the tube is a ball
+        // without a major radius, the torus is a ball
         Shape::Torus { minor, .. } => vec![round(DVec3::ZERO, *minor, quadric([1.0; 3], 0.0, -1.0))],
         Shape::HalfSpace { .. } | Shape::Block { .. } | Shape::Quadric(_) | Shape::Mesh(_) => {
             let side = |carrier: &Carrier| match carrier {

@@ -3,7 +3,7 @@ use crate::model::TrimLoop;
 use crate::spline::{Bezier, Surface};
 use glam::DVec3;
 
-/// The square from (0, 0) to (100, 100), its parameters likewise.
+/// The square from (0, 0) to (100, 100); its parameters equal its coordinates.
 fn square() -> PatchGrid {
     let point = |i: usize| DVec4::new(100.0 * (i % 2) as f64, 100.0 * (i / 2) as f64, 0.0, 1.0);
     let knots = vec![0.0, 0.0, 100.0, 100.0];
@@ -21,14 +21,14 @@ fn rectangle((x0, y0): (f64, f64), (x1, y1): (f64, f64)) -> TrimLoop {
     polygon(&[(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
 }
 
-/// The share of the square that is in patches which lie so.
+/// The share of the square covered by patches of this kind.
 fn share(grid: &PatchGrid, sides: &[Side], which: Side) -> f64 {
     let area = |p: &SurfacePatch| (p.u.1 - p.u.0) * (p.v.1 - p.v.0) / 1e4;
     grid.patches.iter().zip(sides).filter(|(_, side)| **side == which).map(|(p, _)| area(p)).sum()
 }
 
-/// An L with a hole, in a scene not much larger: what is told of the pieces holds all over them, most of the square is in
-/// those that need no test, and all pieces are worth their price.
+/// An L with a hole, in a scene not much larger. The sides of the pieces are correct at every point, most of the square
+/// needs no test, and every line saves more than it costs.
 #[test]
 fn most_of_a_large_face_needs_no_test() {
     let ell = [(0.0, 0.0), (100.0, 0.0), (100.0, 45.0), (45.0, 45.0), (45.0, 100.0), (0.0, 100.0)];
@@ -64,7 +64,7 @@ fn a_face_that_is_small_in_its_scene_stays_whole() {
     }
 }
 
-/// Holes as dense as the finest pieces leave nothing to be won.
+/// A patch whose holes are as dense as the finest pieces is not split.
 #[test]
 fn what_curves_pass_everywhere_stays_whole() {
     let hole = |n: usize| {
@@ -79,10 +79,10 @@ fn what_curves_pass_everywhere_stays_whole() {
     );
 }
 
-/// A curve so near to a piece that a pixel's circle may meet it: the piece is tested, too.
+/// A piece is tested if a curve is so near to it that a pixel's circle may meet the curve.
 #[test]
 fn pieces_beside_a_curve_are_tested() {
-    // the middle, where a piece ends, whatever their number
+    // a piece ends in the middle, whatever the number of pieces
     for x in [50.0, 50.0 - 1e-3, 50.0 + 1e-3] {
         let loops = [rectangle((0.0, 0.0), (x, 100.0))];
         let SubPatches { grid, sides, .. } = sub_patches(square(), &LoopIndex::new(&loops), 200.0);
@@ -92,7 +92,7 @@ fn pieces_beside_a_curve_are_tested() {
     }
 }
 
-/// Several patches, none of whose ends is a line that may go.
+/// Several patches whose ends are never removed.
 #[test]
 fn patches_are_cut_each_for_itself() {
     let point = |i: usize| DVec4::new([0.0, 1.0, 100.0][i % 3], 100.0 * (i / 3) as f64, 0.0, 1.0);

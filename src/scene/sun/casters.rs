@@ -1,15 +1,15 @@
-//! What casts shadows, as the sun sees it: triangles of operands, and of parts that are placed.
+//! Everything that casts shadows, as triangles seen by the sun: operands, and placed parts.
 //!
 //! ```text
 //!   operand that is a mesh ──────── as it is ──┐
-//!   operand of spline faces ── within slack ──▶├─▶ Flat: a winding number, one of the solids' primitives
+//!   operand of spline faces ── within slack ──▶├─▶ Flat: a winding number decides, as for the solids' primitives
 //!   placed mesh ─────────────────── as it is ──┐
-//!   placed spline faces ────── within slack ──▶├─▶ Facet: whatever the ray to the sun meets shades
+//!   placed spline faces ────── within slack ──▶├─▶ Facet: shades the point if the ray to the sun meets it
 //! ```
 //!
-//! Spline faces are flattened within a deviation that follows from the scene's size and the part's own, [`OF_SCENE`] and
-//! [`OF_PART`]; where that takes more than [`MOST_TRIANGLES`], it grows for all, and what is too much even then casts no
-//! shadow and is counted.
+//! Spline faces are flattened within a deviation that follows from the scene's size and the part's own, [`OF_SCENE`]
+//! and [`OF_PART`]. If that takes more than [`MOST_TRIANGLES`], the deviation grows for all. A part that does not fit
+//! even then casts no shadow and is counted.
 
 use super::SunData;
 use super::faces::{FacePlan, Near};
@@ -20,75 +20,75 @@ use crate::scene::solids::{Operand, SolidData};
 use glam::{DAffine3, DMat2, DVec2, DVec3};
 use rayon::prelude::*;
 
-/// What spline faces may be off by, of the scene's diagonal: an eighth of a pixel in a picture of the scene that is a
-/// thousand pixels wide.
+/// Deviation of spline faces, as a share of the scene's diagonal: an eighth of a pixel in a picture that shows the
+/// scene a thousand pixels wide.
 const OF_SCENE: f64 = 1.0 / 8192.0;
-/// And of the part's own diagonal: a quarter of a pixel where the part alone is 256 pixels wide.
+/// Deviation as a share of the part's diagonal: a quarter of a pixel if the part is 256 pixels wide.
 const OF_PART: f64 = 1.0 / 1024.0;
-/// Triangles of placed parts and of operands of spline faces together: 48 bytes each, and their places in lists. Meshes
-/// of operands, which a solid is not whole without, come beside them.
+/// Most triangles of placed parts and of spline operands together: 48 bytes each, and their entries in lists. Triangles
+/// of mesh operands are not counted, since a solid needs all of them.
 const MOST_TRIANGLES: u64 = 1 << 20;
-/// Where there would be more, the deviation grows by this factor, so often at most.
+/// Factor by which the deviation grows if there are too many triangles, and how often it may grow.
 const COARSER: f64 = 4.0;
 const MOST_COARSER: u32 = 4;
-/// Of what is flattened, of its size: a place is rounded to single precision by less, seen from its middle.
+/// Rounding of a position to single precision, as a share of the size of its part or operand.
 const ROUNDING: f64 = 1.0 / 2_097_152.0;
-/// A triangle of spline faces has no number of its own: no point is known to be on it.
+/// The surface of a spline face's triangle: no number, since no visible point is known to lie on it.
 const OF_SPLINE: u32 = OWN_PLANE | (OWN_PLANE - 2);
 
-/// All of it.
+/// Everything that casts shadows.
 #[derive(Default)]
 pub(super) struct Casters {
     pub triangles: Vec<Flat>,
     pub facets: Vec<Facet>,
-    /// Of each placed part with facets: the middle of its box, model coordinates.
+    /// For each placed part with facets: the middle of its box, in model coordinates.
     pub middles: Vec<DVec3>,
-    /// Parts and operands that would be too many triangles, or are no numbers.
+    /// Number of parts and operands that have too many triangles or are not finite.
     pub left_out: usize,
-    /// The most that a spline face may be off by, model units.
+    /// Largest deviation of a spline face, in model units.
     pub deviation: f64,
 }
 
-/// A triangle of an operand, across the rays, model units.
+/// A triangle of an operand, projected along the rays, in model units.
 pub(super) struct Flat {
     pub corners: [DVec2; 3],
-    /// Middle of the operand.
+    /// The operand's middle, projected.
     centre: DVec2,
-    /// Of the corners towards the sun, from there.
+    /// Heights of the corners above the middle, towards the sun.
     heights: [f64; 3],
     shell: u32,
     surface: u32,
-    /// Along the ray.
+    /// Slack along the ray.
     slack: f64,
 }
 
-/// A triangle of a placed part, likewise.
+/// A triangle of a placed part, projected along the rays, in model units.
 pub(super) struct Facet {
-    /// Counter-clockwise, from the part's middle.
+    /// Counter-clockwise, relative to the part's middle.
     corners: [DVec2; 3],
     heights: [f64; 3],
-    /// Of the height.
+    /// Gradient of the height.
     slope: DVec2,
-    /// Across its plane.
+    /// Slack across the triangle's plane.
     slack: f64,
     part: u32,
 }
 
-/// What is flattened: a part, or the faces of an operand.
+/// The source of triangles: a part, or the faces of an operand.
 struct Sheet<'a> {
     faces: Vec<FacePlan<'a>>,
     meshes: &'a [crate::model::Mesh],
 }
 
-/// A sheet somewhere.
+/// A placed sheet.
 struct Placed {
     sheet: usize,
     transform: DAffine3,
-    /// In the model.
+    /// Its box in the model.
     bounds: Bounds,
-    /// What it may be off by, own units.
+    /// Its deviation, in its own units.
     deviation: f64,
-    /// The shell of an operand.
+    /// If it is an operand: its shell and the middle of its box.
     shell: Option<(u32, DVec3)>,
 }
 
@@ -119,13 +119,13 @@ impl<'a> Sheet<'a> {
     }
 }
 
-/// A box that is somewhere else.
+/// The box around a transformed box.
 fn moved(bounds: Bounds, transform: DAffine3) -> Bounds {
     bounds.corners().map(|c| transform.transform_point3(c)).into_iter().fold(Bounds::EMPTY, Bounds::with)
 }
 
 impl Casters {
-    /// Of the solids, and of the parts of a model that are all drawn and whole.
+    /// The casters of the solids, and of the parts of `model`, all of which are drawn and uncut.
     pub fn new(sun: &SunData, solids: &SolidData, model: Option<&Model>) -> Self {
         let mut all = Self::default();
         let mut sheets = Vec::new();
@@ -159,7 +159,7 @@ impl Casters {
 
     fn flatten(&mut self, sun: &SunData, sheets: &[Sheet<'_>], mut placed: Vec<Placed>, scene: Bounds) {
         let whole = placed.iter().fold(scene, |all, p| all.union(p.bounds)).diagonal();
-        // a sheet is flattened once, for where it is largest
+        // a sheet is flattened once, for its largest copy
         let mut finest = vec![f64::INFINITY; sheets.len()];
         for p in &placed {
             let wanted = (OF_SCENE * whole).min(OF_PART * p.bounds.diagonal()) / stretch(p.transform.matrix3);
@@ -210,7 +210,7 @@ impl Casters {
             if let Some((shell, _)) = placed.shell {
                 let centre = sun.flat(middle);
                 let corners = flat.map(|p| p + centre);
-                // a cell is larger than twice what it is off by, and a face falls no farther in that than it in all
+                // a cell is more than twice as large as its deviation, and the face falls in it by no more than this
                 let high = if *off > 0.0 {
                     let ends = cell.map(|p| sun.towards.dot(placed.transform.transform_vector3(p)));
                     let most = ends.into_iter().fold(f64::NEG_INFINITY, f64::max);
@@ -218,7 +218,7 @@ impl Casters {
                 } else {
                     f64::INFINITY
                 };
-                // along the ray
+                // slack along the ray
                 let slack = (slack * steep(flat, heights)).min(high + slack);
                 self.triangles.push(Flat { corners, centre, heights, shell, surface: OF_SPLINE, slack });
             } else {
@@ -231,23 +231,23 @@ impl Casters {
     }
 }
 
-/// Operands without equations of the union that casts shadows.
+/// The operands without equations in the union that casts shadows.
 pub(super) fn operands(solids: &SolidData) -> impl Iterator<Item = &Operand> {
     solids.operands.iter().filter(|o| solids.shell_leaves[o.shell as usize] < solids.followed)
 }
 
-/// Slope of the height over a triangle; not finite where the sun sees it edge-on.
+/// Gradient of the height over a triangle; not finite if the triangle contains the sun's direction.
 fn slope_of([a, b, c]: [DVec2; 3], heights: [f64; 3]) -> DVec2 {
     let rises = DVec2::new(heights[1] - heights[0], heights[2] - heights[0]);
     DMat2::from_cols(b - a, c - a).transpose().inverse() * rises
 }
 
-/// A length along the ray to one across the triangle's plane.
+/// Factor from a length across the triangle's plane to a length along the ray.
 fn steep(corners: [DVec2; 3], heights: [f64; 3]) -> f64 {
     (1.0 + slope_of(corners, heights).length_squared()).sqrt()
 }
 
-/// Around what has an end of the solids that cast shadows.
+/// The box around all bounded leaves of the solids that cast shadows.
 fn size_of(solids: &SolidData) -> Bounds {
     let leaves = solids.leaves.iter().zip(&solids.leaf_centres).take(solids.followed as usize);
     let ends = leaves.filter_map(|(leaf, centre)| {
@@ -258,7 +258,7 @@ fn size_of(solids: &SolidData) -> Bounds {
 }
 
 impl Facet {
-    /// `None` of what the sun sees edge-on: it covers nothing.
+    /// `None` if the triangle contains the sun's direction: it covers nothing.
     fn new(flat: [DVec2; 3], heights: [f64; 3], slack: f64, part: u32) -> Option<Self> {
         let clockwise = (flat[1] - flat[0]).perp_dot(flat[2] - flat[0]) < 0.0;
         let slope = slope_of(flat, heights);
@@ -269,14 +269,14 @@ impl Facet {
         Some(Self { corners: turned(flat), heights, slope, slack, part })
     }
 
-    /// In the plane across the rays, with what it is larger by.
+    /// Its box across the rays, with its slack.
     pub fn square(&self, middles: &[DVec2]) -> (DVec2, DVec2) {
         let [a, b, c] = self.corners;
         let (middle, margin) = (middles[self.part as usize], 0.5 * self.slack);
         (middle + a.min(b).min(c) - margin, middle + a.max(b).max(c) + margin)
     }
 
-    /// In tiles.
+    /// The record that shaders read, in units of tiles.
     pub fn stored(&self, side: f64) -> SunFacet {
         let slope = self.slope * side;
         SunFacet {
@@ -290,7 +290,7 @@ impl Facet {
 }
 
 impl Flat {
-    /// In tiles, from the operand's middle.
+    /// The record that shaders read, in units of tiles, relative to the operand's middle.
     pub fn stored(&self, side: f64) -> SunTriangle {
         let corners = self.corners.map(|p| ((p - self.centre) / side).as_vec2().to_array());
         let heights = self.heights.map(|h| h as f32);
@@ -300,7 +300,7 @@ impl Flat {
 }
 
 impl SunData {
-    /// The triangles of the union's operands that are meshes.
+    /// The triangles of the union's mesh operands.
     fn of_meshes(&self, solids: &SolidData) -> Vec<Flat> {
         let mut all = Vec::new();
         for operand in operands(solids) {

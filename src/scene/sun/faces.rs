@@ -1,21 +1,21 @@
-//! Trimmed faces as triangles that are near to them, with a bound on how near.
+//! Trimmed faces as triangles within a bounded distance.
 //!
 //! ```text
 //!   ┌───┬───┬───┐     cells of a patch: with n of them along u and m along v, the bilinear surface over the corners of
 //!   │▒▒▒│▒▒╱│   │     a cell, and every triangle with corners on it, is within
 //!   ├───┼─╱─┼───┤         (|S_uu| / n² + 2 |S_uv| / (n m) + |S_vv| / m²) / 8
 //!   │▒▒▒│╱  │   │     of S at the same (u, v)
-//!   └───┴───┴───┘     loops are chords within the same deviation, and cut the cells that they meet to trapezoids
+//!   └───┴───┴───┘     loops become chords within the same deviation; cells that they cross are cut into trapezoids
 //! ```
 //!
 //! *Proof.* Along one parameter a chord is within `h² |S''| / 8` of its curve, so the bilinear surface is within
-//! `h² |S_uu| / 8 + k² |S_vv| / 8` of S. Its own second derivative is the mixed one, at most `|S_uv|`; with weights `w_i`
-//! of a triangle's corners, a point between them is off it by at most `|S_uv| Σ w_i |Δu_i| |Δv_i|`, that by
-//! `|S_uv| h k / 4`: the spread of numbers that differ by h at most is h / 2 (T. Popoviciu, 1935). Sum: the bound of
-//! D. Filip, R. Magedson, R. Markot, *Surface algorithms using bounds on derivatives*, 1986, here for triangles that are cut.
+//! `h² |S_uu| / 8 + k² |S_vv| / 8` of S. Its own second derivative is the mixed one, at most `|S_uv|`. A point with
+//! weights `w_i` of a triangle's corners is off it by at most `|S_uv| Σ w_i |Δu_i| |Δv_i|`, that is `|S_uv| h k / 4`:
+//! the spread of numbers that differ by h at most is h / 2 (T. Popoviciu, 1935). The sum is the bound of D. Filip, R.
+//! Magedson, R. Markot, *Surface algorithms using bounds on derivatives*, 1986, here for cut triangles.
 //!
-//! Corners of trapezoids lie on the bilinear surface, whose isolines are straight: pieces on both sides of one meet there.
-//! All patches of a column of a face have as many cells along u, so its triangles leave no gap but that of rounding.
+//! Trapezoids' corners lie on the bilinear surface, whose isolines are straight: pieces on both sides of an isoline
+//! meet. Patches in a column have equally many cells along u, so triangles leave no gap except by rounding.
 
 use super::region::Region;
 use crate::model::Face;
@@ -24,49 +24,49 @@ use crate::spline::{Bezier, PatchGrid};
 use crate::trim::{LoopIndex, RectSide, chord_bend, polyline};
 use glam::{DVec2, DVec3};
 
-/// Cells of a patch along a parameter, at most: a surface that turns so much in one patch is known less well.
+/// Most cells of a patch along a parameter. A patch that bends more gets a larger deviation.
 const MOST_CELLS: f64 = 1024.0;
-/// Chords of a trim curve, likewise.
+/// Most chords of a trim curve. A curve that bends more gets a larger deviation.
 const MOST_CHORDS: f64 = 4096.0;
-/// What trim curves may be off by, of what the surface may: a gap between two faces is as wide.
+/// Deviation of trim curves, as a share of the surface's: it becomes a gap between two faces.
 const OF_TRIMS: f64 = 0.125;
-/// Chords in a cell that are cut into trapezoids at once: slabs times chords are compared.
+/// Most chords in a cell that is cut into trapezoids at once; the cost is slabs times chords.
 const FEW_CHORDS: usize = 12;
-/// Halvings of a cell for that.
+/// Most halvings of a cell with more chords.
 const MOST_HALVINGS: u32 = 32;
 
-/// Of a corner, relative to its distance from the origin: 4096 ulp.
+/// Rounding of a corner, relative to its distance from the origin: 4096 ulp.
 const PLACE_ROUNDING: f64 = 1.0 / 1_099_511_627_776.0;
 
 /// A triangle of a face.
 pub(super) struct Near {
     /// Counter-clockwise from outside.
     pub corners: [DVec3; 3],
-    /// How far the face is from it at the same parameters, at most.
+    /// Largest distance from the face at the same parameters.
     pub off: f64,
-    /// Corners of the cell that it is of.
+    /// Corners of the cell that contains it.
     pub cell: [DVec3; 4],
 }
 
-/// A face, and what is known of its patches.
+/// A face, and bounds on its patches' derivatives.
 pub(super) struct FacePlan<'a> {
     face: &'a Face,
     grid: PatchGrid,
-    /// Of each patch: bounds of the second derivatives along u and v, each with half of the mixed one. `None` where
-    /// nothing of the face is.
+    /// For each patch: bounds of the second derivatives along u and v, each with half of the mixed one. `None` if no
+    /// part of the face lies in the patch.
     bends: Vec<Option<DVec2>>,
-    /// Bounds of the first derivatives, to a unit of the face's parameters.
+    /// Bounds of the first derivatives, per unit of the face's parameters.
     speed: DVec2,
 }
 
-/// Into how many cells columns and rows of patches are cut.
+/// The numbers of cells in each column and each row of patches.
 struct Cells {
     across: Vec<u32>,
     up: Vec<u32>,
 }
 
 impl<'a> FacePlan<'a> {
-    /// Cost: that of the patches' derivative bounds, some 10 to 200 µs each.
+    /// Cost: the patches' derivative bounds, some 10 to 200 µs each.
     pub fn new(face: &'a Face) -> Self {
         let grid = flattened(face.surface.patches(), Cuts::Any);
         let index = (!face.loops.is_empty()).then(|| LoopIndex::new(&face.loops));
@@ -78,7 +78,7 @@ impl<'a> FacePlan<'a> {
             bends.push((side != RectSide::Outside).then(|| {
                 let b = p.patch.derivative_bound();
                 speed = speed.max(DVec2::new(b.u, b.v) / (high - low));
-                // 2 h k <= a h² + k² / a, best where cells are square
+                // 2 h k <= a h² + k² / a, with equality for square cells
                 let a = if b.u > 0.0 && b.v > 0.0 { b.u / b.v } else { 1.0 };
                 DVec2::new(b.uu + a * b.uv, b.vv + b.uv / a)
             }));
@@ -95,7 +95,7 @@ impl<'a> FacePlan<'a> {
         }
         let mut across = vec![1; rows];
         for (n, bend) in self.bends.iter().enumerate().filter_map(|(n, b)| Some((n, b.as_ref()?))) {
-            // what the rows leave of it, at least half but where they are cut no further
+            // the share that the rows leave: at least half, unless the rows have reached their most cells
             let rest = (8.0 * deviation - bend.y / f64::from(up[n / rows]).powi(2)).max(4.0 * deviation);
             across[n % rows] = across[n % rows].max(count(bend.x / rest));
         }
@@ -107,7 +107,7 @@ impl<'a> FacePlan<'a> {
         bend.sqrt().ceil().clamp(1.0, MOST_CHORDS) as u32
     }
 
-    /// About how many triangles keep within a deviation.
+    /// Approximate number of triangles for a deviation.
     pub fn count(&self, deviation: f64) -> u64 {
         let cells = self.cells(deviation);
         let rows = self.grid.count_u;
@@ -116,11 +116,11 @@ impl<'a> FacePlan<'a> {
             patches.map(|(n, _)| 2 * u64::from(cells.across[n % rows]) * u64::from(cells.up[n / rows])).sum();
         let chords = |c: &Bezier<DVec3>| u64::from(self.chords(c, deviation));
         let cut: u64 = self.face.loops.iter().flat_map(|l| l.curves().map(|c| chords(&c)).collect::<Vec<_>>()).sum();
-        // a chord begins a trapezoid in the cell that it is in and in that it comes to, another beside it
+        // a chord adds trapezoids in its own cell, in the next cell, and beside itself
         whole + 4 * cut
     }
 
-    /// Tells of the triangles that keep within a deviation, or as nearly as [`MOST_CELLS`] does.
+    /// Passes triangles within `deviation` to `found`; the deviation is larger if [`MOST_CELLS`] does not suffice.
     pub fn triangles(&self, deviation: f64, found: &mut impl FnMut(Near)) {
         let sheet = Sheet::new(self, &self.cells(deviation));
         let chain = |l: &crate::model::TrimLoop| {
@@ -145,28 +145,28 @@ impl<'a> FacePlan<'a> {
     }
 }
 
-/// A cell among those of its column or row.
+/// One cell of a column or row.
 #[derive(Clone, Copy)]
 struct Slot {
-    /// Column or row of patches.
+    /// Its column or row of patches.
     patch: u32,
-    /// Of its parameters.
+    /// Its range of the patch's parameters.
     from: f64,
     to: f64,
-    /// The same of the face's.
+    /// Its range of the face's parameters.
     low: f64,
     high: f64,
     cells: u32,
 }
 
-/// A face as cells.
+/// A face divided into cells.
 struct Sheet<'a> {
     plan: &'a FacePlan<'a>,
     across: Vec<Slot>,
     up: Vec<Slot>,
 }
 
-/// First and last cell along u, then along v; the last is not part of it.
+/// First cell and end along u, then first cell and end along v.
 type Block = [u32; 4];
 
 impl<'a> Sheet<'a> {
@@ -177,27 +177,27 @@ impl<'a> Sheet<'a> {
         Self { plan, across, up }
     }
 
-    /// The patch of a cell, by number.
+    /// Number of the cell's patch.
     fn patch(&self, i: u32, j: u32) -> usize {
         let (column, row) = (self.across[i as usize].patch, self.up[j as usize].patch);
         row as usize * self.plan.grid.count_u + column as usize
     }
 
-    /// How far the face is from the triangles of a cell.
+    /// A bound on the distance between the face and the triangles of a cell.
     fn deviation(&self, i: u32, j: u32) -> Option<f64> {
         let bend = self.plan.bends[self.patch(i, j)]?;
         let n = DVec2::new(f64::from(self.across[i as usize].cells), f64::from(self.up[j as usize].cells));
         Some((bend / (n * n)).element_sum() / 8.0)
     }
 
-    /// A point of the face at a corner of cell (i, j).
+    /// The point of the face at a corner of cell (i, j).
     fn point(&self, (i, j): (u32, u32), (right, top): (bool, bool)) -> DVec3 {
         let at = |slot: &Slot, end: bool| if end { slot.to } else { slot.from };
         let (u, v) = (at(&self.across[i as usize], right), at(&self.up[j as usize], top));
         self.plan.grid.patches[self.patch(i, j)].patch.point(u, v)
     }
 
-    /// Corners (0, 0), (1, 0), (0, 1) and (1, 1). Those that cells share are computed in one way only.
+    /// Corners (0, 0), (1, 0), (0, 1) and (1, 1). Corners that cells share are computed alike for all of them.
     fn corners(&self, i: u32, j: u32) -> [DVec3; 4] {
         [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(right, top)| {
             let beyond = (i + right == self.across.len() as u32, j + top == self.up.len() as u32);
@@ -216,10 +216,10 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// All cells of a block.
+    /// Triangles of all cells in a block.
     fn whole(&self, [first, end, low, high]: Block, found: &mut impl FnMut(Near)) {
         for j in low..high {
-            // each column of corners is the last one's right
+            // the right corners of a cell are the left corners of the next
             let mut left: Option<[DVec3; 2]> = None;
             for i in first..end {
                 let corners = match left {
@@ -237,7 +237,7 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// What loops surround of a block.
+    /// Triangles of the part of a block that the loops surround.
     fn cut(&self, block: Block, region: &Region, found: &mut impl FnMut(Near)) {
         let [first, end, low, high] = block;
         match region.whole() {
@@ -263,7 +263,7 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// What loops surround of a cell, or of a part of it.
+    /// Triangles of the part of a cell that the loops surround.
     fn trapezoids(
         &self,
         cell: (u32, u32),
@@ -291,15 +291,14 @@ impl<'a> Sheet<'a> {
     }
 }
 
-/// Whether corners lie on a line, within the rounding of their places: at a pole, where two of them are one point that is
-/// computed twice, what is left of a plane is nowhere near the face.
+/// Whether corners lie on a line, up to rounding, as at a pole, where two of them are one point computed twice.
 fn is_line([p, q, r]: [DVec3; 3]) -> bool {
     let longest = (q - p).length().max((r - q).length()).max((p - r).length());
     let known = PLACE_ROUNDING * [p, q, r].into_iter().map(|c| c.abs().max_element()).fold(0.0, f64::max);
     (q - p).cross(r - p).length() <= known * longest
 }
 
-/// Of patches in a row, of which each has a range of the face's parameters.
+/// The cells of a row of patches, each with its range of the face's parameters.
 fn slots(counts: &[u32], range: impl Fn(usize) -> (f64, f64)) -> Vec<Slot> {
     let mut all = Vec::with_capacity(counts.iter().sum::<u32>() as usize);
     for (patch, &cells) in counts.iter().enumerate() {
@@ -356,7 +355,7 @@ mod tests {
         [0.0, 3.0].iter().flat_map(|z| arc.map(|(x, y, w)| DVec4::new(x * w, y * w, z * w, w))).collect()
     }
 
-    /// Bicubic, with hills, rational.
+    /// A bicubic, rational patch with hills.
     fn hilly() -> Vec<DVec4> {
         let height = [0.0, 1.0, -1.0, 0.3, 1.0, 2.0, 0.0, -1.0, -1.0, 0.0, -3.0, 1.0, 0.5, -1.0, 1.0, 0.0];
         let point = |(k, z): (usize, f64)| {
@@ -366,7 +365,7 @@ mod tests {
         height.into_iter().enumerate().map(point).collect()
     }
 
-    /// A parabola, pulled straight: its bound is attained.
+    /// A parabola along a straight line: it attains the bound.
     fn bent() -> Vec<DVec4> {
         [0.0, 3.0]
             .iter()
@@ -374,7 +373,7 @@ mod tests {
             .collect()
     }
 
-    /// Bilinear, twisted.
+    /// A bilinear, twisted patch.
     fn twisted() -> Vec<DVec4> {
         [(0.0, 0.0, 0.0), (2.0, 0.0, 1.0), (0.0, 2.0, 1.0), (2.0, 2.0, -0.5)]
             .map(|p| DVec3::from(p).extend(1.0))
@@ -384,7 +383,7 @@ mod tests {
     fn triangles(face: &Face, deviation: f64) -> Vec<Near> {
         let (plan, mut all) = (FacePlan::new(face), Vec::new());
         plan.triangles(deviation, &mut |near| all.push(near));
-        // an estimate: of memory, so not far too small
+        // the estimate serves to reserve memory; it must not be far too small
         assert!(all.len() as u64 <= 2 * plan.count(deviation) + 16, "{} for {}", all.len(), plan.count(deviation));
         all
     }
@@ -403,7 +402,7 @@ mod tests {
         to_side(a, b).min(to_side(b, c)).min(to_side(c, a))
     }
 
-    /// Points of a face are as near to its triangles as is promised, and the promise is not idle; so are trimmed ones.
+    /// Points of a face, trimmed or not, are within the promised distance, which some nearly attain.
     #[test]
     fn triangles_keep_within_the_deviation() {
         for (name, degrees, points) in [
@@ -435,7 +434,7 @@ mod tests {
         }
     }
 
-    /// The area of what is trimmed, and no triangle in the hole: on a plane, whose cells are as coarse as can be.
+    /// The triangles have the trimmed area, and none lies in a hole. The face is a plane, with the coarsest cells.
     #[test]
     fn holes_are_left_out() {
         let plane = [(0.0, 0.0), (4.0, 0.0), (0.0, 4.0), (4.0, 4.0)].map(|(x, y)| DVec4::new(x, y, 0.0, 1.0));
@@ -450,7 +449,7 @@ mod tests {
             let (index, all) = (LoopIndex::new(&face.loops), triangles(&face, 1e-3));
             let area: f64 = all.iter().map(|Near { corners: [a, b, c], .. }| 0.5 * (*b - *a).cross(*c - *a).z).sum();
             let (truth, around) = (16.0 * (1.0 - PI * holes), 2.0 * PI * 4.0 * radii);
-            // chords within an eighth of the deviation, all around the holes
+            // chords deviate by an eighth of the deviation, all around the holes
             assert!(area - truth < around * 1e-3 / 8.0 && area >= truth, "{area} for {truth}");
             for Near { corners: [a, b, c], off, .. } in &all {
                 let p = (*a + *b + *c).truncate() / 12.0;
@@ -459,8 +458,8 @@ mod tests {
         }
     }
 
-    /// Where a row of corners is one point, computed in many ways, no triangle stands on end: an eighth of a ball that is
-    /// not at the origin.
+    /// At a row of corners that is one point, computed in many ways, no triangle stands on end: an eighth of a ball
+    /// away from the origin.
     #[test]
     fn triangles_at_a_pole_lie_on_the_face() {
         let arc = [(1.0, 0.0, 1.0), (1.0, 1.0, FRAC_1_SQRT_2), (0.0, 1.0, 1.0)];
@@ -480,7 +479,8 @@ mod tests {
         assert!(upright.count() == 0 && all.len() > 100, "{}", all.len());
     }
 
-    /// Every side of a triangle is another's, the other way round, but at the border of the face.
+    /// Every side of a triangle, except at the face's border, is also a side of another triangle, in the other
+    /// direction.
     #[test]
     fn cells_meet() {
         let face = face((3, 3), hilly(), vec![]);

@@ -1,4 +1,4 @@
-//! What closed chains of chords surround in a rectangle, cut into halves and at last into trapezoids.
+//! The part of a rectangle that closed chains of chords surround, cut into halves and finally into trapezoids.
 //!
 //! ```text
 //!   high ┌──────╱──────┐          right half: chords left of it become steps of its left border
@@ -8,9 +8,9 @@
 //!    low └──╱──────────┘            └──────┘
 //! ```
 //!
-//! A point is surrounded where the chords left of it, climbing ones less falling ones, are not none: the non-zero rule
-//! of [`trim`](crate::trim). So what lies right of a rectangle does not matter to it, and of what lies left of it only
-//! where it climbs or falls: those steps of closed chains cancel but for few.
+//! A point is surrounded if the numbers of rising and of falling chords to its left differ: the non-zero rule of
+//! [`trim`](crate::trim). So chords to the right of a rectangle do not matter. Of chords to its left only the heights
+//! at which they rise or fall matter; most of these steps cancel, because the chains are closed.
 
 use glam::DVec2;
 
@@ -19,11 +19,11 @@ use glam::DVec2;
 pub(super) struct Region {
     low: DVec2,
     high: DVec2,
-    /// How often the chains go around the lowest points of the left border.
+    /// Winding number at the lowest points of the left border.
     around: i32,
-    /// Where that changes along the border, and by how much: ascending, inside of the border.
+    /// Changes of the winding number along the left border: height and step, ascending, between its ends.
     steps: Vec<(f64, i32)>,
-    /// None is level.
+    /// No chord is horizontal.
     chords: Vec<[DVec2; 2]>,
 }
 
@@ -31,7 +31,7 @@ pub(super) struct Region {
 pub(super) type Trapezoid = [DVec2; 4];
 
 impl Region {
-    /// What closed chains, the last point of each the first, surround within a rectangle.
+    /// The part of a rectangle that closed chains surround. The last point of each chain is its first.
     pub fn new<'a>(chains: impl IntoIterator<Item = &'a [DVec2]>, low: DVec2, high: DVec2) -> Self {
         let chords = chains.into_iter().flat_map(|chain| chain.windows(2).map(|w| [w[0], w[1]])).collect();
         let (all, nothing) = (DVec2::INFINITY, Vec::new());
@@ -43,7 +43,7 @@ impl Region {
         inside
     }
 
-    /// Whether all of the rectangle is surrounded, or none of it; `None` where chords tell.
+    /// Whether all of the rectangle is surrounded, or none of it; `None` if chords cross it.
     pub fn whole(&self) -> Option<bool> {
         (self.chords.is_empty() && self.steps.is_empty()).then_some(self.around != 0)
     }
@@ -97,7 +97,7 @@ impl Region {
         [below.settled(), above.settled()]
     }
 
-    /// A chord is left of the border, between these heights.
+    /// Adds a chord that lies left of the border, between two heights.
     fn pass(&mut self, from: f64, to: f64) {
         self.steps.extend(match from < to {
             true => [(from, 1), (to, -1)],
@@ -105,7 +105,7 @@ impl Region {
         });
     }
 
-    /// Steps in order, those at one height together, none at an end of the border; no level chord.
+    /// Sorts the steps, merges those at one height, and removes steps at the border's ends and horizontal chords.
     fn settled(mut self) -> Self {
         self.chords.retain(|[a, b]| a.y != b.y);
         self.steps.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
@@ -126,8 +126,8 @@ impl Region {
         self
     }
 
-    /// What is surrounded, as trapezoids whose lower and upper sides are level. Chords that cross each other within a slab
-    /// are told apart by its middle.
+    /// The surrounded part as trapezoids whose lower and upper sides are horizontal. Chords that cross within a slab
+    /// are sorted by its middle.
     pub fn trapezoids(&self, mut found: impl FnMut(Trapezoid)) {
         let ends = self.chords.iter().flatten().map(|p| p.y).chain(self.steps.iter().map(|s| s.0));
         let mut levels: Vec<f64> = ends.chain([self.low.y, self.high.y]).collect();
@@ -165,7 +165,7 @@ impl Region {
     }
 }
 
-/// Where the chord is at a height between its ends: the same from both.
+/// The chord's place at a height between its ends; the same for both directions of the chord.
 fn across(a: DVec2, b: DVec2, v: f64) -> f64 {
     let (a, b) = if a.y < b.y { (a, b) } else { (b, a) };
     if v == b.y {
@@ -179,18 +179,18 @@ fn across(a: DVec2, b: DVec2, v: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Area of what is surrounded, by halving down to `levels`, and how many trapezoids that took.
+    /// The surrounded area, by halving `levels` times, and the number of trapezoids.
     fn area(region: &Region, levels: u32) -> (f64, usize) {
         if levels > 0 && region.whole().is_none() {
             let (low, high) = region.corners();
-            // not in the middle, so that halves are unlike
+            // not the middle, so that the halves differ
             let at = low.lerp(high, 0.37);
             let halves = if levels.is_multiple_of(2) { region.across_u(at.x) } else { region.across_v(at.y) };
             return halves.iter().map(|half| area(half, levels - 1)).fold((0.0, 0), |(a, n), (b, m)| (a + b, n + m));
         }
         let (mut sum, mut count) = (0.0, 0);
         region.trapezoids(|[a, b, c, d]| {
-            // chains that lie on each other are cut at places that differ by their rounding
+            // chains on top of each other are cut at places that differ by rounding
             let ordered = a.x <= b.x + 1e-12 && c.x <= d.x + 1e-12;
             assert!(a.y == b.y && c.y == d.y && a.y < c.y && ordered, "{a} {b} {c} {d}");
             sum += 0.5 * (b.x - a.x + d.x - c.x) * (c.y - a.y);
@@ -205,7 +205,7 @@ mod tests {
         (0..=n).map(at).collect()
     }
 
-    /// Of a polygon on a circle.
+    /// Area of a regular polygon on a circle.
     fn polygon(radius: f64, n: u32) -> f64 {
         0.5 * f64::from(n) * radius * radius * (std::f64::consts::TAU / f64::from(n)).sin()
     }
@@ -216,7 +216,7 @@ mod tests {
         let (hole, other) = (ring(DVec2::new(1.5, 1.5), 1.0, 37, -1.0), ring(DVec2::new(3.0, 1.0), 0.4, 5, -1.0));
         let truth = 12.0 - polygon(1.0, 37) - polygon(0.4, 5);
         let chains: [&[DVec2]; 3] = [&square, &hole, &other];
-        // of the domain, too small, too large
+        // the domain, a smaller rectangle, a larger one
         for (low, high, truth) in [
             (DVec2::ZERO, DVec2::new(4.0, 3.0), truth),
             (DVec2::splat(-1.0), DVec2::splat(9.0), truth),
@@ -225,7 +225,7 @@ mod tests {
             let region = Region::new(chains, low, high);
             for levels in 0..12 {
                 let (found, count) = area(&region, levels);
-                // a polygon of an odd number of corners is not halved at its middle, but nearly
+                // halving an odd polygon at its middle is only nearly exact
                 let slack = if low.x == 1.5 { 0.01 } else { 1e-12 };
                 assert!((found - truth).abs() < slack, "{found} for {truth} after {levels} halvings");
                 assert!(count > 10, "{count}");
@@ -233,7 +233,7 @@ mod tests {
         }
     }
 
-    /// Twice around counts once, and there and back again not at all.
+    /// Two turns count as one, and a turn back and forth as none.
     #[test]
     fn the_rule_is_non_zero() {
         let ring = |way| ring(DVec2::ONE, 1.0, 24, way);

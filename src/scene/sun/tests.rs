@@ -19,7 +19,7 @@ impl Dice {
     }
 }
 
-/// A random expression over balls beside each other, some of them half-spaces.
+/// A random expression over balls side by side, some of them half-spaces.
 fn solids(dice: &mut Dice, count: u32, ops: [Op; 4]) -> SolidData {
     let shape = |k: u32, unbounded: bool| match unbounded {
         true => Shape::HalfSpace { normal: DVec3::Y, offset: f64::from(k) },
@@ -45,7 +45,7 @@ fn solids(dice: &mut Dice, count: u32, ops: [Op; 4]) -> SolidData {
     SolidData::new(&Lists::union(std::slice::from_ref(&solid)), SurfaceTable::ROUNDED, SolidWay::Events).unwrap()
 }
 
-/// Where a walk ends that is out of every leaf but those of which `inside` says otherwise.
+/// The end of a walk that is inside the leaves of `inside` and outside all others.
 fn walk(from: u32, exits: impl Fn(u32) -> (u32, u32, u32), inside: &[bool]) -> u32 {
     let mut at = from;
     while at < EXIT_FALSE {
@@ -55,7 +55,8 @@ fn walk(from: u32, exits: impl Fn(u32) -> (u32, u32, u32), inside: &[bool]) -> u
     at
 }
 
-/// In every tile, the walk over its list ends where that over all leaves does, whoever of the list is inside.
+/// In every tile, the walk over its list ends where the walk over all leaves does, whichever leaves of the list are
+/// inside.
 #[test]
 fn a_tile_answers_as_the_whole_list_does() {
     let mut dice = Dice(7);
@@ -83,11 +84,11 @@ fn a_tile_answers_as_the_whole_list_does() {
     assert!(short > 1000 && ends.iter().all(|n| *n > 1000), "{short} lists are shorter, {ends:?}");
 }
 
-/// A leaf is in the tile of every point of its box, and where there is none its point belongs to a tile, too.
+/// A leaf is in the tile of every point of its box. A point without a leaf belongs to a tile, too.
 #[test]
 fn a_leaf_is_in_the_tiles_that_its_box_reaches() {
     let mut dice = Dice(3);
-    // of a union every box is whole
+    // in a union, no box is clipped
     let data = solids(&mut dice, 24, [Op::Union; 4]);
     let (eye, sun) = (DVec3::new(30.0, -20.0, 40.0), SunData::new(DVec3::new(-0.7, 0.4, 0.8), &data, None));
     let seen = sun.seen_from(eye);
@@ -99,7 +100,7 @@ fn a_leaf_is_in_the_tiles_that_its_box_reaches() {
             let (x, y, z) = (share(), share(), share());
             let half = DVec3::from(leaf.half_size.map(f64::from));
             let half = if half.is_finite() { half } else { DVec3::splat(100.0) };
-            // seen from the eye, along the sun's ray
+            // relative to the eye, moved along the sun's ray
             let p = centre + half * DVec3::new(x, y, z) + sun.towards * 10.0 * share() - eye;
             let at = [row(seen.right, p) + f64::from(seen.eye[0]), row(seen.up, p) + f64::from(seen.eye[1])];
             let [x, y] = std::array::from_fn(|k| at[k].clamp(0.0, f64::from(sun.across[k] - 1)) as usize);
@@ -112,7 +113,7 @@ fn a_leaf_is_in_the_tiles_that_its_box_reaches() {
     assert!(sun.tiles.len() > 16 && met > 500, "{} tiles, {met}", sun.tiles.len());
 }
 
-/// Large leaves in front of each other get larger tiles, a point and a line some, nothing none.
+/// Large leaves in front of each other get larger tiles; a point and a line get a few, nothing gets none.
 #[test]
 fn lists_are_bounded() {
     let stack = |n: u32, half: [f32; 3]| SolidData {
@@ -139,13 +140,14 @@ fn lists_are_bounded() {
         assert!(few.seen_from(DVec3::ONE).right.iter().all(|x| x.is_finite()), "{half:?}");
     }
     assert!(!sun(&SolidData::default()).has_casters());
-    // as far from each other as numbers go
+    // the largest distance between finite numbers
     let far = [DVec3::splat(-f64::MAX), DVec3::splat(f64::MAX)];
     let apart = sun(&SolidData { leaf_centres: far.to_vec(), ..stack(2, [1.0; 3]) });
     assert_eq!((apart.across, apart.leaves.len()), ([1; 2], 2));
 }
 
-/// More than there is room for: coarser, and then left out; what fits is there. Nothing that has no numbers is.
+/// Too many triangles make the deviation larger, then leave casters out; casters that fit are present. Non-finite ones
+/// are left out.
 #[test]
 fn triangles_are_bounded() {
     use crate::model::{Face, Instance, Part, SurfaceKind};

@@ -1,5 +1,5 @@
-//! The guarantee of [`factor`](super) put to the test, see [`trial`](crate::fixtures). `cargo bench --bench factors
-//! --features baselines` does so with as many patches as one likes, and compares other ways.
+//! Tests of the guarantee of [`factor`](super), by [`trial`](crate::fixtures).
+//! `cargo bench --bench factors --features baselines` tests any number of patches, and compares other ways.
 
 use crate::fixtures::{Emit, Kind, Trial};
 use crate::twin::bound::DEPTH_SHARE;
@@ -16,8 +16,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// 0 violations; and how much finer than needed: how many times fewer segments along each side the smallest
-/// sufficient factors of the same ratio have.
+/// 0 violations; and a measure of the excess: the ratio to the smallest sufficient factors of the same proportion.
 #[test]
 fn no_patch_deviates_by_more_than_the_budget() {
     let trials: Vec<_> = (0..PATCHES)
@@ -26,7 +25,7 @@ fn no_patch_deviates_by_more_than_the_budget() {
             let trial = Trial::random(seed, KIND);
             let unseen = trial.tau[0] == 0;
             let deviation = trial.measure(if unseen { [16; 2] } else { trial.tau }, FINENESS, Emit::Point);
-            // a patch that is left out has no point in the picture
+            // no point of a patch that is left out is in the picture
             assert!(!unseen || deviation.points == 0, "seed {seed}: left out, but seen");
             let kept = unseen || trial.clamped() || deviation.px <= trial.allowed();
             assert!(kept, "seed {seed}: {} px", deviation.px);
@@ -49,7 +48,7 @@ fn no_patch_deviates_by_more_than_the_budget() {
     assert!(polynomial < 1.5 && rational < 2.0, "{polynomial}, {rational}");
 }
 
-/// The test above can fail: at half the factors, many patches break the budget.
+/// The test above can fail: with half the factors, many patches exceed the budget.
 #[test]
 fn half_the_factor_breaks_the_budget() {
     let broken = |seed| {

@@ -1,17 +1,17 @@
-//! Why the factor is bounded in space and not on the screen: the two bounds side by side.
+//! Why the factor is bounded in space and not on the screen: a comparison of both bounds.
 //!
 //! The screen-space bound takes the control points as homogeneous pixels `(X, Y, W)`, weights multiplied
 //! in. For a pixel at abscissa `x` let `L = X - x W`; then the linear interpolant over cells of
-//! `1 / tau_u` by `1 / tau_v` is off by at most
+//! `1 / tau_u` by `1 / tau_v` deviates by at most
 //!
 //! ```text
 //!   (M_uu / tau_u² + 2 M_uv / (tau_u tau_v) + M_vv / tau_v²) / (8 W_min)
 //!   M_uu = n (n-1) max |Δ²_u L|     M_uv = n k max |Δ_u Δ_v L|     M_vv = k (k-1) max |Δ²_v L|
 //! ```
 //!
-//! pixels, the largest over both ends of the range of `x`, and of `y` alike. It bounds the error of the
-//! interpolated *homogeneous* position, parameters included; but weights that vary along one parameter
-//! enter the mixed difference times the extent along the other.
+//! pixels, the largest over both ends of the range of `x`, and likewise of `y`. It bounds the error of the interpolated
+//! *homogeneous* position, parameters included. Weights that vary along one parameter enter the mixed difference, times
+//! the extent along the other parameter.
 
 use super::factors;
 use crate::abi::Counters;
@@ -65,7 +65,7 @@ fn screen_bound(patch: &Patch, to_pixels: DMat4, size: DVec2) -> ([f64; 3], f64)
     (most, w_min)
 }
 
-/// A quarter cylinder 500 pixels long and 100 pixels in radius: how many quads each bound asks for.
+/// A quarter cylinder 500 pixels long with a radius of 100 pixels: the number of quads for each bound.
 #[test]
 fn a_quarter_cylinder_needs_few_strips() {
     let arc = [(1.0, 0.0, 1.0), (1.0, 1.0, FRAC_1_SQRT_2), (0.0, 1.0, 1.0)];
@@ -73,7 +73,7 @@ fn a_quarter_cylinder_needs_few_strips() {
     let points: Vec<DVec4> = [-250.0, 250.0].iter().flat_map(|&x| arc.map(|p| point(x, p))).collect();
     let (parabola, line) = (vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]);
     let surface = Surface::new((2, 1), parabola, line, points).unwrap();
-    // a pixel is a unit where the cylinder is nearest
+    // one unit is one pixel at the cylinder's nearest point
     let (distance, size) = (5000.0, (800, 600));
     let fov_y = 2.0 * (300.0f64 / distance).atan();
     let camera = Camera {

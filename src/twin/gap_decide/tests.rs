@@ -1,4 +1,4 @@
-//! A tiny situation for each rule, in the order of docs/design/gaps.md.
+//! A small situation for each rule, in the order of docs/design/gaps.md.
 
 use super::*;
 
@@ -17,18 +17,18 @@ fn near(face: u32, depth: f32) -> Candidate {
     Candidate { kind: Kind::Near, inside: false, ..present(face, depth) }
 }
 
-/// A border lies before face 9, of which the pixel shows something.
+/// A border lies before face 9, which the pixel shows.
 fn before(own: Candidate) -> Situation {
     Situation { border: true, seen: SEEN, own, ..Situation::default() }
 }
 
-/// A back face, 9, at depth 1, whose border may be near.
+/// A back face, 9, at depth 1, perhaps near its border.
 fn back() -> Situation {
     let own = Candidate { away: true, ..near(9, 1.0) };
     Situation { seen: SEEN, own, ..Situation::default() }
 }
 
-/// The same far from its border.
+/// The same back face far from its border.
 fn interior() -> Situation {
     Situation { own: Candidate { away: true, ..present(9, 1.0) }, ..back() }
 }
@@ -57,7 +57,7 @@ fn far_away_only_a_front_counts() {
     shows(&interior(), &[beyond(near(1, 0.7))], SEEN);
 }
 
-/// Across a fold the back face's own front counts where it lies before it; it does not touch it.
+/// Across a fold, the back face's own front counts if it lies before the back; it does not touch the back.
 #[test]
 fn the_front_across_a_fold_counts() {
     let fold = |depth: f32| Candidate { from: From::Fold, ..present(9, depth) };
@@ -99,7 +99,7 @@ fn an_isolated_pixel_has_no_edge() {
     shows(&isolated, &[near(1, 0.9), near(2, 0.8)], NOTHING);
 }
 
-/// Both lie to the left, and there face 1 is nearer: it hides face 2 up to their silhouette, and goes on behind it.
+/// Both lie to the left, where face 1 is nearer: it hides face 2 up to their silhouette, and continues behind it.
 #[test]
 fn a_face_hidden_up_to_a_common_silhouette_is_not_shown_beyond_it() {
     let outline = Outline { into: [-0.5, 0.0], ends: true };

@@ -1,4 +1,4 @@
-//! What [`split`](super) promises, over random faces.
+//! Properties of [`split`](super) on random faces.
 
 use super::*;
 use crate::abi::{Face, FaceInstance, Patch};
@@ -6,7 +6,7 @@ use crate::model::Camera;
 use crate::parity::{Case, Random, cages};
 use glam::DVec3;
 
-/// A face of random factors, some patches unseen, and what `split` makes of it.
+/// A face of random factors with some patches out of sight, and the result of `split`.
 struct Grid {
     face: Face,
     taus: Vec<u32>,
@@ -65,8 +65,8 @@ fn unpack(packed: u32) -> [u32; 2] {
     [packed & 0xffff, packed >> 16]
 }
 
-/// Both patches at a side give it the same number of segments, at least as many as either asks for; a
-/// side with an unseen patch is the drawn one's own.
+/// Both patches at a side give it the same number of segments, at least as many as each needs. If one patch is out of
+/// sight, the number is the drawn one's own.
 #[test]
 fn shared_sides_agree() {
     let mut random = Random::new(5);
@@ -90,9 +90,8 @@ fn shared_sides_agree() {
     assert!(shared > 20_000, "{shared} sides");
 }
 
-/// Splits are powers of two, and so are factors that differ; every side and the interior divide into
-/// the splits, within the hardware's factor; as many segments as the patch asks for everywhere; counts
-/// that tell what will be drawn.
+/// Splits are powers of two, and so are factors that differ. Every side and the interior are multiples of the splits,
+/// within the hardware's factor. Each patch gets at least the segments that it needs. Counts match the draws.
 #[test]
 fn sub_patches_are_within_the_hardware_s_factor() {
     let mut random = Random::new(6);
@@ -122,8 +121,8 @@ fn sub_patches_are_within_the_hardware_s_factor() {
     }
 }
 
-/// Sides of faces that lie on one curve get the same number of segments of it, each at least as many as it asks for;
-/// but where that would be more than a patch's sub-patches can have.
+/// Sides of faces on one curve get the same number of segments of it, each at least as many as it needs, up to the most
+/// that a patch's sub-patches can have.
 #[test]
 fn sides_that_faces_share_agree() {
     let model = cages::a_box().model;
@@ -140,7 +139,7 @@ fn sides_that_faces_share_agree() {
         let out = split(&case.frame, &scene, &taus);
         let (mut shared, mut short) = (0, 0);
         for side in (0..scene.links.len() as u32).filter(|side| scene.links[*side as usize].is_shared()) {
-            // segments of the whole curve, for a drawn side that others may agree with
+            // segments of the whole curve, for a drawn side that others may share
             let of_curve = |side: u32| {
                 let (item, axis) = ((side / 4) as usize, axis_of(side % 4) as usize);
                 let f = out.factors[item];
@@ -167,16 +166,16 @@ fn sides_that_faces_share_agree() {
     }
 }
 
-/// Vertices that the specification gives a quad of equal segments. Source: Vulkan 1.3, 23.7 Quad Tessellation.
+/// Number of vertices of a quad with equal segments, by the specification. Source: Vulkan 1.3, 23.7 Quad Tessellation.
 fn tessellated(inner: [u32; 2], outer: [u32; 4]) -> u32 {
     if inner == [1; 2] && outer == [1; 4] {
         return 4;
     }
-    let [m, n] = inner.map(|n| n.max(2)); // one, treated as a little more, is rounded up
+    let [m, n] = inner.map(|n| n.max(2)); // one counts as slightly more, and is rounded up
     (m - 1) * (n - 1) + outer.iter().sum::<u32>()
 }
 
-/// Draws are cut where they would make more vertices than the driver bears: none makes more than were counted.
+/// Draws are limited by the driver's most vertices: no sub-patch makes more than were counted.
 #[test]
 fn no_sub_patch_makes_more_vertices_than_are_counted() {
     const LEVELS: [u32; 5] = [1, 2, 3, 16, 64];

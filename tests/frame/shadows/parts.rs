@@ -1,4 +1,4 @@
-//! Shadows that spline faces and placed meshes cast: closed forms, and the exact reference, which knows no triangles of
+//! Shadows of spline faces and placed meshes: closed forms, and the exact reference, which does not use triangles of
 //! spline faces.
 
 use super::{SIZE, SUN, facing, judged, sunny};
@@ -17,15 +17,15 @@ use std::f64::consts::TAU;
 
 /// Number of the ground.
 const GROUND: u32 = 1000;
-/// A sun that stands 7 degrees high.
+/// A sun 7 degrees above the horizon.
 const LOW: DVec3 = DVec3::new(-0.9, 0.35, 0.12);
 
-/// Its top is z = 0.
+/// The ground; its top is z = 0.
 fn ground() -> Primitive {
     Primitive { id: GROUND, ..block([-14.0, -14.0, -1.0], [14.0, 14.0, 0.0]) }
 }
 
-/// From above and aside, all of what stands on the ground and its shadow: 15 pixels to a unit.
+/// A view from above and aside of everything on the ground and its shadow: 15 pixels a unit.
 fn above(middle: DVec3) -> Camera {
     Camera {
         eye: middle + DVec3::new(6.0, -18.0, 30.0),
@@ -37,9 +37,8 @@ fn above(middle: DVec3) -> Camera {
     }
 }
 
-/// Holds the ground's pixels against where it is in shade: all but those within half a pixel of a border, which is what
-/// a picture may be off by; the deviation of these scenes is less than a twelfth of that. Returns how many are lit and
-/// not.
+/// Compares the ground's pixels with their known shade, except within half a pixel of a border, the tolerance; the
+/// deviation in these scenes is less than a twelfth of that. Returns the numbers of lit and of shaded pixels.
 fn assert_ground(picture: &Picture, camera: &Camera, name: &str, shade: impl Fn(DVec3) -> bool) -> [usize; 2] {
     let in_shade = |at: DVec2| {
         let (o, d) = camera.ray(at);
@@ -61,7 +60,7 @@ fn assert_ground(picture: &Picture, camera: &Camera, name: &str, shade: impl Fn(
     seen
 }
 
-/// Whether a line meets the ball of radius [`SPHERE_RADIUS`] that a transform puts somewhere, after its start.
+/// Whether a line, from its start on, meets the transformed ball of radius [`SPHERE_RADIUS`].
 fn meets_ball(to: DAffine3, start: DVec3, towards: DVec3) -> bool {
     let back = to.inverse();
     let (o, d) = (back.transform_point3(start), back.transform_vector3(towards));
@@ -69,7 +68,7 @@ fn meets_ball(to: DAffine3, start: DVec3, towards: DVec3) -> bool {
     t > 0.0 && (o + d * t).length() < SPHERE_RADIUS
 }
 
-/// The shadow of an ellipsoid on a plane is an ellipse, and on the ellipsoid itself there is none where it faces the sun.
+/// The shadow of an ellipsoid on a plane is an ellipse; the side of the ellipsoid that faces the sun has none.
 #[test]
 fn a_spline_ball_casts_an_ellipse() {
     let up = at(0.0, 0.0, 3.2) * DAffine3::from_scale(DVec3::splat(0.6));
@@ -86,7 +85,7 @@ fn a_spline_ball_casts_an_ellipse() {
             let ball = Primitive { id: 1, ..moved(to, operands::part(shapes::sphere())) };
             let apart = of(vec![one(ground()), one(ball.clone())]);
             let cut = {
-                // less what is not there: the ball's leaf is in an expression
+                // less something absent: the ball's leaf is part of an expression
                 let nothing = Primitive { id: 2, ..block([20.0; 3], [21.0; 3]) };
                 of(vec![numbered("A+(B-C)", [ground(), ball, nothing], [GROUND, 1, 2])])
             };
@@ -98,14 +97,14 @@ fn a_spline_ball_casts_an_ellipse() {
                 let picture = render(&mut renderer, &camera);
                 let [lit, dark] = assert_ground(&picture, &camera, &name, |q| meets_ball(to, q, s));
                 assert!(lit > 3000 && dark > 300, "{name}: {lit} lit, {dark} not");
-                // no acne: a ball is in its own way nowhere
+                // no acne: a ball does not shade itself where it faces the sun
                 let (mut own, mut outline) = ([0; 2], 0);
                 let tracer = Tracer::new(&m);
                 for i in (0..picture.face.len()).filter(|i| picture.face[*i] == 1) {
                     let rise = DVec3::from(picture.normal[i].map(f64::from)).dot(s);
                     if rise.abs() > 1e-5 {
                         let at = centre(i, camera.size);
-                        // at its outline the far side is seen, whose normal is told as if it were the near side's
+                        // at its outline the far side is visible, whose normal is turned to the viewer
                         let lit = picture.sunlit[i] == (rise > 0.0) || {
                             let near = tracer.probe(&camera).first(at).expect("it is there").normal;
                             outline += 1;
@@ -122,7 +121,7 @@ fn a_spline_ball_casts_an_ellipse() {
     assert_silent(renderer);
 }
 
-/// A sheet blocks the light from both sides, and its trimmed hole lets it through: both edges by closed forms.
+/// A sheet blocks the light from both sides, and its trimmed hole passes it: both edges by closed forms.
 #[test]
 fn sheets_cast_shadows() {
     let (hole, radius) = PLATE_HOLE;
@@ -166,7 +165,7 @@ fn sheets_cast_shadows() {
     assert_silent(renderer);
 }
 
-/// Everything on a slab, with the slab a part of it or not: against the reference, every pixel.
+/// Everything on a slab, with the slab as a part or as a solid: against the reference, every pixel.
 #[test]
 fn whatever_there_is_casts_shadows_as_in_truth() {
     let mut renderer = watched(&Model::default());
@@ -189,7 +188,7 @@ fn whatever_there_is_casts_shadows_as_in_truth() {
                 Ok((light, picture)) => {
                     let (all, lit) = facing(&picture, &camera, towards);
                     deviated += light.deviated;
-                    // a low sun's shadow falls beside the slab, of what is flat
+                    // for a low sun, the shadow of a flat thing falls beside the slab
                     let least = if towards == SUN { 30 } else { 0 };
                     if lit < 200 || all - lit < least || picture.stats.shadowless > 0 {
                         let stats = picture.stats.shadowless;
@@ -204,12 +203,12 @@ fn whatever_there_is_casts_shadows_as_in_truth() {
     assert_silent(renderer);
 }
 
-/// A spline part as a tool: light falls through the hole that it makes, within the ellipse that both its rims leave.
+/// A spline part as a tool: light passes the hole that it makes, within the ellipse that both rims leave.
 #[test]
 fn a_spline_tool_lets_light_through() {
     let (low, high) = (2.0, 2.5);
     let plate = Primitive { id: 1, ..block([-3.0, -3.0, low], [3.0, 3.0, high]) };
-    // as long as the plate is thick and more: the sphere's middle is the plate's
+    // at least as long as the plate is thick: the sphere's middle is the plate's
     let to = at(0.3, -0.2, 0.5 * (low + high)) * DAffine3::from_scale(DVec3::splat(0.5));
     let tool = Primitive { id: 2, ..moved(to, operands::part(shapes::sphere())) };
     let m = of(vec![numbered("A+(B-C)", [ground(), plate, tool], [GROUND, 1, 2])]);
@@ -220,7 +219,7 @@ fn a_spline_tool_lets_light_through() {
         let camera = above(DVec3::new(-s.x, -s.y, 0.0) * 2.5);
         let picture = render(&mut renderer, &camera);
         let shade = |q: DVec3| {
-            // some of the way within the plate is without the ball
+            // part of the way within the plate is outside the ball
             let back = to.inverse();
             let within = |t: f64| back.transform_point3(q + s * t).length() < SPHERE_RADIUS;
             let through = |p: DVec3| p.truncate().abs().max_element() < 3.0;
@@ -264,8 +263,8 @@ fn part_of(part: Part, id: u32, to: DAffine3) -> Primitive {
     Primitive { shape, id, transform: to, colour: [1.0; 4] }
 }
 
-/// A bore whose wall and lids are chords of their own: a ray that slips through between them is no ray within the bore.
-/// Of the light on the ground below, where rays pass the rim of the lower lid.
+/// A bore whose wall and lids have different chords: a ray that passes the crack between them must not count as outside
+/// the bore. Tests the light on the ground below, where rays pass the rim of the lower lid.
 #[test]
 fn no_light_slips_through_cracks() {
     use std::f64::consts::FRAC_1_SQRT_2;
@@ -282,7 +281,7 @@ fn no_light_slips_through_cracks() {
     let m = of(vec![numbered("A+(B-C)", [ground(), plate, bore], [GROUND, 1, 2])]);
     let s = SUN.normalize();
     let below = |z: f64| (DVec3::Z - s / s.z) * z;
-    // over half of the rim's shadow, which is seen from below the plate
+    // over half of the rim's shadow, seen from below the plate
     let middle = below(1.5) + DVec3::new(-0.6, 0.0, 0.0);
     let camera = Camera {
         eye: middle + DVec3::new(0.4, -2.0, 1.2),
@@ -302,8 +301,8 @@ fn no_light_slips_through_cracks() {
     assert!(lit > 10_000 && dark > 10_000, "{lit} lit, {dark} not");
 }
 
-/// A pot with a neck, carved into a block: its wall turns away from the sun and back, so rays leave it where the sun sees
-/// it edge-on. All of what is within it, against the reference.
+/// A pot with a neck, carved into a block: its wall turns away from the sun and back, so some rays leave it where it is
+/// parallel to the sun's rays. Everything inside, against the reference.
 #[test]
 fn a_carved_pot_is_dark_where_the_sun_does_not_reach() {
     let outline = [[0.0, -1.6], [1.6, -1.6], [2.2, -1.2], [2.0, -0.4], [3.0, 0.6]].map(|[r, z]| [r, z, 1.0]);
@@ -327,8 +326,9 @@ fn a_carved_pot_is_dark_where_the_sun_does_not_reach() {
     assert_silent(renderer);
     assert!(light.lit > 5000 && light.compared - light.lit > 5000, "{light:?}");
     assert!(light.deviated == 0 && picture.stats.clamps == 0, "{light:?}");
-    // at the border of its own shade a ray leaves the hollow wall by less than a cell bends, and meets it at once: that
-    // the wall is there is not known, but the sun gives less than a thousandth of its light there, no step of eight bits
+    // at the border of its own shade, a ray leaves the hollow wall by less than a cell bends, and meets it again at
+    // once. The test cannot decide this, but the sun adds less than a thousandth of its light there, less than a step
+    // of eight bits
     let grazed = |i: usize| DVec3::from(picture.normal[i].map(f64::from)).dot(towards.normalize()) < 1e-3;
     let told = (0..).zip(&picture.sunlit).map(|(i, lit)| *lit && !grazed(i)).collect();
     let seen = Picture { sunlit: told, ..picture.clone() };
@@ -336,7 +336,7 @@ fn a_carved_pot_is_dark_where_the_sun_does_not_reach() {
     assert!(light.wrong <= 2 && rest.wrong == 0, "{light:?}, {rest:?}");
 }
 
-/// Meshes cast exactly what they are: not within a deviation; and what a scene has not, it does not make.
+/// Meshes cast exact shadows, without a deviation; a scene makes only the buffers for its casters.
 #[test]
 fn a_scene_makes_what_casts() {
     let ball = || shapes::sphere();
@@ -361,7 +361,7 @@ fn a_scene_makes_what_casts() {
     assert_eq!(named(&folded).0, [false, false, true, true]);
 }
 
-/// A view of a few hundredths of a unit, cut out of the scene: who casts the shadow is not in it.
+/// A view of a few hundredths of a unit, cut out of the scene: the caster of the shadow is not in the cut.
 #[test]
 fn shadows_reach_into_views_from_very_near() {
     let mut m = shapes::plate();
@@ -371,7 +371,7 @@ fn shadows_reach_into_views_from_very_near() {
     let to = at(-1.0, -1.0, 4.0) * DAffine3::from_scale(DVec3::splat(0.25));
     m.instances.push(selvedge::model::Instance { part: 1, ..placed(to, None) });
     let s = SUN.normalize();
-    // where the ray past the ball's side meets the plate
+    // the ray past the ball's side meets the plate here
     let side = s.cross(DVec3::Z).normalize();
     let edge = to.transform_point3(DVec3::ZERO) + side * 0.25 * SPHERE_RADIUS;
     let border = edge - s * (edge.z / s.z);
@@ -387,7 +387,7 @@ fn shadows_reach_into_views_from_very_near() {
     let mut renderer = watched_with(&m, sunny(SUN));
     let picture = render(&mut renderer, &camera);
     assert_silent(renderer);
-    // along the plate, from twice the deviation, which is what a ray may be off by at both its ends
+    // along the plate, from twice the deviation, the error of a ray at both of its ends
     let far = 2.0 * picture.stats.shadow_deviation / s.z;
     assert!(far < 0.4 * height, "{far}");
     let mut seen = [0; 2];

@@ -1,10 +1,10 @@
-"""Speed against error, beside everybody else: what `tools/report` runs.
+"""The measurements of `tools/report`: speed against error, for the program and its peers.
 
-rows ── noise          what is measured, and whether it was won: no process, no file
+rows ── noise          the figures and their verdicts: no process, no file
 turns                  rounds of all competitors in turn
-program, peers         processes: `selvedge`, and the others, each told as missing where it is
+program, peers         processes: `selvedge`, and the others; absent ones are listed
 views, scenes          the same cameras and solids for all
 sections/              one section of the report a file; each gives `rows.Section`
-peer/                  what runs inside a peer's process, or the kernel's
-markdown, plots        what is written
+peer/                  code that runs inside a peer's process, or the kernel's
+markdown, plots        the output
 """

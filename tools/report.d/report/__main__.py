@@ -1,4 +1,4 @@
-"""`tools/report`: options, sections in order, what is written, the exit status."""
+"""`tools/report`: options, sections in order, the output, the exit status."""
 
 import argparse
 import json
@@ -54,12 +54,12 @@ def options():
 
 
 def measured(name, context):
-    """A section, which says so where it failed."""
+    """Measures a section; one that fails holds the reason."""
     print(f"== {name}", file=sys.stderr, flush=True)
     start = time.monotonic()
     try:
         section = SECTIONS[name].measure(context)
-    except Exception as error:  # one section does not cost the others
+    except Exception as error:  # the other sections are still measured
         traceback.print_exc()
         section = Section(
             list(SECTIONS).index(name) + 1,
@@ -73,7 +73,7 @@ def measured(name, context):
 
 
 def write(report, out):
-    """Markdown, JSON and plots."""
+    """Writes Markdown, JSON and plots."""
     folder = out / "benchmarks"
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.glob("*.svg"):

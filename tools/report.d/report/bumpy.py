@@ -1,5 +1,5 @@
-"""A closed ball with waves on it, as triangles in an OBJ file: in place of the paper's bunny, with its number of
-triangles."""
+"""A closed ball with waves on it, as triangles in an OBJ file. It replaces the paper's bunny and has the same number
+of triangles."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What every section is given: options, the program, the peers, files, and scratch."""
+"""The context of all sections: options, the program, the peers, files, and a scratch folder."""
 
 import os
 import sys

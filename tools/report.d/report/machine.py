@@ -1,4 +1,4 @@
-"""What a run stands on: the processor, how busy it is, the commit, and the commands that were run."""
+"""The conditions of a run: the processor, its load, the commit, and the commands."""
 
 import datetime
 import os
@@ -21,12 +21,12 @@ def processor():
 
 
 def load():
-    """Of the last minute: processes that wanted a core."""
+    """Load of the last minute: processes that ran or waited for a core."""
     return f"{os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "unknown"
 
 
 def commit():
-    """With a plus where tracked files differ from it."""
+    """The commit, with a plus if tracked files differ from it."""
     git = lambda *words: subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout.strip()
     return (git("rev-parse", "--short", "HEAD") or "unknown") + (
         "+" if git("status", "--porcelain", "--untracked-files=no") else ""

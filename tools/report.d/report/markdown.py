@@ -1,4 +1,4 @@
-"""The report as Markdown: where we lose first, then what could not be measured, then the sections."""
+"""The report as Markdown: losses first, then missing measurements, then the sections."""
 
 from .noise import median
 from .rows import Missing
@@ -65,7 +65,7 @@ def losses(report):
         lines.append(
             f"* {mark}{section.number}. {contest.what}: {times:.2g} times {contest.peer}'s {interval(contest)}"
         )
-    lines += [f"* known: {told(s, p)}; {p.known}" for s, p in report.promises() if p.violated() and p.known]
+    lines += [f"* known: {told(s, p)}; {p.known}" for s, p in report.promises() if p.excepted()]
     return "\n".join(lines) or "Nowhere in this run."
 
 
@@ -78,7 +78,7 @@ def absences(report):
     for section, promise in report.promises():
         if promise.why:
             grouped.setdefault((section.number, promise.why), []).append(promise.what)
-    # what stands in tables alone
+    # reasons that occur in tables alone
     for section in report.sections:
         for one in section.tables:
             for why in {cell.why: None for row in one.rows for cell in row if isinstance(cell, Missing)}:
@@ -154,7 +154,7 @@ def cells(one):
 
 
 def number(cell):
-    """Three digits, as much as a measurement is worth; words and whole numbers as they are."""
+    """A measurement with three digits; words and whole numbers unchanged."""
     if isinstance(cell, bool) or cell is None:
         return "" if cell is None else ("yes" if cell else "no")
     if isinstance(cell, int):

@@ -1,9 +1,8 @@
-"""Medians, and how far they may be trusted: bootstrap intervals of paired ratios, exponents of growth.
+"""Medians and their uncertainty: bootstrap intervals of paired ratios, exponents of growth.
 
 Rounds are paired: in each, all competitors run one after another on the same machine, so that other work slows all of
-them. The ratio of a round has little of that in it; what is left is the noise, and the spread of the rounds' ratios
-measures it. Source: B. Efron, R. Tibshirani, An Introduction to the Bootstrap, 1993, chapter 13 (percentile
-intervals).
+them and mostly cancels in the ratio of a round. The rest is the noise; the spread of the rounds' ratios measures it.
+Source: B. Efron, R. Tibshirani, An Introduction to the Bootstrap, 1993, chapter 13 (percentile intervals).
 """
 
 import math
@@ -11,10 +10,10 @@ import random
 import statistics
 from dataclasses import dataclass
 
-# fewer rounds say nothing about their spread
+# fewer rounds give no estimate of their spread
 FEWEST_ROUNDS = 3
 RESAMPLES = 2000
-# of the resampled medians, what lies within the interval
+# share of the resampled medians within the interval
 CONFIDENCE = 0.95
 
 
@@ -32,7 +31,7 @@ def median(values):
 
 
 def ratio_interval(ours, theirs):
-    """Of theirs to ours, by round; None of fewer than `FEWEST_ROUNDS`. The same rounds give the same interval."""
+    """Interval of the ratio theirs to ours; None for fewer than `FEWEST_ROUNDS`. Equal rounds give equal intervals."""
     if len(ours) < FEWEST_ROUNDS:
         return None
     logs = [math.log(b / a) for a, b in zip(ours, theirs, strict=True)]

@@ -1,7 +1,7 @@
-"""The others: which are there, and runs of each in a process of its own.
+"""The peers: which are installed, and runs of each in a separate process.
 
-`tools/report` installs Python packages into a folder of the build and writes why it could not; what comes from Debian
-is used where it is.
+`tools/report` installs Python packages into a folder of the build and writes the reason if it cannot; packages of
+Debian are used if they are installed.
 """
 
 import importlib.metadata
@@ -30,11 +30,11 @@ NOT_DONE = "not done in"
 
 
 class Peers:
-    """`versions` by name, a `Missing` for each that is not there."""
+    """`versions` by name, a `Missing` for each absent one."""
 
     def __init__(self, scratch):
         self.scratch, self.count = scratch, 0
-        # of the last process: empty where it ended well; and whether the limit of time stopped it
+        # problem of the last process, empty if there was none; and whether the limit of time stopped it
         self.problem, self.late = "", False
         self.versions = {}
         for name, (package, module) in PACKAGES.items():
@@ -53,12 +53,12 @@ class Peers:
         return not isinstance(self.versions[name], Missing)
 
     def needed(self, name):
-        """Raises what stands in the rows of a peer that is not there."""
+        """Raises the reason for the rows of an absent peer."""
         if not self.has(name):
             raise Unmeasurable(f"{name}: {self.versions[name].why}")
 
     def results(self, program, job, windowed=False, limit_s=300):
-        """What a program of `report.peer` told; of one that was stopped by the limit, what it told before."""
+        """The results of a program of `report.peer`, including those before the limit stopped it."""
         self.count += 1
         path = self.scratch / f"job{self.count}.json"
         path.write_text(json.dumps(job))
@@ -77,7 +77,7 @@ class Peers:
 
 
 def run(command, limit_s, allowed=(0,)):
-    """Standard output, what went wrong (empty where nothing did), and seconds; at the limit its group is ended."""
+    """Standard output, the problem (empty if there is none), and seconds; at the limit its group is ended."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "tools/report.d")}
     start = time.perf_counter()
     process = subprocess.Popen(
@@ -110,7 +110,7 @@ def version(program):
 
 
 def why_not(package):
-    """What pip said; `tools/report` keeps it in the folder that REPORT_PIP names."""
+    """The output of pip; `tools/report` keeps it in the folder that REPORT_PIP names."""
     folder = os.environ.get("REPORT_PIP", "")
     path = os.path.join(folder, f"{package}.failed")
     if folder and os.path.exists(path):

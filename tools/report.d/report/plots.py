@@ -2,7 +2,7 @@
 
 
 def write(plot, path):
-    """Raises ImportError where matplotlib is not there."""
+    """Raises ImportError without matplotlib."""
     import matplotlib
 
     matplotlib.use("svg")

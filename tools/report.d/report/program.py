@@ -1,4 +1,4 @@
-"""`selvedge`, in a process each time: what it printed and wrote, and how long it took."""
+"""`selvedge`, in a new process each time: its output, its files, and the time."""
 
 import csv
 import json
@@ -9,13 +9,13 @@ import time
 from .machine import ROOT
 from .turns import Unmeasurable
 
-# 1 is a broken promise: told by the figures themselves
+# 1 is a broken promise, which the figures show
 FINE = (0, 1)
 UNITS = {"s": 1e3, "ms": 1.0, "µs": 1e-3}
 
 
 class Program:
-    """A release build, on a device of a name where one is asked for; `scratch` is a folder for what it writes."""
+    """A release build, on a named device if there is a name; `scratch` is a folder for its files."""
 
     def __init__(self, path, device, scratch):
         self.path, self.scratch, self.count = path, scratch, 0
@@ -99,7 +99,7 @@ class Program:
         return float(value) * UNITS[unit]
 
     def seen(self, stats):
-        # of the first frame: others may be asked for beside it
+        # of the first frame; the output may have further ones
         self.device = self.device or f"{stats['device']} ({stats['driver']})"
 
 

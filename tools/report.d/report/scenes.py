@@ -1,5 +1,5 @@
-"""Boolean solids that all competitors get: from one description as a scene of ours, as OpenSCAD's, as POV-Ray's, and
-as plain data.
+"""Boolean solids for all competitors, each from one description: as our scene file, for OpenSCAD, for POV-Ray, and as
+plain data.
 
 A primitive is `{shape, …, at, turn}`: block (size, centred), sphere (radius), cylinder (radius, height), torus
 (major, minor); turned about x by `turn` degrees, then moved by `at`. A scene has primitives by name and an expression
@@ -200,7 +200,7 @@ def pov(scene, camera):
 
 
 def flat(tree):
-    """Operands of a chain of one operator: of differences the first, then all that is taken away."""
+    """Operands of a chain of one operator: for a difference the first, then all subtracted ones."""
     operands = []
     operator = None if isinstance(tree, str) else tree[0]
     while not isinstance(tree, str) and tree[0] == operator:

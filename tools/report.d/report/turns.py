@@ -2,7 +2,7 @@
 
     round 1   A B C      round 2   B C A      round 3   C A B      ...
 
-Each round begins with another one, so that none always follows the same. Rounds go on until their time is used up,
+Each round begins with another competitor, so that the order varies. Rounds go on until their time is used up,
 but there are `least` of them in any case, for without them the noise is unknown.
 """
 
@@ -36,4 +36,4 @@ def rounds(competitors, seconds, least=FEWEST_ROUNDS, most=9, clock=time.monoton
 
 
 class Unmeasurable(Exception):
-    """Why something could not be measured: what stands in its row."""
+    """The reason why something could not be measured, for its row."""

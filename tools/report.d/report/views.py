@@ -1,4 +1,4 @@
-"""Cameras that all competitors get: eye, target, up (mm), fovy (degrees from top to bottom) and size (pixels)."""
+"""The cameras of all competitors: eye, target, up (mm), fovy (degrees from top to bottom) and size (pixels)."""
 
 import math
 

@@ -36,12 +36,12 @@ class Scenes(unittest.TestCase):
 
 
 class Least(unittest.TestCase):
-    def test_what_belongs_to_another_feature_is_told(self):
+    def test_an_object_of_another_feature_is_reported(self):
         self.assertEqual(least.foreign("trim intercepts", []), ["trims"])
         self.assertEqual(least.foreign("trim intercepts", ["trims"]), [])
         self.assertEqual(least.foreign("patches", []), [])
 
-    def test_what_a_pipeline_leaves_out_is_not_foreign(self):
+    def test_an_omitted_feature_of_a_pipeline_is_not_foreign(self):
         self.assertEqual(least.foreign("border mix (no trims)", []), [])
         self.assertEqual(least.foreign("trim mix (no sun)", []), ["trims"])
 

@@ -1,4 +1,4 @@
-"""Medians, intervals, exponents and turns against what they are by hand."""
+"""Medians, intervals, exponents and turns against values by hand."""
 
 import random
 import unittest
@@ -13,13 +13,13 @@ class Intervals(unittest.TestCase):
         self.assertAlmostEqual(found.median, 4)
         self.assertTrue(2 <= found.low < 4 < found.high <= 6)
 
-    def test_what_slows_both_leaves_the_ratio(self):
+    def test_a_load_on_both_leaves_the_ratio(self):
         ours = [10, 40, 15, 90]
         found = noise.ratio_interval(ours, [3 * x for x in ours])
         for value in (found.median, found.low, found.high):
             self.assertAlmostEqual(value, 3)
 
-    def test_equal_competitors_are_seldom_told_apart(self):
+    def test_equal_competitors_seldom_differ(self):
         draw = random.Random(7)
         times = lambda: [draw.lognormvariate(0, 0.2) for _ in range(7)]
         told = 0
@@ -29,7 +29,7 @@ class Intervals(unittest.TestCase):
         # 95 % intervals of seven rounds; percentile intervals of so few are somewhat too narrow
         self.assertLess(told, 10)
 
-    def test_unlike_competitors_are_told_apart(self):
+    def test_unlike_competitors_differ(self):
         draw = random.Random(8)
         times = lambda scale: [scale * draw.lognormvariate(0, 0.05) for _ in range(5)]
         found = noise.ratio_interval(times(2.0), times(1.0))
@@ -63,7 +63,7 @@ class Turns(unittest.TestCase):
         count = lambda seconds: len(rounds({"a": slow}, seconds, clock=lambda: now[0])["a"])
         self.assertEqual([count(0), count(55), count(1000)], [3, 5, 9])
 
-    def test_who_cannot_be_measured_says_why_and_delays_nobody(self):
+    def test_an_unmeasurable_competitor_has_a_reason_and_causes_no_delay(self):
         def fails():
             raise Unmeasurable("no display")
 

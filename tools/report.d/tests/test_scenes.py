@@ -15,7 +15,7 @@ class Expressions(unittest.TestCase):
         self.assertEqual(scenes.flat(scenes.parsed("A*B-C")), [["*", "A", "B"], "C"])
         self.assertEqual(scenes.flat(scenes.parsed("A-(B-C)")), ["A", ["-", "B", "C"]])
 
-    def test_what_is_no_expression_is_refused(self):
+    def test_a_text_that_is_no_expression_is_refused(self):
         self.assertRaises(ValueError, scenes.parsed, "A^B")
 
 

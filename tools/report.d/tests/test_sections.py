@@ -1,4 +1,4 @@
-"""What sections make of made-up measurements: nothing is run."""
+"""Sections with made-up measurements: no process runs."""
 
 import unittest
 
@@ -69,7 +69,7 @@ class Surfaces(unittest.TestCase):
         never = self.ERRORS | {"mesh 0.0001": 0.8}
         self.assertEqual(self.contest(0.25, never).verdict(), "unreached")
 
-    def test_a_peer_that_nobody_judged_is_not_behind(self):
+    def test_a_peer_without_a_verdict_is_not_behind(self):
         self.assertEqual(self.contest(0.5, {"ours 0.5": 0.2}).verdict(), "not measured")
 
     def test_a_plot_shows_the_quickest_of_each_error(self):
@@ -82,7 +82,7 @@ class Surfaces(unittest.TestCase):
 
 
 class Sized:
-    """Stands for a file."""
+    """Takes the place of a file."""
 
     name = "part.step"
 
@@ -119,7 +119,7 @@ class Zoom(unittest.TestCase):
 
 
 class Kernel(unittest.TestCase):
-    """The judges' searches, where their packages are there."""
+    """The judges' searches, if their packages are installed."""
 
     def test_an_edge_that_is_off_by_a_distance(self):
         try:

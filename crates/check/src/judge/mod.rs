@@ -1,4 +1,4 @@
-//! How far a drawn picture is from the true one, in pixels.
+//! The distance of a drawn picture from the true one, in pixels.
 //!
 //! ```text
 //!   drawn id = true id at the pixel centre ................................ agree
@@ -7,20 +7,20 @@
 //!   none of these ......................................................... gross
 //! ```
 //!
-//! A picture keeps its promise when no shift exceeds `limit_px` and nothing is gross: every boundary
-//! then lies within `limit_px` of its true place. Where ids agree, depth and normal are compared too.
-//! Two things would make those numbers meaningless, and are counted apart:
+//! A picture keeps the accuracy promise when no shift exceeds `limit_px` and nothing is gross: every boundary then lies
+//! within `limit_px` of its true place. Where ids agree, depth and normal are compared too. Two kinds of pixels would
+//! make those numbers meaningless, and are counted separately:
 //!
 //! - *grazing* pixels, where the surface leans more than [`GRAZING_COSINE`] allows: there one pixel of
 //!   shift is ten of depth. They count in `all`, not in `regular`.
 //! - *folds*, where a face hides itself and a shifted silhouette shows its other sheet. A depth error
 //!   of more than the slope explains starts the same search as a wrong id, for the drawn depth.
 //!
-//! `exact` says more, of *regular* surface: what is seen up to [`SMOOTH_PX`] around the centre is one sheet of one
-//! face, nowhere grazing, and turns by [`TURN`] at most. Elsewhere a shift within the limit may show another sheet, or
-//! the normal changes by more within the arithmetic's last digits of a pixel; those are counted only. Whether a pixel
-//! is regular follows from the exact surface alone, and is tested only where the drawn one is off by more than [`EXACT_DEPTH_PX`]
-//! or [`EXACT_NORMAL_DEG`]: all others are taken as regular.
+//! `exact` is stricter, on *regular* surface: all rays up to [`SMOOTH_PX`] around the centre meet one sheet of one
+//! face, which is nowhere grazing and turns by [`TURN`] at most. Elsewhere a shift within the limit may show another
+//! sheet, or the normal may change by more within the last digits of a pixel; such pixels are only counted. The exact
+//! surface alone decides whether a pixel is regular. It is tested only where the drawn one is off by more than
+//! [`EXACT_DEPTH_PX`] or [`EXACT_NORMAL_DEG`]: all others are taken as regular.
 
 mod report;
 mod search;
@@ -37,24 +37,24 @@ use std::f64::consts::FRAC_PI_4;
 
 /// Below this cosine between normal and ray a pixel is grazing: 84.3°, a slope of 10.
 pub const GRAZING_COSINE: f64 = 0.1;
-/// What depth may be off by where the surface is regular, sides of a pixel.
+/// Largest depth error where the surface is regular, sides of a pixel.
 pub const EXACT_DEPTH_PX: f64 = 0.1;
-/// What a normal may be off by there, degrees.
+/// Largest error of a normal there, degrees.
 pub const EXACT_NORMAL_DEG: f64 = 0.01;
 /// How far around a pixel's centre regular surface must be one smooth sheet, pixels: beyond any shift within the limit.
 pub const SMOOTH_PX: f64 = 1.0;
 /// By how much its normal may turn within that, radians: a radius of curvature of ten pixels. A pixel's centre is known
-/// to a thousandth of a pixel, which then is 0.006 degrees.
+/// to a thousandth of a pixel; the normal then to 0.006 degrees.
 pub const TURN: f64 = 0.1;
-/// Normals of one mesh jump between triangles. A drawn normal off by more than this, radians, is compared
-/// with what is seen beside the pixel's centre, too.
+/// Normals of one mesh jump between triangles. A drawn normal off by more than this, radians, is also compared with the
+/// normals beside the pixel's centre.
 const SMOOTH: f64 = 1e-3;
 /// How far beside, pixels: a rasteriser rounds corners to 1/256.
 const FACET_PX: f64 = 1.0 / 128.0;
 /// Pixels judged between two calls of the progress callback, and the unit of parallel work.
 const CHUNK: usize = 1024;
 
-/// What to compare, and how strictly.
+/// The pixels to compare, and the limits.
 #[derive(Clone, Copy)]
 pub struct JudgeOptions<'a> {
     /// `None`: every pixel. `Some(n)`: about `n` stratified pixels, and every pixel beside a change of
@@ -70,7 +70,7 @@ pub struct JudgeOptions<'a> {
     pub searches: usize,
     /// Wrong pixels listed, the worst first.
     pub listed: usize,
-    /// Told the number of pixels done since the last call, from any thread.
+    /// Called with the number of pixels done since the last call, from any thread.
     pub progress: Option<&'a (dyn Fn(u64) + Sync)>,
 }
 
@@ -80,7 +80,7 @@ impl Default for JudgeOptions<'_> {
     }
 }
 
-/// A pixel that does not simply agree.
+/// A pixel that does not agree at its centre.
 #[derive(Clone, Copy, Debug)]
 struct Suspect {
     index: usize,
@@ -99,12 +99,12 @@ struct Bench<'a> {
     limit: f64,
 }
 
-/// Compares `picture`, drawn with `camera`, with what `tracer` says.
+/// Compares `picture`, drawn with `camera`, with `tracer`.
 ///
 /// The result does not depend on the number of threads.
 ///
 /// # Panics
-/// When the picture has not the camera's size or no face image.
+/// When the picture does not have the camera's size, or has no face image.
 pub fn judge(tracer: &Tracer, camera: &Camera, picture: &Images<'_>, options: &JudgeOptions) -> Judgement {
     let pixels = picture.size.0 as usize * picture.size.1 as usize;
     assert!(picture.size == camera.size && picture.face.len() == pixels, "picture and camera differ in size");
@@ -211,8 +211,8 @@ impl Bench<'_> {
                 let beside = beside(centre, FACET_PX).filter_map(|p| probe.first(p)).filter(|h| h.face == drawn_id);
                 angle = beside.map(|h| angle_between(drawn, h.normal)).fold(angle, f64::min);
             }
-            // faces of a spline part that is an operand have one id: an edge between them may be as far off as
-            // any boundary
+            // faces of a spline part that is an operand have one id: an edge between them may be as far off as any
+            // boundary
             if angle > SMOOTH && probe.on_spline_operand(&hit) {
                 let ring = [0.25, 0.5, 1.0].into_iter().flat_map(|far| beside(centre, far * self.limit));
                 let ring = ring.filter_map(|p| probe.first(p)).filter(|h| h.face == drawn_id);
@@ -234,13 +234,13 @@ impl Bench<'_> {
         suspect
     }
 
-    /// What is seen around `centre` is the sheet of `hit`, and turns little.
+    /// The surface around `centre` is the sheet of `hit`, and turns little.
     fn is_smooth(&self, probe: &mut Probe, centre: DVec2, hit: &Hit) -> bool {
         beside(centre, SMOOTH_PX).all(|pixel| {
             let (origin, direction) = self.camera.ray(pixel);
             probe.first(pixel).is_some_and(|h| {
                 let cosine = h.normal.dot(direction).abs();
-                // where the ray meets the plane that touches the sheet, along the ray
+                // the meeting point of the ray with the sheet's tangent plane, along the ray
                 let flat = hit.normal.dot(hit.point - origin) / hit.normal.dot(direction);
                 let apart = (flat - (h.point - origin).dot(direction)).abs();
                 (h.face, h.instance) == (hit.face, hit.instance)
@@ -257,7 +257,7 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b))
 }
 
-/// Places around a pixel's centre at which a neighbouring triangle may be what was drawn.
+/// Places around a pixel's centre at which a neighbouring triangle may have been drawn.
 fn beside(centre: DVec2, far: f64) -> impl Iterator<Item = DVec2> {
     (0..8).map(move |k| centre + DVec2::from_angle(f64::from(k) * FRAC_PI_4) * far)
 }
@@ -276,7 +276,7 @@ fn fold_depth(camera: &Camera, hit: &Hit, direction: DVec3) -> f64 {
     pixel_size(camera, hit.depth) * (2.0 * slope).max(1.0)
 }
 
-/// The pixels to look at, in raster order: about so many, and those beside which a value of `image` changes.
+/// The pixels to examine, in raster order: about so many, and those beside which a value of `image` changes.
 pub(super) fn samples(size: (u32, u32), image: &[u32], wanted: Option<usize>) -> Vec<usize> {
     let (w, h) = (size.0 as usize, size.1 as usize);
     let Some(n) = wanted else { return (0..w * h).collect() };

@@ -8,11 +8,11 @@ const BINS: [f64; 9] = [0.0625, 0.125, 0.1875, 0.25, 0.375, 0.5, 1.0, 1.5, 2.0];
 /// The verdict on one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Class {
-    /// Not looked at.
+    /// Not examined.
     Unsampled,
     /// The face is right.
     Agree,
-    /// Nothing there, rightly.
+    /// No surface there, rightly.
     Background,
     /// Two faces at the same depth, and the other one was drawn.
     Tie,
@@ -30,7 +30,7 @@ pub enum Class {
     Unsearched,
 }
 
-/// Mean and worst of something, and where the worst is.
+/// Mean and worst error, and the place of the worst.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Errors {
     /// Pixels compared.
@@ -67,7 +67,7 @@ pub struct Folds {
     pub worst_shift_px: f64,
 }
 
-/// What is drawn against the exact surface, where that is regular ([`judge`](super::judge)).
+/// Errors of the picture where the exact surface is regular ([`judge`](super::judge)).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Exactness {
     /// Depth, sides of a pixel at that depth.
@@ -77,7 +77,7 @@ pub struct Exactness {
     /// Of these, pixels off by more than [`EXACT_DEPTH_PX`](super::EXACT_DEPTH_PX) or
     /// [`EXACT_NORMAL_DEG`](super::EXACT_NORMAL_DEG).
     pub beyond: u64,
-    /// Pixels that see the right face where it is not regular: nothing is said of them here.
+    /// Pixels with the right face where it is not regular: they are not compared here.
     pub irregular: u64,
 }
 
@@ -86,7 +86,7 @@ pub struct Exactness {
 pub struct Bin {
     /// Shifts up to this, and above the bar before, pixels.
     pub up_to_px: f64,
-    /// How many.
+    /// The number of pixels.
     pub pixels: u64,
 }
 
@@ -116,7 +116,7 @@ pub struct Judgement {
     pub agree: u64,
     /// Another face at the same depth.
     pub ties: u64,
-    /// How far the others are off.
+    /// Shifts of the others.
     pub shifts: Vec<Bin>,
     /// Pixels whose drawn id is not right within 2 px.
     pub gross: u64,
@@ -140,7 +140,7 @@ pub struct Judgement {
     pub exact: Exactness,
     /// Faces that hide themselves.
     pub folds: Folds,
-    /// [`Tracer::given_up`](crate::Tracer::given_up): 0, or the truth itself is in doubt.
+    /// [`Tracer::given_up`](crate::Tracer::given_up): if it is not 0, the reference itself is incomplete.
     pub given_up: u64,
     /// The verdict on each pixel, row by row.
     #[serde(skip)]
@@ -177,7 +177,7 @@ impl Sum {
     }
 }
 
-/// What a run of pixels adds up to.
+/// The sums over a run of pixels.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tally {
     pub agree: u64,

@@ -1,16 +1,16 @@
-//! The smallest offset from a pixel centre at which the truth is what was drawn.
+//! The smallest offset from a pixel centre at which the reference shows the drawn face.
 //!
 //! ```text
 //!        · · ·         1. rings of 32 directions, from 1/32 to 2 px, until one answers yes
 //!      ·   ·   ·       2. between neighbours of a ring, and between rings, whose answers differ:
 //!     ·  · + ·  ·         bisection, which runs into any face too thin for the rings
-//!      ·   ·   ·       3. before the rings beyond limit_px: a grid of 1/64 px within it, for what lies
+//!      ·   ·   ·       3. before the rings beyond limit_px: a grid of 1/64 px within it, for faces
 //!        · · ·            between equal answers
 //!                      4. the offset found is pulled in along its ray, then turned to either side
 //! ```
 //!
-//! The result is an upper bound: the truth at that very offset was checked. What can be missed, and is
-//! then called gross: a gap thinner than 1/64 px with the same face on both sides.
+//! The result is an upper bound: the reference was checked at that very offset. One error can be missed, and is then
+//! called gross: a gap thinner than 1/64 px with the same face on both sides.
 
 use super::super::{Probe, Tracer};
 use super::{Class, fold_depth};
@@ -30,7 +30,7 @@ const GRID_PX: f64 = 1.0 / 64.0;
 /// A shift is pulled in until it is known to this, pixels.
 const RESOLUTION_PX: f64 = 1.0 / 256.0;
 
-/// What the truth should show.
+/// The face and depth that the reference should show.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wanted {
     /// Face id, 0 for background.
@@ -43,9 +43,9 @@ pub(super) struct Wanted {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Answer {
     Yes,
-    /// The wanted face is there, behind another by less than a tie.
+    /// The wanted face, behind another by less than a tie.
     Tie,
-    /// What is there instead: face, instance.
+    /// Another face: face, instance.
     No(u32, usize),
 }
 
@@ -185,7 +185,7 @@ fn nearer(a: DVec2, b: DVec2) -> DVec2 {
     if a.length() <= b.length() { a } else { b }
 }
 
-/// Where on the picture the faces in question can be at all, with 2 px of margin.
+/// The part of the picture in which the faces can lie at all, with 2 px of margin.
 pub(super) struct Reach {
     boxes: HashMap<u32, Vec<(DVec2, DVec2)>>,
 }
@@ -202,7 +202,7 @@ impl Reach {
             let part = &tracer.parts[placed.part];
             let leaves = part.leaves.iter().zip(&part.boxes);
             let leaves = leaves.map(|(leaf, bounds)| (part.faces[leaf.face as usize].id, *bounds));
-            // the whole of a mesh: who is searched in vain costs less than a box a triangle
+            // the whole of a mesh: searching it in vain costs less than a box a triangle
             let meshes = part.facets.meshes().iter().map(|m| (m.id, m.bounds()));
             for (id, bounds) in leaves.chain(meshes) {
                 if bounds.is_empty() || !wanted.contains(&id) {

@@ -4,7 +4,7 @@
 //!   opaque union  ─────────────────┤▒▒▒▒▒▒▒▒     one list of crossings, so that coincident faces of two solids are
 //!   glass A       ──┤░░░░░░░░░░░├──────────      met at equal parameters;
 //!   glass B       ──────────────┤░░░░├─────      the boundaries of each solid by itself
-//!                   A           A B  B           layers: faces that are left before those that are entered
+//!                   A           A B  B           layers: at one place, faces left before faces entered
 //! ```
 //!
 //! An opaque face comes between the two: it hides the faces entered at the same place, and all behind it.
@@ -15,7 +15,7 @@ use crate::light::{Key, studio};
 use crate::model::{Camera, Colour, Items, Primitive, Solid, SolidError};
 use glam::{DVec2, DVec3, DVec4};
 
-/// A face of a solid that is told apart.
+/// A face of a clear solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layer {
     /// Index of the solid among [`Items::clear`].
@@ -31,7 +31,7 @@ pub struct LayerTracer {
     all: SolidTracer,
     /// The union of those that are opaque.
     opaque: Option<Tree>,
-    /// The expression of each of the others, and its first primitive.
+    /// The expression of each clear solid, and its first primitive.
     clear: Vec<(Tree, u32)>,
 }
 
@@ -80,8 +80,8 @@ impl LayerTracer {
         (Trace { leaks, ..opaque }, clear.collect())
     }
 
-    /// The faces of clear solids from `start` on that no opaque one hides, front to back, and the way through the opaque
-    /// ones.
+    /// The faces of clear solids from `start` on that no opaque face hides, front to back, and the way through the
+    /// opaque solids.
     pub fn layers(&self, origin: DVec3, direction: DVec3, start: f64) -> (Vec<Layer>, Trace) {
         let (opaque, clear) = self.traces(origin, direction);
         let stop = opaque.first(start);
@@ -100,9 +100,9 @@ impl LayerTracer {
         &self.all.primitives()[b.primitive as usize]
     }
 
-    /// The linear colour and opacity at a pixel position before a background, of solids alone; of parts among them the
-    /// primitive's colour is taken. Light falls on the side that is seen, each face's light is clamped to what a target
-    /// holds, and counts with its opacity in 255ths.
+    /// The linear colour and opacity at a pixel position before a background, of solids alone; a part among them has
+    /// its primitive's colour. Light falls on the visible side. Each face's light is clamped to the range of a target,
+    /// and weighted by its opacity in 255ths.
     pub fn colour(&self, camera: &Camera, pixel: DVec2, background: Colour) -> DVec4 {
         let (origin, direction) = camera.ray(pixel);
         let (_, _, forward) = camera.axes();

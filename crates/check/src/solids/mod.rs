@@ -10,10 +10,9 @@
 //! into one group whatever the direction. Crossings of meshes and spline parts that lie nearer than
 //! [`FALLBACK`] to the group before join it.
 //!
-//! A line that lies in a face is outside on the side where that face's value is 0. The owner of a face of
-//! the solid is the first active primitive in its group: one that changes the solid alone, before or after
-//! the rest; primitives that some leaf adds come before those that are only taken away, then those earlier
-//! in the tree.
+//! A line that lies in a face is outside on the side where that face's value is 0. The owner of a face of the solid is
+//! the first active primitive in its group: one that by itself changes the solid, before or after the rest. Primitives
+//! that some leaf adds come before those that are only subtracted, then earlier ones in the tree come first.
 
 mod layers;
 mod roots;
@@ -30,8 +29,8 @@ use roots::Roots;
 use shell::Shell;
 use std::collections::HashMap;
 
-/// Crossings this near, relative to the solid's size over the direction's length, are one where no surface
-/// table makes them equal: some roundings of a hit of the exact reference.
+/// Crossings this near, relative to the solid's size over the direction's length, are one where no surface table makes
+/// them equal: a few roundings of a hit of the exact reference.
 pub const FALLBACK: f64 = 1e-13;
 
 /// A face of a solid, met by a line.
@@ -112,7 +111,7 @@ pub struct SolidTracer {
     tree: Tree,
     table: SurfaceTable,
     shells: Vec<Option<Shell>>,
-    /// Of each primitive: taken away everywhere, and its first leaf. The owner of a group is the least.
+    /// For each primitive: whether it is subtracted everywhere, and its first leaf. The least owns a group.
     ranks: Vec<(bool, usize)>,
     /// Of the bounded primitives.
     bounds: Bounds,
@@ -189,7 +188,7 @@ impl SolidTracer {
         (origin, direction): (DVec3, DVec3),
     ) -> Trace {
         let speed = direction.length();
-        // what the line does not cross keeps its state: a smaller tree
+        // a primitive that the line does not cross keeps its state: a smaller tree
         let mut crossed = vec![false; state.len()];
         crossings.iter().for_each(|c| crossed[c.primitive as usize] = true);
         let at = |p: u32| (first + p) as usize;

@@ -1,4 +1,4 @@
-//! Where a line crosses a carrier.
+//! The crossings of a line with a carrier.
 //!
 //! ```text
 //!   plane     one root            quadric   two roots, by the sum without cancellation

@@ -35,7 +35,7 @@ impl Shell {
                     meshes.extend(part.meshes.iter().map(|m| Self::mesh(Arc::new(m.clone()), to_own)));
                 }
                 let instance = Instance { part: 0, transform, colour: None, name: String::new() };
-                // its faces alone are asked for
+                // only its faces are needed
                 let faces = crate::model::Part { closed: false, ..(**part).clone() };
                 let model = Model { parts: vec![faces], instances: vec![instance], ..Model::default() };
                 Some(Self::Part { tracer: Box::new(Tracer::new(&model)), meshes })

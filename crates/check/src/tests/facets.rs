@@ -1,4 +1,4 @@
-//! Triangles against closed forms, and rays aimed at what they share.
+//! Triangles against closed forms, and rays aimed at their shared sides and vertices.
 
 use super::shapes::*;
 use crate::model::{Instance, Mesh, Model, Part};
@@ -70,8 +70,8 @@ fn no_ray_slips_between_triangles() {
     }
 }
 
-/// A ray from outside that meets no side enters as often as it leaves; Möller and Trumbore's formula
-/// (*Fast, Minimum Storage Ray/Triangle Intersection*, 1997) over all triangles says where.
+/// A ray from outside that meets no side enters as often as it leaves. Möller and Trumbore's formula (*Fast, Minimum
+/// Storage Ray/Triangle Intersection*, 1997) over all triangles finds the places.
 #[test]
 fn hits_are_those_of_every_triangle_by_itself() {
     let mesh = rock(3);

@@ -57,7 +57,7 @@ fn a_perfect_picture_is_right() {
         judge(&tracer, &camera, &picture.images(), &JudgeOptions { progress: Some(&progress), ..Default::default() });
     assert_eq!((j.sampled, j.agree, j.wrong, j.gross, j.ties, j.given_up), (8000, 8000, 0, 0, 0, 0));
     assert_eq!(done.into_inner(), 8000);
-    // what is left is the f32 of the images: 2^-24 of a depth near 4, and of a unit vector
+    // the rest is the f32 of the images: 2^-24 of a depth near 4, and of a unit vector
     assert!(j.depth_all.model.worst < 4e-7 && j.depth_all.model.worst > 1e-9, "{:?}", j.depth_all);
     assert!(j.normal_deg.worst < 1e-5 && j.normal_deg.count > 4000, "{:?}", j.normal_deg);
     assert!(j.depth_regular.px.worst < 1e-4 && j.depth_regular.px.count == j.normal_deg.count);
@@ -103,7 +103,7 @@ fn a_flooded_face_is_gross() {
     let j = judge(&tracer, &camera, &picture.images(), &JudgeOptions::default());
     assert_eq!((j.gross, j.wrong, total(&j)), (1001, 1001, 8000));
     assert_eq!((j.mismatches.len(), j.mismatches[0].drawn, j.mismatches[0].gross), (16, 1, true));
-    // nothing drawn at all: background is searched for, finds no gap, and the budget holds
+    // nothing drawn at all: background is searched, finds no gap, and the budget holds
     picture.face.fill(0);
     let j = judge(&tracer, &camera, &picture.images(), &JudgeOptions { searches: 50, ..Default::default() });
     assert!(j.unsearched > 1000 && j.gross > 10 && j.wrong == j.unsearched + j.gross + far(&j), "{j:?}");
@@ -128,7 +128,7 @@ fn wrong_depths_and_normals_are_seen() {
     assert!((j.normal_deg.worst - 90.0).abs() < 1e-9);
     let pixel = f64::from(truth.depth[hit]) * 2.0 * 20f64.to_radians().tan() / 80.0;
     assert!((j.depth_regular.px.worst - 1e-3 / pixel).abs() < 1e-4);
-    // off by more than any slope explains, and not a number: wrong, and apart from the regular ones
+    // off by more than any slope explains, and NaN: wrong, and separate from the regular ones
     picture.depth[hit] += 1.0;
     picture.depth[hit + 1] = f32::NAN;
     let j = judge(&tracer, &camera, &picture.images(), &JudgeOptions::default());

@@ -73,7 +73,7 @@ fn random_patches_have_as_many_layers_as_their_meshes() {
             if hits.iter().any(|h| cosine(h) < 0.15 || border(h)) {
                 continue;
             }
-            // the mesh may also see a layer that the surface just misses, or lose one: ask around
+            // the mesh may also hit a layer that the surface just misses, or lose one: compare around the pixel
             let steady = (0..8).all(|k| mesh.layers(pixel + DVec2::from_angle(f64::from(k)) * 0.4) == layers);
             if steady {
                 assert_eq!(hits.len(), layers, "seed {seed}, pixel {pixel}");

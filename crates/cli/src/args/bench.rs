@@ -51,6 +51,7 @@ pub enum Motion {
     Path,
     /// By three degrees a frame, all of the model in view
     Turn,
-    /// Not at all. Each frame twice: with every pass recorded, and as a viewer draws it, which keeps what each pixel sees
+    /// Not at all. Each frame twice: with every pass recorded, and as a viewer draws it, which reuses the visible
+    /// surface of each pixel
     Still,
 }

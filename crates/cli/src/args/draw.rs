@@ -1,4 +1,4 @@
-//! How a drawing is made.
+//! Arguments of `selvedge draw`.
 
 use super::{CameraArgs, CutArgs, Directions, ReadArgs, SubdivideArgs};
 use crate::values::{drawing_scale, millimetres};
@@ -16,8 +16,8 @@ pub struct DrawArgs {
     pub subdivide: SubdivideArgs,
     #[command(flatten)]
     pub cut: CutArgs,
-    /// SVG file to write, in millimetres, one group a kind of line. With several views each adds its name to the file's,
-    /// or stands where the file's name says {view}
+    /// SVG file to write, in millimetres, one group a kind of line. With several views each adds its name to the
+    /// file's, or replaces {view} in it
     #[arg(short, long, value_name = "OUT.svg")]
     pub output: PathBuf,
     /// Standard views, as for `render`; parallel, unless --fov, --eye or a camera of the scene says otherwise
@@ -31,16 +31,16 @@ pub struct DrawArgs {
     /// In place of the width: millimetres on paper for one of the model, as in 1 or 0.5; parallel views only
     #[arg(long, value_name = "TIMES", value_parser = drawing_scale, conflicts_with = "width")]
     pub scale: Option<f64>,
-    /// Also what is hidden, thin and dashed
+    /// Also hidden lines, thin and dashed
     #[arg(long)]
     pub hidden_lines: bool,
     /// Which edges: all, sharp (and borders), or none
     #[arg(long, value_name = "all|sharp|none", default_value = "all")]
     pub edges: EdgeChoice,
-    /// Where surfaces turn away from the eye
+    /// Silhouettes: curves where surfaces turn away from the eye
     #[arg(long, value_name = "true|false", default_value_t = true, action = ArgAction::Set)]
     pub silhouettes: bool,
-    /// Edges at which faces continue each other: none, thin, or full as any other
+    /// Edges at which faces continue each other: none, thin, or full like other edges
     #[arg(long, value_name = "none|thin|full", default_value = "thin")]
     pub tangent_edges: TangentEdges,
     /// Write the camera as JSON, as for `render`

@@ -1,17 +1,18 @@
-//! Lines along edges: `--edges` and what goes with it.
+//! Lines along edges: `--edges` and its companions.
 
 use anyhow::Result;
 use clap::Args;
 use selvedge::model::Colour;
-use selvedge::picture::{EdgeChoice, EdgeSettings, TangentEdges};
+use selvedge::picture::{EdgeChoice, EdgeSettings, Style, TangentEdges};
 use selvedge_session::colour;
 
 /// Which lines are drawn, and how.
 #[derive(Debug, Args)]
 pub struct LineArgs {
-    /// Draw lines along edges: all, sharp (where faces meet at an angle or end) or none
-    #[arg(long, value_name = "all|sharp|none", default_value = "none")]
-    pub edges: EdgeChoice,
+    /// Draw lines along edges: all, sharp (where faces meet at an angle or end) or none. The default is none, and sharp with
+    /// silhouettes where --style technical is said
+    #[arg(long, value_name = "all|sharp|none")]
+    pub edges: Option<EdgeChoice>,
     /// Draw the outlines of curved faces, where they fold away from the eye
     #[arg(long)]
     pub silhouettes: bool,
@@ -30,16 +31,19 @@ pub struct LineArgs {
 }
 
 impl LineArgs {
-    /// The renderer's settings; `None` without lines.
-    pub fn settings(&self) -> Result<Option<EdgeSettings>> {
+    /// The renderer's settings in a picture of this style; `None` without lines.
+    pub fn settings(&self, style: Style) -> Result<Option<EdgeSettings>> {
+        let is_drawing = style == Style::Technical && self.edges.is_none();
+        let which = self.edges.unwrap_or(if is_drawing { EdgeChoice::Sharp } else { EdgeChoice::None });
+        let silhouettes = self.silhouettes || is_drawing;
         let usual = EdgeSettings::default();
         let lighter = usual.hidden_colour[3];
         let colour = self.edge_colour.unwrap_or(usual.colour);
         let [r, g, b, opacity] = colour;
         let settings = EdgeSettings {
-            which: self.edges,
+            which,
             tangent: self.tangent_edges,
-            silhouettes: self.silhouettes,
+            silhouettes,
             hidden: self.hidden_lines,
             width: self.edge_width,
             thin_width: self.edge_width * usual.thin_width / usual.width,
@@ -47,6 +51,6 @@ impl LineArgs {
             hidden_colour: [r, g, b, opacity * lighter],
         };
         settings.check()?;
-        Ok((self.edges != EdgeChoice::None || self.silhouettes).then_some(settings))
+        Ok((which != EdgeChoice::None || silhouettes).then_some(settings))
     }
 }

@@ -3,7 +3,7 @@
 use clap::Args;
 use std::path::PathBuf;
 
-/// What becomes of the others when one file is done, or fails.
+/// How a run over many files treats failures and existing outputs.
 #[derive(Debug, Default, Args)]
 pub struct ManyArgs {
     /// Stop at the first file that fails. Without this option the program reports the failure, draws all other files, and
@@ -20,7 +20,7 @@ pub struct ManyArgs {
 }
 
 impl ManyArgs {
-    /// Any of them was given.
+    /// Whether any of them was given.
     pub fn is_asked(&self) -> bool {
         self.fail_fast || self.skip_existing || self.manifest.is_some()
     }

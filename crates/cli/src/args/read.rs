@@ -1,4 +1,4 @@
-//! How files are read, whatever becomes of them.
+//! How files are read, for all commands.
 
 use crate::values::{length, mebibytes, seconds};
 use clap::{Args, ValueEnum};
@@ -7,7 +7,7 @@ use selvedge_session::{Stop, memory};
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Which files are taken.
+/// Which files are read.
 #[derive(Clone, Debug, Default, Args)]
 pub struct ReadArgs {
     /// Refuse a file of which anything is left out: exit status 2 in place of a warning
@@ -17,16 +17,17 @@ pub struct ReadArgs {
     /// given several times
     #[arg(long, value_name = "DIR")]
     pub search: Vec<PathBuf>,
-    /// Most MiB of a file that are read, gzip undone; three quarters of the machine's memory without it, and 4096 at most
+    /// Most MiB of a file that are read, gzip undone; by default three quarters of the machine's memory, and 4096 at
+    /// most
     #[arg(long, value_name = "MIB", value_parser = mebibytes)]
     pub limit_mib: Option<f64>,
-    /// Most seconds that a file is read; without it as many as it takes
+    /// Most seconds that a file is read; no limit by default
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub limit_s: Option<f64>,
 }
 
 impl ReadArgs {
-    /// The flag that ends reading a file, which begins now.
+    /// The flag that stops reading a file, which begins now.
     pub fn stop(&self) -> Stop {
         self.limit_s.map_or_else(Stop::default, |seconds| Stop::within(Duration::from_secs_f64(seconds)))
     }
@@ -40,7 +41,7 @@ impl ReadArgs {
     }
 }
 
-/// What becomes of polygons.
+/// How polygons are read.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct SubdivideArgs {
     /// Read an OBJ file's polygons as the control mesh of a smooth surface

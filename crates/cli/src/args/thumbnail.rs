@@ -7,7 +7,7 @@ use std::path::PathBuf;
 pub struct ThumbnailArgs {
     /// The model, as for `render`
     pub model: PathBuf,
-    /// PNG file to write, whatever its name ends in
+    /// PNG file to write, with any ending
     pub output: PathBuf,
     /// Width and height, pixels
     #[arg(value_parser = clap::value_parser!(u32).range(1..=2048))]

@@ -1,4 +1,4 @@
-//! Models written in another form.
+//! Arguments of `selvedge export` and `selvedge convert`.
 
 use super::{ReadArgs, SubdivideArgs};
 use clap::Args;

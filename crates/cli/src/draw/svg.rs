@@ -18,7 +18,7 @@ pub struct Page {
     pub per_pixel: f64,
 }
 
-/// How lines of a kind look: millimetres.
+/// Width and dashes of a kind of line, millimetres.
 struct Pen {
     width: f64,
     colour: &'static str,
@@ -29,7 +29,7 @@ const HIDDEN: Pen = Pen { width: 0.18, colour: "#666666", dashes: Some("1.2 0.6"
 const THICK: Pen = Pen { width: 0.35, colour: "#000000", dashes: None };
 const THIN: Pen = Pen { width: 0.13, colour: "#000000", dashes: None };
 
-/// Those that are drawn first lie below.
+/// Groups from bottom to top.
 const GROUPS: [(bool, LineKind, &str); 8] = [
     (true, LineKind::Smooth, "smooth"),
     (true, LineKind::Sharp, "sharp"),

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   Import ──▶ Info ──┬─▶ JSON            everything
-//!                     ├─▶ text            counts, surfaces, assembly, what was healed and lost
+//!                     ├─▶ text            counts, surfaces, assembly, repairs and losses
 //!                     └─▶ deep (--deep)   every face; the worst of them apart
 //! ```
 
@@ -24,7 +24,7 @@ use solids::SolidRow;
 use std::collections::BTreeMap;
 use tiles::Tiles;
 
-/// Counts of a model; *distinct* where nothing else is said, *instances* counts placed copies.
+/// Counts of a model; *distinct* unless they are called *instances*, which count placed copies.
 #[derive(Debug, Serialize)]
 struct Info<'a> {
     name: &'a str,
@@ -35,26 +35,26 @@ struct Info<'a> {
     open_shell_instances: usize,
     faces: usize,
     face_instances: usize,
-    /// Edges and vertices of the distinct parts, as they were found; absent where a face's boundary is no curve.
+    /// Counts of edges and vertices of the distinct parts; absent where a face's boundary is no curve.
     edges: Option<EdgeCounts>,
     trim_loops: usize,
     trim_curves: usize,
     meshes: MeshCounts,
     surfaces: Vec<SurfaceRow>,
     boolean_solids: Vec<SolidRow>,
-    /// Of the view that the arguments ask for, else of the whole model; absent without Boolean solids.
+    /// For the view of the arguments, else of the whole model; absent without Boolean solids.
     folded_tiles: Option<Tiles>,
     parts: Vec<PartRow<'a>>,
     assembly: Node<'a>,
     /// Millimetres; absent for an empty model.
     bounds: Option<[[f64; 3]; 2]>,
-    /// How its faces are trimmed unless `--trim` says otherwise; absent where none needs it.
+    /// How its faces are trimmed unless `--trim` says otherwise; absent where no face needs it.
     trim: Option<&'static str>,
     warnings: Vec<String>,
-    /// What the file states, what of it is drawn, and why the rest is not.
+    /// The file's items, how many of them are drawn, and why the rest is not.
     summary: Summary,
     report: &'a ImportReport,
-    /// Every face of the file: `deviation` and `gap` in millimetres, why it was healed or left out.
+    /// Every face of the file: `deviation` and `gap` in millimetres, why it was repaired or left out.
     face_records: &'a [FaceRecord],
 }
 
@@ -68,7 +68,7 @@ struct SurfaceRow {
     patches: usize,
 }
 
-/// What came as facets.
+/// Meshes and triangles.
 #[derive(Debug, Serialize)]
 struct MeshCounts {
     distinct: usize,
@@ -87,7 +87,7 @@ struct PartRow<'a> {
     instances: usize,
 }
 
-/// Reads the model and prints what it holds.
+/// Reads the model and prints its description.
 pub fn run(args: &InfoArgs) -> Result<Outcome> {
     let import = session::described(&args.model, &args.read, &args.subdivide)?;
     let mut info = Info::new(&import);

@@ -1,11 +1,11 @@
-//! The tables that people read.
+//! The tables of the text output.
 
 use super::{Info, Tiles, solids};
 use crate::output;
 use std::collections::BTreeMap;
 
 impl Info<'_> {
-    /// Everything but the single faces.
+    /// Everything except the single faces.
     pub fn text(&self) -> String {
         let mut blocks = vec![self.head(), self.counts(), self.surfaces()];
         if !self.boolean_solids.is_empty() {
@@ -76,7 +76,7 @@ impl Info<'_> {
         table.to_string()
     }
 
-    /// How well it was read, and what was not.
+    /// Accuracy, repairs and losses of reading the file.
     fn found(&self) -> String {
         let report = self.report;
         let mut lines = Vec::new();
@@ -110,7 +110,7 @@ impl Info<'_> {
         for (kind, reasons) in &report.left_out {
             list(kind, reasons.iter().collect());
         }
-        list("healed", report.healed.iter().collect());
+        list("repaired", report.repaired.iter().collect());
         list("not drawn", named(&report.ignored));
         list("layers, items on them", named(&report.layers));
         list("warnings", named(&report.warnings));

@@ -1,4 +1,4 @@
-//! How the Boolean solids of a model divide among the tiles of a picture.
+//! The leaves of a model's Boolean solids in each tile of a picture.
 //!
 //! ```text
 //!   box of each leaf ──twin::solid_rects──▶ its tiles       a tile's own Blist has the leaves that cover it; the rest
@@ -13,7 +13,7 @@ use selvedge::internals::twin::solid_rects::{solid_rects, tile_count};
 use selvedge::model::{Bounds, Camera, Model, Solid};
 use serde::Serialize;
 
-/// What a view's tiles hold once their Blists are folded.
+/// The counts of a view's tiles once their Blists are folded.
 #[derive(Debug, PartialEq, Serialize)]
 pub struct Tiles {
     /// Pixels.
@@ -38,7 +38,7 @@ impl Tiles {
         let mut reaches = whole.reaches();
         for (reach, primitive) in reaches.iter_mut().zip(whole.primitives()) {
             if !primitive.shape.is_analytic() {
-                *reach = primitive.bounds(); // frames keep the boxes of what has no equations
+                *reach = primitive.bounds(); // frames store the whole box of a shape without equations
             }
         }
         let (leaves, centres): (Vec<Leaf>, Vec<[f32; 3]>) =
@@ -79,7 +79,7 @@ impl Tiles {
         })
     }
 
-    /// A line for people.
+    /// A line of text.
     pub fn text(&self) -> String {
         let [w, h] = self.size;
         let (used, tiles, leaves) = (self.used, self.tiles, self.leaves);
@@ -90,7 +90,7 @@ impl Tiles {
     }
 }
 
-/// What the frame's shaders read of a box to find its tiles; its centre from the eye.
+/// The box as the frame's shaders read it to find its tiles; its centre from the eye.
 fn leaf(bounds: Bounds, camera: &Camera) -> (Leaf, [f32; 3]) {
     let bounded = bounds.min.is_finite() && bounds.max.is_finite();
     let empty = bounds.is_empty();
@@ -146,15 +146,15 @@ mod tests {
 
     #[test]
     fn leaves_are_counted_where_they_are() {
-        // within the tiles 5 to 6 by 1 to 2 (from the top), and what the second takes of it is in 6 by 2
+        // within the tiles 5 to 6 by 1 to 2 (from the top); the part that the second one removes is in 6 by 2
         let boxes = [(2.0, 2.0, 28.0, 28.0), (18.0, 2.0, 44.0, 12.0)];
         let tiles = Tiles::new(&model("A-B", &boxes), &view()).unwrap();
         let expected = Tiles { size: [160, 96], tiles: 60, used: 4, leaves: 2, mean: 5.0 / 4.0, most: 2 };
         assert_eq!(tiles, expected);
-        // of a union nothing is left out: the second lies within the tiles 6 to 8 by 2 to 2
+        // a union keeps both: the second lies within the tiles 6 to 8 by 2 to 2
         let tiles = Tiles::new(&model("A+B", &boxes), &view()).unwrap();
         assert_eq!((tiles.used, tiles.mean, tiles.most), (6, 7.0 / 6.0, 2));
-        // a symmetric difference has each operand twice; one that nobody sees is in no tile
+        // a symmetric difference has each operand twice; one outside the view is in no tile
         let away = [boxes[0], (500.0, 2.0, 9.0, 9.0)];
         let tiles = Tiles::new(&model("A^B", &away), &view()).unwrap();
         assert_eq!((tiles.used, tiles.leaves, tiles.mean, tiles.most), (4, 4, 2.0, 2));
@@ -172,7 +172,7 @@ mod tests {
         whole.solids[0] = Solid::new(all, whole.solids[0].tree().clone()).unwrap();
         let tiles = Tiles::new(&whole, &view()).unwrap();
         assert_eq!((tiles.used, tiles.most), (60, 2));
-        // taken away it matters where there is something to take it from
+        // subtracted, it matters where there is something to subtract from
         let taken = parse("A-B").unwrap().tree;
         whole.solids[0] = Solid::new(whole.solids[0].primitives().to_vec(), taken).unwrap();
         let tiles = Tiles::new(&whole, &view()).unwrap();

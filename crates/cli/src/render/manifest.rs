@@ -12,7 +12,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// What is known of a file when it has been read.
+/// Facts about a file that was read.
 #[derive(Clone, Debug, Default)]
 pub struct Known {
     pub sha256: String,
@@ -24,7 +24,7 @@ pub struct Known {
 }
 
 impl Known {
-    /// Of what was read in so many seconds, and of the file itself, in letters and digits.
+    /// The facts about a file: its summary, how many seconds it took to read, and its hash in hexadecimal digits.
     pub fn new(path: &Path, summary: &Summary, warnings: usize, instances: usize, read_s: f64) -> Result<Self> {
         let told = || format!("{}: its SHA-256", path.display());
         let hash = hashed(path).with_context(told)?;
@@ -77,7 +77,7 @@ impl Manifest {
         Ok(Self { to: csv::Writer::from_writer(file) })
     }
 
-    /// A picture that is there.
+    /// Adds a picture that was drawn.
     pub fn drawn(&mut self, task: &Task, shot: &Shot, known: &Known, drawn: &Drawn) -> Result<()> {
         let row = Row {
             sha256: &known.sha256,
@@ -96,7 +96,7 @@ impl Manifest {
         self.row(task, shot, row)
     }
 
-    /// Pictures of a file that are not drawn now: they were there, or it failed.
+    /// Adds pictures of a file that are not drawn now: they exist, or the file failed.
     pub fn others<'s>(
         &mut self,
         task: &Task,

@@ -1,11 +1,11 @@
 //! Many files: the next one is read while this one is drawn.
 //!
 //! ```text
-//!   thread   read a ─▶ read b ───────▶ waits ─▶ read c …         at most two models are there
+//!   thread   read a ─▶ read b ───────▶ waits ─▶ read c …         at most two models in memory
 //!   main              draw a: iso, top ─▶ draw b: iso, top …     one device for all
 //! ```
 //!
-//! A file that fails is told and costs itself only; a device that fails ends the run.
+//! A file that fails is reported, and the others are drawn; a device that fails ends the run.
 
 use super::manifest::{Known, Manifest};
 use super::task::Task;
@@ -44,7 +44,7 @@ pub fn run(args: &RenderArgs, tasks: &[Task]) -> Result<Outcome> {
 struct Run<'a> {
     args: &'a RenderArgs,
     manifest: Option<Manifest>,
-    /// Nothing after a file that failed on it: the next one opens it again.
+    /// `None` after a file that failed on the device: the next file opens it again.
     device: Option<HeadlessRenderer>,
     failed: usize,
     complained: bool,
@@ -71,7 +71,7 @@ impl Run<'_> {
         })
     }
 
-    /// One file; an error ends the run.
+    /// Draws one file; an error ends the run.
     fn one(&mut self, task: &Task, import: Result<(Import, Known)>, bar: &Files) -> Result<()> {
         let mut count = 0;
         let result = import.and_then(|(import, known)| self.drawn(task, import, &known, &mut count));
@@ -105,7 +105,7 @@ impl Run<'_> {
     }
 }
 
-/// Reads a file, with what a manifest tells of it.
+/// Reads a file, with the facts for a manifest.
 fn imported(args: &RenderArgs, task: &Task, hashed: bool) -> Result<(Import, Known)> {
     let begun = Instant::now();
     let import = session::open(&task.model, &args.read, &args.subdivide)?;
@@ -115,7 +115,7 @@ fn imported(args: &RenderArgs, task: &Task, hashed: bool) -> Result<(Import, Kno
     Ok((import, known))
 }
 
-/// No later file can be drawn either.
+/// Whether the error is the device's, so that no later file can be drawn.
 fn of_device(error: &Error) -> bool {
     let own = |error: &HeadlessError| matches!(error, HeadlessError::Render(_) | HeadlessError::NeverComplete);
     error.downcast_ref::<HeadlessError>().is_some_and(|error| !own(error))

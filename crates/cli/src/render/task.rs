@@ -1,4 +1,4 @@
-//! What is drawn of each file, and where it goes.
+//! The pictures of each file, and their output files.
 //!
 //! ```text
 //!   a/lid.step, b/box.step  x  iso, top  x  out/{stem}_{view}.png
@@ -35,13 +35,13 @@ pub struct Shot {
     pub camera_out: Option<PathBuf>,
 }
 
-/// Where the view's name goes in a path.
+/// The pattern of the view's name in a path.
 const VIEW: &str = "{view}";
-/// Where the model's name goes, without folder and ending.
+/// The pattern of the model's name, without folder and ending.
 const STEM: &str = "{stem}";
 
 impl Task {
-    /// One for each model; no two write the same file.
+    /// One task for each model; no two write the same file.
     pub fn all(args: &RenderArgs) -> Result<Vec<Self>> {
         let several = args.models.len() > 1;
         let tasks = args.models.iter().map(|model| Self::new(args, model, several)).collect::<Result<Vec<_>>>()?;
@@ -83,13 +83,13 @@ impl Task {
         sheet.chain(self.shots.iter().flat_map(Shot::outputs)).collect()
     }
 
-    /// All of them are there.
+    /// Whether all of them exist.
     pub fn is_done(&self) -> bool {
         self.outputs().iter().all(|target| target.path.is_file())
     }
 }
 
-/// A path as it is for a model, one of several or not.
+/// A path with the model's name in place of its pattern, if there are several models.
 fn of_model(path: &Path, model: &Path, several: bool) -> Result<PathBuf> {
     let text = path.to_string_lossy();
     if text.contains(STEM) {
@@ -106,7 +106,7 @@ fn is_pattern(path: &Path) -> bool {
     path.to_string_lossy().contains(VIEW)
 }
 
-/// A path as it is for a view, one of several or not.
+/// A path with the view's name, if there are several views.
 pub fn named_for(path: &Path, direction: Option<Direction>, several: bool) -> Result<PathBuf> {
     match direction {
         Some(direction) if several || is_pattern(path) => named(path, &direction.to_string()),

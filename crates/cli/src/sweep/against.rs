@@ -1,12 +1,12 @@
-//! The bound beside fixed levels that are off by no more.
+//! The bound beside fixed levels with no larger error.
 //!
 //! ```text
-//!   view of each zoom ─▶ what the bound is off by, of all patches ─▶ smallest level off by no more     one a view
+//!   view of each zoom ─▶ error of the bound, of all patches ─▶ smallest level with no larger error    one a view
 //!                                                                          ╰──▶ the largest of them    one a model
 //! ```
 //!
-//! What a level is off by is computed, not judged: the largest distance in pixels between triangles and surface, over all
-//! patches that may be in the picture. A program with fixed levels has one a model, for all views of a session.
+//! The error of a level is computed, not judged: the largest distance in pixels between triangles and surface, over all
+//! patches that may be in the picture. A program with fixed levels has one level a model, for all views of a session.
 
 use super::{FrameSettings, HeadlessRenderer, Outputs, WARM_UP_FRAMES, camera, pass_ms, renderer};
 use crate::args::{Size, SweepArgs};
@@ -17,16 +17,16 @@ use selvedge::baselines::factors::{Seen, Way};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{FrameStats, Levels};
 
-/// Where no level suffices, this one is drawn.
+/// The level that is drawn where none suffices.
 const FINEST: u32 = 64;
 
 /// A view of a model.
 struct View {
     zoom: f64,
     camera: Camera,
-    /// What the bound is off by, pixels.
+    /// The error of the bound, pixels.
     bound_px: f64,
-    /// The smallest sufficient level; what the finest is off by where there is none.
+    /// The smallest sufficient level; where there is none, the error of the finest.
     level: Result<u32, f64>,
 }
 

@@ -1,4 +1,4 @@
-//! The ways to divide patches that are put side by side.
+//! The ways to divide patches that are compared.
 
 use crate::args::Factors;
 use selvedge::baselines::factors::Way;
@@ -10,14 +10,14 @@ use std::str::FromStr;
 /// How patches are divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Divided {
-    /// As other commands have it.
+    /// As in other commands.
     By(Factors),
     /// By slefes of so many segments.
     Slefe(usize),
 }
 
 impl Divided {
-    /// Of the scene.
+    /// The slefes' segments, for the scene.
     pub fn slefe_segments(self) -> Option<usize> {
         match self {
             Self::By(_) => None,
@@ -25,7 +25,7 @@ impl Divided {
         }
     }
 
-    /// Of the frame.
+    /// The levels, for the frame.
     pub fn levels(self) -> Levels {
         match self {
             Self::By(Factors(levels)) => levels,

@@ -1,11 +1,11 @@
-//! How time grows with what was swept: exponents, by least squares of the logarithms, over the rows of `bound`.
+//! How time grows with the swept quantities: exponents, by least squares of the logarithms, over the rows of `bound`.
 
 use super::Row;
 
 /// A quantity of a row.
 type Quantity = (&'static str, fn(&Row) -> f64);
 
-/// What may be swept. Sub-patches are the patches that are drawn.
+/// The quantities that may be swept. Sub-patches are the patches that are drawn.
 const QUANTITIES: [Quantity; 3] = [
     ("drawn patches", |r| r.sub_patches as f64),
     ("covered pixels", |r| r.covered as f64),
@@ -45,8 +45,8 @@ fn exponent(points: &[(f64, f64)]) -> Option<f64> {
     (hi - lo > 2f64.ln()).then(|| points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>() / spread)
 }
 
-/// `x` with `x · row[..3] = row[3]` by least squares of what each row is off by as a share of itself; `None` where the
-/// columns do not tell them apart.
+/// `x` with `x · row[..3] = row[3]` by least squares of the relative errors of the rows; `None` where the columns do
+/// not determine it.
 fn shares(rows: &[[f64; 4]]) -> Option<[f64; 3]> {
     let mut m = [[0.0; 4]; 3];
     for row in rows {

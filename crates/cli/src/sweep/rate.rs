@@ -11,7 +11,7 @@ use selvedge::picture::{FrameSettings, Outputs};
 /// Squares along each side of the mesh.
 const SIDE: usize = 64;
 
-/// Of the row that drew the most triangles.
+/// The rate of the row that drew the most triangles.
 pub fn told(args: &SweepArgs, rows: &[Row]) -> Result<String> {
     let row = rows.iter().max_by_key(|r| r.triangles).context("nothing was drawn")?;
     let model = grid(row.triangles as usize / (2 * SIDE * SIDE) + 1)?;

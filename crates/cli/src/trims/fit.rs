@@ -1,4 +1,4 @@
-//! Is the table's build linear in what goes into it?
+//! Tests whether the table's build time is linear in its segments and crossings.
 //!
 //! ```text
 //!   ms = a + b (segments + crossings)        least squares over all measured tables of a model

@@ -1,12 +1,12 @@
-//! One measurement: a way, a view, what it costs and how wrong it is.
+//! One measurement: a way, a view, its cost and its error.
 //!
 //! ```text
 //!   trim time = passes that the way has of its own                    "trim table", "trim texture"
-//!             + "visibility" - "visibility untested"                  what the tests in the pixels cost
+//!             + "visibility" - "visibility untested"                  the cost of the tests in the pixels
 //! ```
 //!
 //! Each frame draws the same sub-patches twice, first without a test, so faces behind holes count for neither drawing.
-//! Without a test, no pixel is discarded: the difference can be below zero.
+//! Without a test no pixel is discarded, so the difference can be below zero.
 //!
 //! Each view is measured with every pass recorded, and once more as a turning view, which reuses a table that serves it.
 
@@ -54,20 +54,20 @@ pub struct Row {
     pub prepare_ms: f64,
     /// Bytes that the way needs for this view, whether the device has them or not.
     pub trim_bytes: f64,
-    /// `None`: the device has no room for it.
+    /// `None`: the device has no room for the memory.
     pub cost: Option<Cost>,
     pub error: Option<Error>,
     pub device: String,
 }
 
-/// What a frame costs.
+/// The cost of a frame.
 #[derive(Clone, Debug, Serialize)]
 pub struct Cost {
     pub trim_ms: f64,
     pub own_passes_ms: f64,
     pub gaps_ms: f64,
     pub frame_ms: f64,
-    /// The first and the last of these, of a view that turns.
+    /// The first and the last of these, for a turning view.
     pub turning_trim_ms: f64,
     pub turning_frame_ms: f64,
     pub passes: Vec<(String, f64)>,
@@ -80,7 +80,7 @@ pub struct Cost {
     pub clamps: u64,
 }
 
-/// How wrong it is.
+/// The error of a picture.
 #[derive(Clone, Debug, Serialize)]
 pub struct Error {
     pub judged: u64,
@@ -89,7 +89,7 @@ pub struct Error {
     pub worst_shift_px: f64,
 }
 
-/// A contender with its renderers: one that is timed, one that also writes what is judged.
+/// A contender with its renderers: one that is timed, one that also writes the images to judge.
 pub struct Entered {
     contender: Contender,
     prepare_ms: f64,
@@ -183,7 +183,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// The view turned around its target by so little that it shows the same.
+/// The view turned around its target by so little that the picture hardly changes.
 fn turned(camera: &Camera, nth: usize) -> Camera {
     let turn = DQuat::from_axis_angle(camera.up.normalize(), nth as f64 * 1e-5);
     Camera { eye: camera.target + turn * (camera.eye - camera.target), ..*camera }
@@ -199,8 +199,8 @@ fn turning(
     quickest(renderer, &FrameSettings { all_passes: false, ..*settings }, frames, |nth| turned(camera, nth))
 }
 
-/// The least time of each pass over some frames; `None` when the device has no room. Passes that a frame leaves out took it
-/// no time.
+/// The least time of each pass over some frames; `None` when the device has no room. A pass that a frame skips counts
+/// as zero.
 fn quickest(
     renderer: &mut HeadlessRenderer,
     settings: &FrameSettings,
@@ -239,7 +239,7 @@ fn cost(stats: &FrameStats, turning: &FrameStats, objects: Vec<(String, u64)>) -
     let own_passes_ms = |stats: &FrameStats| -> f64 {
         stats.passes.iter().filter(|p| p.name.starts_with("trim")).map(|p| p.gpu_ms).sum()
     };
-    // a mesh has nothing to test
+    // a mesh has no tests
     let tests_ms = |stats: &FrameStats| match time(stats, UNTESTED) {
         0.0 => 0.0,
         untested => time(stats, "visibility") - untested,
@@ -264,7 +264,7 @@ fn cost(stats: &FrameStats, turning: &FrameStats, objects: Vec<(String, u64)>) -
     }
 }
 
-/// The object is there because faces are trimmed this way; the list of doubtful pixels is everybody's.
+/// The object exists because faces are trimmed this way; the list of gap candidates exists for every way.
 fn is_for_trims(way: Way, object: &str) -> bool {
     match way {
         Way::Pretessellated => object.starts_with("mesh"),

@@ -1,4 +1,4 @@
-//! `selvedge trims`: every way to trim side by side, on the same views: time, memory, and how wrong it is.
+//! `selvedge trims`: compares the ways to trim on the same views: time, memory and error.
 //!
 //! ```text
 //!                   over zoom        time, memory, error       of each way at its usual accuracy
@@ -58,8 +58,7 @@ pub fn run(args: &TrimsArgs) -> Result<Outcome> {
     Ok(if broken { Outcome::Broken } else { Outcome::Good })
 }
 
-/// Those that were named; without any, a sample, and two of the folder that `SELVEDGE_MODELS` names: those that
-/// are there.
+/// The named models; without any, a sample, and two of the folder that `SELVEDGE_MODELS` names, if they exist.
 fn models(args: &TrimsArgs) -> Vec<PathBuf> {
     if !args.models.is_empty() {
         return args.models.clone();

@@ -25,10 +25,10 @@ const COLOURS: [RGBColor; 6] = [
     RGBColor(0xAA, 0x33, 0x77),
     RGBColor(0x66, 0xCC, 0xEE),
 ];
-/// Times below the clock's noise are drawn here, and shifts of nothing.
+/// Times below the clock's noise, and shifts of 0, are drawn here.
 const LEAST: f64 = 1e-2;
 
-/// What one plot shows.
+/// The axes of a plot.
 struct Plot<'a> {
     file: &'a str,
     title: &'a str,
@@ -109,7 +109,7 @@ fn decades(values: impl Iterator<Item = f64>) -> Range<f64> {
     from..to.max(10.0 * from)
 }
 
-/// The text of a plot, if there is anything to plot.
+/// The text of a plot, if it has points.
 fn draw(model: &str, plot: &Plot<'_>, rows: &[Row]) -> Result<Option<String>> {
     let lines = lines(model, plot, rows);
     if lines.is_empty() {

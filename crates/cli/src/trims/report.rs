@@ -17,7 +17,7 @@ pub fn table(rows: &[Row]) -> String {
         "zoom",
         "size",
         "trim, ms",
-        "heal, ms",
+        "gaps, ms",
         "frame, ms",
         "turning: trim",
         "frame, ms",

@@ -1,4 +1,4 @@
-//! The ways to trim and their knobs.
+//! The ways to trim and their parameters.
 
 use selvedge::baselines::{SceneOptions, Sorted, TrimMethod};
 use selvedge::picture::{SceneSettings, TrimWay};
@@ -37,7 +37,7 @@ impl Way {
         }
     }
 
-    /// It promises that no boundary is off by more than half a pixel.
+    /// Whether it promises that no boundary is off by more than half a pixel.
     pub fn promises(self) -> bool {
         matches!(self, Self::Own(_))
     }
@@ -78,8 +78,8 @@ pub enum Contender {
 }
 
 impl Contender {
-    /// At the accuracy that each is used with: half a pixel; the steps of the source; so many texels that
-    /// they are off by no more than half a pixel; Open CASCADE's deflection.
+    /// At its usual accuracy: half a pixel; the steps of the source; so many texels that the error is at most half a
+    /// pixel; Open CASCADE's deflection.
     pub fn usual(way: Way) -> Self {
         match way {
             Way::Own(way) => Self::Own { way, tolerance_px: 0.5 },
@@ -108,12 +108,12 @@ impl Contender {
         }
     }
 
-    /// The tolerance of the frame: of the surfaces too, so it stays where the trims alone are compared.
+    /// The tolerance of the frame; it also holds for surfaces, so it is the same where only the trims are compared.
     pub fn tolerance_px(self) -> f64 {
         if let Self::Own { tolerance_px, .. } = self { tolerance_px } else { 0.5 }
     }
 
-    /// What trims its scene; a mesh has nothing to trim.
+    /// Settings of its scene; a mesh has nothing to trim.
     pub fn scene(self) -> (SceneSettings, SceneOptions) {
         let baseline = |method| SceneOptions { trim: Some(method), ..SceneOptions::default() };
         match self {

@@ -3,7 +3,7 @@
 use super::{selvedge, text};
 
 #[test]
-fn every_device_tells_what_it_lacks_and_its_limits() {
+fn every_device_lists_missing_features_and_limits() {
     let output = selvedge(&["devices"]);
     let told = text(&output.stdout);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));

@@ -1,4 +1,4 @@
-//! `selvedge draw`: what the file holds, and what is refused.
+//! `selvedge draw`: the content of the file, and refusals.
 
 use super::{refused, selvedge, text};
 use std::fs;
@@ -70,7 +70,7 @@ fn an_isometric_cube_has_nine_lines_and_three_dashed_ones() {
     let svg = drawn(&["draw", &model, "-o", &out, "--view", "iso", "--hidden-lines", "--width", "100"], &file);
     assert_eq!((group(&svg, "visible-sharp").len(), group(&svg, "hidden-sharp").len()), (9, 3), "{svg}");
     assert!(svg.contains("width=\"100mm\"") && svg.contains("stroke-dasharray"));
-    // several views, a file each; hidden lines are not there unless asked for
+    // several views, a file each; hidden lines only on demand
     drawn(&["draw", &model, "-o", &out, "--view", "top,30,20"], &folder.path("cube_top.svg"));
     let other = fs::read_to_string(folder.path("cube_30_20.svg")).unwrap();
     assert_eq!((group(&other, "visible-sharp").len(), group(&other, "hidden-sharp").len()), (9, 0));
@@ -125,7 +125,7 @@ fn bad_requests_are_refused() {
     assert!(!fs::exists(&out).unwrap(), "nothing is written");
 }
 
-/// Solids have no lines of their own: said, and where there is nothing else refused; an old file stays.
+/// Solids have no lines of their own: a warning, or a refusal where there is nothing else; an old file stays.
 #[test]
 fn a_solid_alone_is_refused_and_the_old_file_stays() {
     let folder = Folder::new("ball.csg", "sphere(r = 3);");
@@ -137,7 +137,7 @@ fn a_solid_alone_is_refused_and_the_old_file_stays() {
     assert_eq!(fs::read_to_string(&out).unwrap(), "old");
 }
 
-/// The lines of a cube are all there and nowhere else, in a small picture, too.
+/// The lines of a cube are complete and nowhere else, also in a small picture.
 #[test]
 fn lines_along_edges_are_judged() {
     let folder = Folder::new("cube.obj", CUBE);

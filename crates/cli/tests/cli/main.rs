@@ -94,7 +94,7 @@ fn a_file_that_is_no_model_is_an_import_error() {
     refused(&["info", manifest], "Cargo.toml");
 }
 
-/// What a converted file holds is what the source holds; converting it again gives the same bytes.
+/// A converted file has the model of the source; converting it again gives the same bytes.
 #[test]
 fn a_converted_model_is_the_same_model() {
     let source = concat!(env!("CARGO_MANIFEST_DIR"), "/../io/src/import/step/tests/good.step");
@@ -120,7 +120,7 @@ fn a_converted_model_is_the_same_model() {
 
 /// What Open CASCADE counts in the sample, as samples/README.md says.
 #[test]
-fn info_tells_bodies_faces_and_the_assembly() {
+fn info_reports_bodies_faces_and_the_assembly() {
     let model = concat!(env!("CARGO_MANIFEST_DIR"), "/../../samples/assembly.step");
     let plain = selvedge(&["info", model]);
     assert_eq!(plain.status.code(), Some(0));
@@ -151,7 +151,8 @@ fn info_tells_bodies_faces_and_the_assembly() {
     );
 }
 
-/// Polygons become the smooth surface of their scheme, closed where they are; what cannot be is named with its file.
+/// Polygons become the smooth surface of their scheme, closed where they are; an error names the file of unsuitable
+/// ones.
 #[test]
 fn polygons_are_subdivided() {
     let folder = std::env::temp_dir().join(format!("selvedge-subdivide-{}", std::process::id()));
@@ -179,9 +180,9 @@ fn polygons_are_subdivided() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// `sweep` writes a row a setting, and beside the bound the smallest level that is off by no more.
+/// `sweep` writes a row a setting, and beside the bound the smallest level with no larger error.
 #[test]
-fn sweeps_measure_what_they_are_asked() {
+fn sweeps_measure_the_given_quantities() {
     let out = std::env::temp_dir().join(format!("selvedge-sweep-{}.csv", std::process::id()));
     let file = out.to_string_lossy();
     let sample = concat!(env!("CARGO_MANIFEST_DIR"), "/../../samples/bracket.step");
@@ -228,8 +229,8 @@ fn pixel(path: &str, x: u32, y: u32) -> ((u32, u32), [u8; 4]) {
     ((info.width, info.height), bytes[at..at + 4].try_into().unwrap())
 }
 
-/// A program of OpenSCAD's is run by the `openscad` that is on the path: here, one that is not there, one that fails, and
-/// one that writes a solid.
+/// The `openscad` on the path runs an OpenSCAD program: here a missing one, one that fails, and one that writes a
+/// solid.
 #[test]
 #[cfg(unix)]
 fn openscad_runs_its_programs() {

@@ -9,7 +9,7 @@ fn sample(name: &str) -> String {
     format!("{}/../../samples/{name}", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// A folder with a whole file, one that is none, and another whole one, in this order.
+/// A folder with a whole file, an invalid one, and another whole one, in this order.
 fn files() -> (tempfile::TempDir, Vec<String>) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).display().to_string();
@@ -33,6 +33,38 @@ fn render(files: &[String], output: &Path, more: &[&str]) -> std::process::Outpu
 /// Rows of a table, each by the names of its columns.
 fn rows(path: &Path) -> Vec<std::collections::HashMap<String, String>> {
     csv::Reader::from_path(path).expect("a table").deserialize().map(|row| row.expect("a row")).collect()
+}
+
+/// Several views are drawn with frames in flight, but for pictures of one colour, which may show nothing.
+#[test]
+fn views_together_are_what_each_is_alone() {
+    let (folder, names) = files();
+    let draw = |model: &str, start: &str, size: &str, views: &str| {
+        let path = |end: &str| folder.path().join(format!("{start}_{{view}}.{end}")).display().to_string();
+        let depth = format!("depth={}", path("npy"));
+        let output =
+            selvedge(&["render", model, "-o", &path("png"), "--aov", &depth, "--size", size, "--views", views]);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    };
+    let views = ["iso", "front", "top"];
+    // one pixel, of a sphere, has one colour
+    for (model, size) in [(&names[0], "48x32"), (&names[2], "1x1")] {
+        draw(model, &format!("all{size}"), size, &views.join(","));
+        let mut known = Vec::new();
+        for view in views {
+            draw(model, &format!("one{size}"), size, view);
+            for end in ["png", "npy"] {
+                let read = |start: &str| {
+                    fs::read(folder.path().join(format!("{start}{size}_{view}.{end}"))).expect("a file of each view")
+                };
+                assert_eq!(read("all"), read("one"), "{size} {view}.{end}");
+                known.push(read("all"));
+            }
+        }
+        known.sort();
+        known.dedup();
+        assert!(size == "1x1" || known.len() == 2 * views.len(), "no two views are alike");
+    }
 }
 
 #[test]
@@ -100,7 +132,7 @@ fn the_first_failure_ends_it_where_that_is_wanted() {
     assert!(!folder.path().join("a_iso.png").exists());
 }
 
-/// A file that takes too long is one that fails; nothing takes less than a nanosecond.
+/// A file that takes too long fails; nothing takes less than a nanosecond.
 #[test]
 fn a_file_has_its_time() {
     let (folder, names) = files();
@@ -131,7 +163,7 @@ fn two_files_do_not_go_to_one_place() {
     refused(&["render", a, c, "-o", &out("{stem}.png"), "--aov", &format!("depth={}", out("d.npy"))], "{stem}");
 }
 
-/// The call of the file that desktops read, with what the specification puts in place of its fields.
+/// The call of the file that desktops read, with the specification's replacements for its fields.
 #[test]
 fn desktops_get_their_thumbnails() {
     let desktop = concat!(env!("CARGO_MANIFEST_DIR"), "/../../desktop/selvedge.thumbnailer");

@@ -1,4 +1,4 @@
-//! Files of which something or everything cannot be drawn: what is said, and the exit status.
+//! Files with something or everything left out: messages, and the exit status.
 
 use super::{refused, selvedge, text};
 use std::fs;
@@ -30,7 +30,7 @@ fn draws_nothing(folder: &TempDir, model: &str, message: &str) {
     }
     let written = [&png, &native, &step].map(|path| fs::exists(path).unwrap());
     assert_eq!(written, [false; 3]);
-    // which describes the file all the same
+    // `info` describes the file all the same
     let info = selvedge(&["info", "--json", model]);
     assert_eq!(info.status.code(), Some(2));
     assert!(text(&info.stderr).contains(message), "{}", text(&info.stderr));
@@ -58,7 +58,7 @@ fn a_file_without_anything_to_draw_is_refused() {
 }
 
 #[test]
-fn what_is_left_out_is_told_and_strict_refuses_it() {
+fn omissions_are_reported_and_strict_refuses_them() {
     let folder = TempDir::new().unwrap();
     let some = file(&folder, "some.bv", &format!("{PATCH}{DAMAGED}{PATCH}{DAMAGED}"));
     let png = folder.path().join("a.png").to_str().unwrap().to_owned();
@@ -80,8 +80,8 @@ fn what_is_left_out_is_told_and_strict_refuses_it() {
     assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), ""));
 }
 
-/// A Boolean solid of which nothing is left, which no reader can tell; a section that takes everything; a camera that
-/// looks past the model.
+/// A Boolean solid that is empty, which no reader can see; a section that removes everything; a camera that looks past
+/// the model.
 #[test]
 fn pictures_of_nothing_are_no_success() {
     let folder = TempDir::new().unwrap();
@@ -126,7 +126,7 @@ fn pictures_of_nothing_are_no_success() {
 /// does not exist.
 #[cfg(feature = "rhino")]
 #[test]
-fn a_face_that_is_left_out_of_a_rhino_file_is_told() {
+fn a_face_that_is_left_out_of_a_rhino_file_is_reported() {
     const BLOCKS: &[u8] = include_bytes!("../../../io/src/import/rhino/blocks.3dm");
     /// The first bytes of the class of spline surfaces.
     const SURFACE: [u8; 4] = 0x4ED7_D4DE_u32.to_le_bytes();

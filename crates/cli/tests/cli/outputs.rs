@@ -1,4 +1,5 @@
-//! What a call writes: nothing over its inputs or itself, nothing by halves, nothing beside what goes to standard output.
+//! The outputs of a call: nothing overwrites its inputs or another output, no file is incomplete, and standard output
+//! has the file alone.
 
 use super::scenes::SCENE;
 use super::{refused, selvedge, text};
@@ -42,7 +43,7 @@ fn no_output_replaces_an_input() {
     let ours = path("good.step");
     fs::copy(source, &ours).unwrap();
     let (picture, json) = (path("in.png"), path("in.json"));
-    // files are told apart by themselves, not by their names
+    // the same file under another name
     fs::hard_link(&ours, &picture).unwrap();
     fs::hard_link(&ours, &json).unwrap();
     let aov = format!("depth={}", path("in.npy"));
@@ -72,9 +73,9 @@ fn no_output_replaces_an_input() {
     for call in &calls {
         refused(call, "the same file as the input");
     }
-    // what trims the model is read too
+    // the trimming file is an input too
     refused(&["render", &path("small.toml"), "-o", &picture, "--trim-by", &ours], "the same file as the input");
-    // and so are the files that it names
+    // and so are the files that the scene names
     let scene = path("parts.toml");
     fs::write(&scene, "selvedge = 1\n[file.a]\npath = \"good.step\"\n").unwrap();
     for call in
@@ -123,14 +124,14 @@ fn a_dash_is_standard_output() {
     let picture = selvedge(&["render", &scene, "-o", "-", "--stats", &path("a.json")]);
     done(&picture);
     assert_eq!(picture.stdout, fs::read(path("a.png")).unwrap());
-    // what the driver compiled stands apart from what the frame takes
+    // the driver's compile times are separate from the frame's time
     let stats: serde_json::Value = serde_json::from_slice(&fs::read(path("a.json")).unwrap()).unwrap();
     let ms = |of: &str| stats["first_frame"][of].as_f64().unwrap();
     assert!(ms("pipelines_ms") > 0.0 && ms("wall_ms") > 0.0, "{stats}");
     assert_eq!(stats["reused"], false, "every pass is measured");
     let passes: f64 = stats["passes"].as_array().unwrap().iter().map(|pass| pass["gpu_ms"].as_f64().unwrap()).sum();
     assert!(passes > 0.0, "{stats}");
-    // what exists for the scene: buffers take memory, pipelines none that is known
+    // objects of the scene: buffers have sizes, pipelines 0
     let objects = stats["objects"].as_array().unwrap();
     let bytes = |name: &str| objects.iter().find(|o| o["name"] == name).and_then(|o| o["bytes"].as_u64());
     assert!(bytes("patches").is_some_and(|bytes| bytes > 0) && bytes("bound") == Some(0), "{stats}");
@@ -148,7 +149,7 @@ fn a_dash_is_standard_output() {
     done(&selvedge(&["info", &path("a.selvedge")]));
 }
 
-/// A disk that takes no more than 512 bytes of a file: the old picture stays, no piece of a new one does.
+/// A disk with room for 512 bytes of a file: the old picture stays, and no part of a new one.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_costs_nothing() {

@@ -1,4 +1,4 @@
-//! What is read, and how much of it: files, streams, and what is neither.
+//! Files and streams that are read, up to the limits, and paths that are neither.
 
 use super::scenes::SCENE;
 use super::{refused, selvedge, text};

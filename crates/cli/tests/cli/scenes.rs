@@ -68,8 +68,8 @@ fn a_model_is_cut_open() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// The ball's shadow falls on the sheet away from the sun, of the scene or of the command line; the light is judged. That
-/// glass casts none is told.
+/// The ball's shadow falls on the sheet away from the sun, of the scene or of the command line; the light is judged. A
+/// message says that glass casts none.
 #[test]
 fn the_sun_casts_shadows() {
     let folder = std::env::temp_dir().join(format!("selvedge-sun-{}", std::process::id()));

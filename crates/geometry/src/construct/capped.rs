@@ -23,7 +23,7 @@ const SNAP: f64 = 1e-9;
 /// have the control points of the walls' ends.
 ///
 /// A wall's ends may be points (poles), or meet each other. Crossings of ends with themselves and each other are
-/// looked for between chords, 16 in each of their Bézier pieces; those of walls between their ends are not.
+/// searched between chords, 16 in each of their Bézier pieces. Crossings of walls between their ends are not searched.
 ///
 /// # Errors
 /// No wall; a wall whose `u` does not close; an end that is not in one plane, or not in that of the first wall, that
@@ -52,7 +52,7 @@ pub fn capped_solid(walls: &[Surface]) -> Result<Part, ConstructError> {
         });
         let (inward, onward) = along.fold((DVec3::ZERO, DVec3::ZERO), |(a, b), (p, q)| (a + p, b + q));
         let (start, end) = (End::new(first, inward, reach)?, End::new(last, onward, reach)?);
-        // rows that run counter-clockwise about the way along have S_u x S_v outwards
+        // rows that run counter-clockwise about the direction of `v` have S_u x S_v outwards
         let out = match (&start, &end) {
             (Some(e), _) | (None, Some(e)) => e.ahead,
             (None, None) => wall_points_out(wall),
@@ -72,7 +72,7 @@ pub fn capped_solid(walls: &[Surface]) -> Result<Part, ConstructError> {
 }
 
 impl Part {
-    /// One more face of a made part, numbered.
+    /// Adds a face to a made part, and numbers it.
     pub(super) fn add(&mut self, kind: SurfaceKind, surface: Surface, loops: Vec<TrimLoop>, same_sense: bool) {
         let id = self.faces.len() as u32 + 1;
         self.faces.push(Face { id, kind, surface, loops, same_sense, colour: None });
@@ -119,7 +119,7 @@ impl End {
         let area: DVec3 = arms.windows(2).map(|w| w[0].cross(w[1])).sum();
         let long = |a: DVec3, b: DVec3| if b.length_squared() > a.length_squared() { b } else { a };
         let longest = arms.iter().copied().fold(DVec3::ZERO, long);
-        // of an eight, whose halves cancel, the plane is that of its points
+        // the halves of an eight cancel: its plane is that of its points
         let widest = arms.iter().map(|p| longest.cross(*p)).fold(DVec3::ZERO, long);
         let flat = area.length() <= SNAP * widest.length();
         let Some(normal) =

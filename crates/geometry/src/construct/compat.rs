@@ -6,7 +6,7 @@
 //!   degree 2   ├─────────┬────┤                     ├────┬────┬────┤
 //! ```
 //!
-//! The net of a surface through the curves is then made column by column.
+//! The net of a surface through the curves can then be made column by column.
 
 use super::ConstructError;
 use crate::model::Bounds;

@@ -135,7 +135,7 @@ pub fn parabola(apex: DVec3, x: DVec3, y: DVec3, from: f64, to: f64) -> Result<B
 /// # Errors
 /// Numbers that are not finite, `x` and `y` on one line, an empty range or one beyond 300.
 pub fn hyperbola(centre: DVec3, x: DVec3, y: DVec3, from: f64, to: f64) -> Result<BSpline<DVec4>, ConstructError> {
-    /// `cosh` of more leaves the coordinates that products can bear.
+    /// The coordinates' products overflow for larger `cosh`.
     const FARTHEST: f64 = 300.0;
     finite(&[("the centre", centre), ("the hyperbola's axis", x), ("the hyperbola's tangent", y)])?;
     range("the range of the hyperbola", from, to)?;
@@ -168,7 +168,7 @@ fn joined(spans: &[Span<Bezier<DVec4>>]) -> Result<BSpline<DVec4>, ConstructErro
 /// Homogeneous control points, in the plane or in space.
 ///
 /// # Errors
-/// A number of points that is not a multiple of the degree and one more; what [`BSpline::new`] refuses.
+/// A number of points that is not a multiple of the degree and one more; errors of [`BSpline::new`].
 pub fn chain<P: Control>(degree: usize, points: Vec<P>) -> Result<BSpline<P>, ConstructError> {
     let segments = points.len().saturating_sub(1) / degree.max(1);
     if degree == 0 || segments == 0 || segments * degree + 1 != points.len() {
@@ -192,7 +192,7 @@ pub enum Parameters {
     Uniform,
     /// Differences are distances: the spline runs at about unit speed.
     ChordLength,
-    /// Differences are square roots of distances: calmer where distances vary much.
+    /// Differences are square roots of distances: smoother where distances vary much.
     Centripetal,
     /// Given, increasing.
     Given(Vec<f64>),

@@ -1,4 +1,4 @@
-//! Frames along a path that turn no more than the path forces them to.
+//! Frames of least turning along a path.
 //!
 //! ```text
 //!   r_k ▲    ▲          ▲ r_{k+1}      reflect (r, t) in the plane between the points, then in the plane

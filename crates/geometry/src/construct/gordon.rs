@@ -41,9 +41,9 @@ pub struct Network<'a> {
 /// parameters). C² between the curves, whose own continuity it keeps.
 ///
 /// # Errors
-/// A tolerance that is no distance; fewer than two curves either way; curves that are all one, with points between
-/// them; parameters that do not run from 0 to 1; curves that do not meet; rational
-/// curves whose weights at the crossings no scaling of the curves brings together.
+/// A negative or NaN tolerance; fewer than two curves either way; curves of one direction that coincide, with points
+/// between them; parameters that do not run from 0 to 1; curves that do not meet; rational curves whose weights at the
+/// crossings no scaling of the curves makes equal.
 pub fn gordon(network: Network, tolerance: f64) -> Result<Surface, ConstructError> {
     parameters("curves along u", network.u_curves.len(), "parameters v", network.v)?;
     parameters("curves along v", network.v_curves.len(), "parameters u", network.u)?;
@@ -70,7 +70,7 @@ pub(super) fn gap_allowed(tolerance: f64) -> Result<(), ConstructError> {
     Err(ConstructError::Range { what: "the tolerance", value: tolerance, must: "a distance" })
 }
 
-/// The curves of one direction are one, and those of the other are points: there is no surface between them.
+/// All curves of one direction coincide, and those of the other are points: there is no surface between them.
 fn no_area(c: &[BSpline<DVec4>], d: &[BSpline<DVec4>]) -> bool {
     let fine = SAME_SECTION * size(c.iter().chain(d));
     c.iter().all(|x| apart(x, &c[0]) <= fine) && d.iter().all(|x| size([x]) <= fine)

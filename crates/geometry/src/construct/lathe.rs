@@ -48,7 +48,7 @@ pub fn lathe(profile: &BSpline<DVec3>, angle: f64) -> Result<Surface, ConstructE
     Ok(revolve((profile.degree(), profile.knots().to_vec(), &points), (DVec3::ZERO, DVec3::Z), &angles)?)
 }
 
-/// A parameter at which `sign` times the radius is more than `axis`, the first that is found.
+/// A parameter at which `sign` times the radius is more than `axis`: the first that is found.
 fn beyond(profile: &BSpline<DVec3>, sign: f64, axis: f64) -> Option<f64> {
     fn search(piece: &Bezier<DVec3>, outside: &impl Fn(DVec3) -> bool, depth: u32) -> Option<f64> {
         if !piece.points.iter().any(|p| outside(*p)) {

@@ -7,8 +7,8 @@
 //!   c0 ────────       v0 = 0      v_k: chord lengths between sections, averaged over the columns
 //! ```
 //!
-//! Rational sections are interpolated in homogeneous coordinates. The same curve has many weights: each section is
-//! scaled so that the mean of its weights is 1, so the answer does not depend on how a section was written.
+//! Rational sections are interpolated in homogeneous coordinates. A curve's weights may have any common factor: each
+//! section is scaled so that the mean of its weights is 1, so the result does not depend on that factor.
 //!
 //! Source: L. Piegl, W. Tiller, *The NURBS Book*, 1997, section 10.3.
 
@@ -18,7 +18,7 @@ use crate::spline::cubic::{Cubic, Ends};
 use crate::spline::{BSpline, Control, Surface};
 use glam::DVec4;
 
-/// Share of the size below which neighbouring sections are one.
+/// Share of the size below which neighbouring sections coincide.
 pub(super) const SAME_SECTION: f64 = 1e-12;
 
 /// The surface through `sections` at increasing `v`, over the unit square; `u` runs along the sections.
@@ -84,7 +84,7 @@ pub(super) fn scaled(curve: &BSpline<DVec4>) -> Result<BSpline<DVec4>, Construct
     Ok(BSpline::new(curve.degree(), curve.knots().to_vec(), scaled)?)
 }
 
-/// Parameters of the sections from 0 to 1: chord lengths, averaged over the columns that have a length at all.
+/// Parameters of the sections from 0 to 1: chord lengths, averaged over the columns that have a length.
 fn heights(rows: &[BSpline<DVec4>], fine: f64) -> Vec<f64> {
     let step = |k: usize, i: usize| rows[k].points()[i].point().distance(rows[k + 1].points()[i].point());
     let gaps = rows.len() - 1;

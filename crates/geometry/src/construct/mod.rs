@@ -1,5 +1,5 @@
-//! Surfaces made from curves, equations and data, as rational B-splines: exact where a spline can be, else within a
-//! bound that is measured and returned.
+//! Surfaces made from curves, equations and data, as rational B-splines: exact where a spline can be, else with a
+//! measured bound of the error.
 //!
 //! ```text
 //!   extrude        lathe          sweep            ruled, loft        Coons, Gordon
@@ -20,7 +20,7 @@
 //! | dimensions: blocks, balls, gears, a pot | [`shapes`] |
 //! | control meshes | [`subdivide`] |
 //!
-//! | answer | meaning |
+//! | result | meaning |
 //! |---|---|
 //! | `Surface` | exact: the rounding of `f64`, below `1e-12` of the size |
 //! | [`Built`] | within [`Built::deviation`] of the surface described, measured |
@@ -72,7 +72,7 @@ use crate::spline::Surface;
 pub struct Built {
     /// The spline.
     pub surface: Surface,
-    /// Largest distance between the spline and the surface described, at equal parameters, in model units. 0 when
-    /// the spline is the surface described.
+    /// Largest distance between the spline and the surface described, at equal parameters, in model units. 0 when the
+    /// spline is exact.
     pub deviation: f64,
 }

@@ -20,13 +20,13 @@ pub(super) type Affine = [DVec3; 3];
 const MOST_NODES: usize = 1 << 17;
 /// Most pieces of a fit.
 const MOST_PIECES: usize = 1 << 13;
-/// Samples of the error inside a piece; a cubic Hermite error has one hump (of `x² (1 - x)²`), of which the nearest
-/// of twelve samples sees 99 %.
+/// Samples of the error inside a piece. A cubic Hermite error has one hump (of `x² (1 - x)²`); the nearest of twelve
+/// samples reaches 99 % of it.
 const SAMPLES: usize = 12;
-/// For what lies between the samples.
+/// Factor for the error between the samples.
 const MARGIN: f64 = 1.1;
 
-/// What a motion does beside following its path.
+/// The motion beside the path itself.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Laws {
     /// Direction of the profile's `x` at the start.
@@ -44,17 +44,17 @@ pub(super) struct Motion<'a> {
     /// Parameter, frame, and length so far.
     nodes: Vec<(f64, DVec3, f64)>,
     length: f64,
-    /// Twist, and what closes the frame of a closed path.
+    /// Twist, and the turn that closes the frame of a closed path.
     turn: f64,
     /// Bound of the frame's error, radians.
     pub frame_error: f64,
 }
 
 impl<'a> Motion<'a> {
-    /// Frames to within `angle` radians, judged by halving the steps.
+    /// Frames to within `angle` radians, estimated by halving the steps.
     ///
     /// # Errors
-    /// That takes more than the allowed number of nodes.
+    /// The frames need more than the allowed number of nodes.
     pub fn new(path: &'a Path, laws: Laws, angle: f64) -> Result<Self, ConstructError> {
         let mut steps = 16;
         let mut nodes = table(path, laws.up, steps);

@@ -24,12 +24,12 @@ const ROUNDING: f64 = 1e-13;
 const FIRST: usize = 4;
 /// Radians between the normals on both sides of a knot above which it is an edge.
 const EDGE: f64 = 1e-6;
-/// For what lies between the samples of the error.
+/// Factor for the error between the samples.
 const MARGIN: f64 = 1.2;
 
 /// `S + distance n` over the same domain; negative distances lie on the other side. A plane's is exact.
 ///
-/// C² between the creases of `S`, continuous across them. Folds are looked for at the sites and between them.
+/// C² between the creases of `S`, continuous across them. Folds are searched at the sites and between them.
 ///
 /// # Errors
 /// Numbers out of range; a surface with an edge inside, or without a normal; a distance beyond a centre of
@@ -88,7 +88,7 @@ fn plane(surface: &Surface, distance: f64) -> Option<Surface> {
 struct Axis {
     /// Increasing, over the domain.
     sites: Vec<f64>,
-    /// Those at which splines end, both ends of the domain among them.
+    /// Sites at which splines end, both ends of the domain among them.
     creases: Vec<f64>,
 }
 
@@ -122,7 +122,7 @@ impl Axis {
     }
 }
 
-/// What is offset.
+/// The surface and its distance.
 struct Source<'a> {
     surface: &'a Surface,
     grid: PatchGrid,
@@ -188,7 +188,7 @@ impl Source<'_> {
         let jet = self.surface.jet2(u, v);
         let ((u0, u1), (v0, v1)) = self.surface.domain();
         let (along_u, along_v) = (jet.du.length() * (u1 - u0), jet.dv.length() * (v1 - v0));
-        // near a pole rounding rules the curvature
+        // near a pole the curvature is mostly rounding
         let sound = along_u.min(along_v) > 1e-6 * along_u.max(along_v);
         let Some(c) = jet.curvature().filter(|_| sound) else { return Ok(()) };
         for k in [c.most, c.least] {
@@ -199,7 +199,7 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// The splines through the sites as one surface, and how far off they are in each cell.
+    /// The splines through the sites as one surface, and the error of each cell.
     fn attempt(&self, u: &Axis, v: &Axis) -> Result<(Surface, Vec<Cell>), ConstructError> {
         let nu = u.sites.len();
         let mut values = Vec::with_capacity(nu * v.sites.len());

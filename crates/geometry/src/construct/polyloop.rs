@@ -1,4 +1,4 @@
-//! Closed control polygons in the plane and the smooth closed curves that they stand for.
+//! Closed control polygons in the plane, and their smooth closed curves.
 //!
 //! ```text
 //!    p3 ───────── p2        approximating: uniform cubic B-spline, C², inside the hull
@@ -23,9 +23,9 @@ use crate::math::orientation::orientation;
 use crate::spline::{BSpline, Control};
 use glam::{DVec2, DVec3};
 
-/// Most vertices, of a polygon and of what is made from it.
+/// Most vertices of a polygon, and of a subdivided one.
 const MOST_VERTICES: usize = 1 << 20;
-/// Largest tension of the four-point scheme that is known to give a C¹ limit for every polygon.
+/// Largest tension of the four-point scheme with a proven C¹ limit for every polygon.
 const TENSEST: f64 = 0.125;
 
 /// A closed polygon of at least three vertices; neighbours differ.
@@ -71,7 +71,7 @@ impl PolyLoop {
         &self.vertices
     }
 
-    /// A vertex before number `index`; `index` may be the number of vertices. The loop stays as it was on errors.
+    /// Inserts a vertex before number `index`; `index` may be the number of vertices. On errors the loop is unchanged.
     ///
     /// # Errors
     /// An index beyond the end; a vertex that is not finite or coincides with a neighbour.

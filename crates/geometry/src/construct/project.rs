@@ -1,8 +1,8 @@
 //! A curve in space cast onto a surface along a direction, as curves in the surface's `(u, v)`.
 //!
 //! ```text
-//!       ╭───╮    outline P(t)             where the line P(t) + s d first meets the surface, from the side that d
-//!       ╰─┬─╯                             comes from, and from there on without a jump
+//!       ╭───╮    outline P(t)             where the line P(t) + s d, coming from far behind, first meets the
+//!       ╰─┬─╯                             surface, and from there on without a jump
 //!         │ d
 //!     ────▼────  surface S(u, v)          (S(u, v) - P(t)) × d = 0: two equations for u and v
 //!       (( ))    projection
@@ -25,15 +25,15 @@ pub struct Projected {
     pub deviation: f64,
 }
 
-/// Samples of the error in a step; the nearest of them sees 99 % of the hump.
+/// Samples of the error in a step; the nearest of them reaches 99 % of the hump.
 const SAMPLES: u32 = 8;
-/// For what lies between the samples.
+/// Factor for the error between the samples.
 const MARGIN: f64 = 1.1;
 /// Shortest step, of a Bézier piece of the outline.
 const SHORTEST: f64 = 1.0 / 65536.0;
 /// Most steps.
 const MOST_STEPS: usize = 1 << 14;
-/// Seeds in each patch, in both directions, for the first point.
+/// Seeds in each patch, in each direction, for the first point.
 const SEEDS: u32 = 6;
 /// Most patches that are searched for the first point.
 const MOST_PATCHES: usize = 1 << 16;
@@ -78,7 +78,7 @@ pub fn project(
     Ok(out)
 }
 
-/// What stays the same along the outline.
+/// The constants of the march.
 struct Cast {
     grid: PatchGrid,
     domain: ((f64, f64), (f64, f64)),
@@ -94,12 +94,12 @@ impl Cast {
         p.clamp(DVec2::new(u0, v0), DVec2::new(u1, v1))
     }
 
-    /// Across the direction.
+    /// The components across the direction.
     fn across(&self, v: DVec3) -> DVec2 {
         DVec2::new(self.e.dot(v), self.f.dot(v))
     }
 
-    /// Of the surface's point against `p`, and the derivatives.
+    /// The offset of the surface's point from `p` across the direction, and its derivatives.
     fn residual(&self, uv: DVec2, p: DVec3) -> (DVec2, DMat2) {
         let jet = self.grid.jet(uv.x, uv.y);
         (self.across(jet.point - p), DMat2::from_cols(self.across(jet.du), self.across(jet.dv)))
@@ -133,7 +133,7 @@ impl Cast {
         }
         let mut best: Option<(f64, DVec2)> = None;
         for patch in patches {
-            // the patch lies in the box of its points: the line misses what does not reach it
+            // the patch lies in the box of its points: a line outside the box misses it
             let net = patch.patch.points.iter().map(|q| self.across(q.point() - p));
             let (lo, hi) = net.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), q| (a.min(q), b.max(q)));
             if lo.max_element() > 1e-9 * self.size || hi.min_element() < -1e-9 * self.size {
@@ -186,7 +186,7 @@ impl Cast {
                     (t, at, slope, step) = (end, next, after, 2.0 * (end - t));
                     continue;
                 }
-                // what stops a step at last: its error, or that there is nothing to meet
+                // the reason of a step that stays too short: its error, or that the line meets nothing
                 found => reached = found.map_or(f64::INFINITY, |f| f.2),
             }
             step = 0.5 * (end - t);

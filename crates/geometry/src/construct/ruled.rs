@@ -17,7 +17,7 @@ use glam::DVec4;
 /// the same points of both curves, but not at constant speed.
 ///
 /// # Errors
-/// Both curves are one.
+/// The curves coincide.
 pub fn ruled(a: &BSpline<DVec4>, b: &BSpline<DVec4>) -> Result<Surface, ConstructError> {
     let rows = compatible(&[a.clone(), b.clone()])?;
     if apart(&rows[0], &rows[1]) <= 1e-14 * size([a, b]) {

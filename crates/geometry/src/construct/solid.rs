@@ -8,8 +8,8 @@
 //!    ╰──────────╯    hole: a loop inside a loop, any depth
 //! ```
 //!
-//! Loops may run either way: what lies inside an even number of others is turned counter-clockwise, the rest
-//! clockwise, so normals point out of the solid.
+//! Loops may run either way: a loop inside an even number of others is turned counter-clockwise, the rest clockwise, so
+//! normals point out of the solid.
 
 use super::{ConstructError, extrude, lathe};
 use crate::math::orientation::orientation;
@@ -28,7 +28,7 @@ const CHORDS: u32 = 16;
 
 /// The solid between `profile`, in the plane `z = 0`, and its copy moved by `vector`. Exact.
 ///
-/// Crossings of the profile with itself are looked for between chords, 16 in each of its Bézier pieces.
+/// Crossings of the profile with itself are searched between chords, 16 in each of its Bézier pieces.
 ///
 /// # Errors
 /// No curve; a chain that is open, encloses nothing, or crosses itself or another; a vector in the plane.
@@ -67,7 +67,7 @@ pub fn lathed_solid(profile: &[Chain], angle: f64) -> Result<Part, ConstructErro
     if least < -SNAP * profile.size && most > SNAP * profile.size {
         return Err(ConstructError::CrossesAxis { parameter: 0.0 });
     }
-    // turned the half plane opposite, every normal is
+    // if the half plane opposite is turned, every normal is reversed
     let right = most > -least;
     let mut solid = Part { closed: true, ..Part::default() };
     for c in profile.chains.iter().flatten() {
@@ -86,7 +86,8 @@ pub fn lathed_solid(profile: &[Chain], angle: f64) -> Result<Part, ConstructErro
     Ok(solid)
 }
 
-/// Closed chains of curves in `(u, v)` as trim loops, in the order given: what lies inside an odd number of them is kept.
+/// Closed chains of curves in `(u, v)` as trim loops, in the given order: the face is the part inside an odd number of
+/// them.
 ///
 /// # Errors
 /// No curve; a chain that is open, encloses nothing, or crosses itself or another.

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! The frame is the one of least turning along the path; a twist and a scale may be added, even by arc length. On a
-//! closed path the frame comes back turned by an angle (its holonomy): that is taken back evenly by arc length, so the
-//! surface closes when the twist is a whole number of turns and the scales are equal.
+//! closed path the frame comes back turned by an angle (its holonomy). This angle is removed evenly by arc length, so
+//! the surface closes when the twist is a whole number of turns and the scales are equal.
 //!
 //! | path | surface |
 //! |---|---|
@@ -24,7 +24,7 @@ use crate::spline::{BSpline, Control, Surface};
 use glam::{DAffine3, DMat3, DVec2, DVec3, DVec4};
 use std::f64::consts::TAU;
 
-/// What to sweep, and how.
+/// A sweep: profile, path and motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Sweep<'a> {
     /// Planar profile.
@@ -67,7 +67,7 @@ impl<'a> Sweep<'a> {
         }
         let hull: Vec<DVec2> = self.profile.points().iter().map(|p| p.point()).collect();
         let reach = hull.iter().map(|p| p.length()).fold(0.0, f64::max) * self.scale.0.max(self.scale.1);
-        // a twentieth for the frame, what is left for the fit
+        // a twentieth for the frame, the rest for the fit
         let laws = Laws { up: self.up, twist: self.twist, scale: self.scale };
         let motion = Motion::new(&path, laws, 0.05 * self.tolerance / reach)?;
         if let Some(fold) = motion.fold(&samples(self.profile)) {

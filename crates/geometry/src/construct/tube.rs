@@ -17,8 +17,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// The tube of `radius` around `path`, open at the ends of an open path: see [`Sweep`] for when it is exact. The
 /// normal `S_u × S_v` points outwards.
 ///
-/// Folds are looked for at 128 points of each piece of the path. Parts of the path that come near each other without
-/// bending sharply make a tube that crosses itself: that is not looked for.
+/// Folds are searched at 128 points of each piece of the path. Parts of the path that come near each other without
+/// bending sharply make a tube that crosses itself: such crossings are not searched.
 ///
 /// # Errors
 /// The radius is not positive, or not smaller than the path's radius of curvature; as [`Sweep::build`].

@@ -134,7 +134,7 @@ impl Blist {
         self.entries.len() as u32
     }
 
-    /// Whether a point is in the solid, for `inside(primitive)`: asks only the primitives that matter.
+    /// Whether a point is in the solid; calls `inside(primitive)` only for primitives that decide it.
     pub fn contains(&self, mut inside: impl FnMut(u32) -> bool) -> bool {
         let mut i = self.start;
         while let Some(entry) = self.entries.get(i as usize) {

@@ -30,7 +30,7 @@ pub enum BspNode {
     },
 }
 
-/// What comes next, from back to front.
+/// The next item, from back to front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visit {
     /// A cell.
@@ -51,9 +51,9 @@ pub fn most_cells(n: u64) -> u64 {
 }
 
 impl Bsp {
-    /// Decides the half-spaces of `tree` one after the other, in the order of its leaves. `possible` is
-    /// told the decisions on the way to a child and says whether any point satisfies them; without such
-    /// knowledge (`|_| true`) there may be `2^n` cells.
+    /// Decides the half-spaces of `tree` one after the other, in the order of its leaves. `possible` receives the
+    /// decisions on the way to a child, and returns whether any point satisfies them; with `|_| true` there may be
+    /// `2^n` cells.
     ///
     /// # Errors
     /// [`TreeError::TooLarge`] when there are more than `most_nodes` nodes.
@@ -129,8 +129,8 @@ impl Bsp {
         b.finish(made[0])
     }
 
-    /// All cells and borders, so that nothing hides what comes after it from a viewpoint for which
-    /// `inside(primitive)` holds.
+    /// All cells and borders in an order in which none hides a later one, for a viewpoint for which `inside(primitive)`
+    /// holds.
     pub fn back_to_front(&self, mut inside: impl FnMut(u32) -> bool) -> Vec<Visit> {
         let mut order = Vec::with_capacity(self.nodes.len());
         let mut open = vec![Visit::Cell(0)]; // a `Cell` here is any node still to be entered

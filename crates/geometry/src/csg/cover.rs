@@ -1,4 +1,4 @@
-//! A few primitives that hold the whole solid.
+//! A few primitives that contain the whole solid.
 //!
 //! ```text
 //!   cover(A * B) = the lighter of cover(A), cover(B)      cover(A + B) = both
@@ -8,8 +8,8 @@
 
 use super::tree::{Node, Op, Tree};
 
-/// Primitives, in tree order, whose union contains the solid, of little total `weight` (the volume or
-/// projected area of a primitive). `None` when no finite set is known to: a complement stands open.
+/// Primitives, in tree order, whose union contains the solid, of little total `weight` (the volume or projected area of
+/// a primitive). `None` when no finite set is found: a complement is unbounded.
 ///
 /// # Panics
 /// When the tree is not [positive](Tree::is_positive).

@@ -42,7 +42,7 @@ pub struct Switch {
     pub primitive: u32,
     /// The primitive is complemented.
     pub negative: bool,
-    /// The leaf is asked when `next` equals this; the walk starts with `next = 0`.
+    /// The leaf is evaluated when `next` equals this; the walk starts with `next = 0`.
     pub name: u32,
     /// The next label when the point is in the literal.
     pub when_in: u32,
@@ -118,7 +118,7 @@ impl Blist {
         }
         let mut switches = Vec::with_capacity(outside as usize);
         for (i, entry) in (0..).zip(self.entries()) {
-            // nothing carries a label before the first leaf, so its name may be anyone's
+            // nothing carries a label before the first leaf, so its name is free
             let name = if i == 0 { 0 } else { pool.of(i) };
             pool.release(i);
             let (t, f) = entry.exits(i);

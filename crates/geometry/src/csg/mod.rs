@@ -1,4 +1,4 @@
-//! Boolean expressions over primitives, which are numbers here, and the lists that decide membership.
+//! Boolean expressions over primitives, which are numbers here, and lists that decide membership.
 //!
 //! ```text
 //!   Tree: + * - ^ ! over primitive indices, postfix, any depth

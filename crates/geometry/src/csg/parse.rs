@@ -37,7 +37,7 @@ pub enum ParseError {
     Tree(#[from] TreeError),
 }
 
-/// What waits for its right side.
+/// An operator or bracket that waits for its right side.
 enum Pending {
     Bracket { column: usize },
     Not,
@@ -58,7 +58,7 @@ impl Pending {
 /// Reads one expression.
 ///
 /// # Errors
-/// [`ParseError`] with the column of the first thing that does not fit.
+/// [`ParseError`] with the column of the first fault.
 pub fn parse(text: &str) -> Result<Expression, ParseError> {
     let mut yard = Yard::default();
     let mut names: Vec<String> = Vec::new();
@@ -133,7 +133,7 @@ struct Yard {
 }
 
 impl Yard {
-    /// Finishes what binds at least as strongly as `strength`.
+    /// Finishes operators that bind at least as strongly as `strength`.
     fn reduce(&mut self, strength: u8) {
         while let Some(pending) = self.pending.pop_if(|p| p.strength() >= strength) {
             let right = self.done.pop().expect("every operator waits behind an operand");

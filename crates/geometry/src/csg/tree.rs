@@ -48,7 +48,7 @@ pub enum Node {
     Constant(bool),
     /// A primitive, by its index in the solid's list.
     Leaf(u32),
-    /// Everything that its child is not.
+    /// The complement of its child.
     Complement(u32),
     /// Left and right child under an operation.
     Pair(Op, u32, u32),
@@ -120,15 +120,14 @@ impl Builder {
         }
     }
 
-    /// `a op b op c …` from the left; the constant of nothing (`0`, or `1` for an intersection) for an
-    /// empty list.
+    /// `a op b op c …` from the left; for an empty list the constant `0`, or `1` for an intersection.
     pub fn fold(&mut self, op: Op, all: impl IntoIterator<Item = u32>) -> u32 {
         let mut all = all.into_iter();
         let Some(first) = all.next() else { return self.push(Node::Constant(op == Op::Intersection)) };
         all.fold(first, |a, b| self.pair(op, a, b))
     }
 
-    /// Copies `tree` in, each leaf as `leaf` makes it, and returns the new place of each of its nodes.
+    /// Copies `tree`, each leaf converted by `leaf`, and returns the new place of each of its nodes.
     pub(super) fn copy(&mut self, tree: &Tree, mut leaf: impl FnMut(&mut Self, u32) -> u32) -> Vec<u32> {
         let mut map: Vec<u32> = Vec::with_capacity(tree.nodes.len());
         for node in &tree.nodes {
@@ -215,7 +214,7 @@ struct TreeData {
 impl TryFrom<TreeData> for Tree {
     type Error = TreeError;
 
-    /// Children that stand before their parents are what a [`Builder`] has; it brings them into order.
+    /// A tree whose children stand before their parents is the input of a [`Builder`], which sorts it.
     fn try_from(data: TreeData) -> Result<Self, TreeError> {
         match data.nodes.len() as u64 {
             0 => Ok(Self::constant(false)),
@@ -300,8 +299,8 @@ impl Tree {
         heights
     }
 
-    /// The tree with known primitives replaced by their value and constants worked out: what is left of
-    /// a solid where `known(primitive)` says that a primitive is absent (`Some(false)`) or everywhere.
+    /// The tree with known primitives replaced by their value and constants evaluated. `known(primitive)` says that a
+    /// primitive is absent (`Some(false)`), everywhere (`Some(true)`), or neither.
     pub fn fold(&self, mut known: impl FnMut(u32) -> Option<bool>) -> Self {
         let mut b = Builder::new();
         let map = b.copy(self, |b, p| match known(p) {

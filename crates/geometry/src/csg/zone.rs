@@ -15,7 +15,7 @@
 
 use super::tree::{Builder, Node, Op, Tree, TreeError};
 
-/// The way from a leaf to the root of a positive form, and what branches off it.
+/// The way from a leaf to the root of a positive form, and the branches off it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Path {
     /// Pairs above the leaf, nearest first.

@@ -1,13 +1,13 @@
-//! Length of an edge, and the line or circle that it is.
+//! Length of an edge, and its line or circle.
 
 use crate::math::gauss::integrate;
 use crate::model::Edge;
 use crate::spline::{Bezier, Span};
 use glam::{DAffine3, DVec3, DVec4};
 
-/// Points of a curve are on a line or circle within this share of its size: roundings of what a file states in 12 digits.
+/// Points of a curve are on a line or circle within this share of its size: the rounding of numbers of 12 digits.
 pub const SAME: f64 = 1e-9;
-/// Points that are looked at, of each piece.
+/// Points of each piece that are tested.
 const LOOKS: usize = 8;
 
 /// A circle, or an arc of one.
@@ -21,7 +21,7 @@ pub struct Circle {
     pub radius: f64,
 }
 
-/// What a curve is.
+/// The kind of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CurveShape {
     /// Straight, with its unit direction.
@@ -50,7 +50,7 @@ pub fn length(edge: &Edge, transform: DAffine3) -> (f64, f64) {
     total
 }
 
-/// The line or circle that a placed edge is.
+/// The line or circle of a placed edge.
 pub fn shape(edge: &Edge, transform: DAffine3) -> CurveShape {
     let looks = |span: &Span<Bezier<DVec4>>| {
         (0..=LOOKS).map(|i| transform.transform_point3(jet(&span.piece, i as f64 / LOOKS as f64).0)).collect::<Vec<_>>()
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_circles_and_others_are_told_apart() {
+    fn lines_circles_and_others_are_distinguished() {
         let at = |f: &dyn Fn(f64) -> DVec3| (0..=20).map(|i| f(f64::from(i) / 20.0)).collect::<Vec<_>>();
         let line = at(&|t| DVec3::new(1e3 + 3.0 * t, 4.0 * t, 0.0));
         assert!(matches!(shape_of(&line), CurveShape::Line(d) if d.distance(DVec3::new(0.6, 0.8, 0.0)) < 1e-12));

@@ -32,8 +32,8 @@ use glam::{DMat4, DVec2, DVec4};
 
 /// Chords of a piece; one that needs more is halved.
 pub const MOST_CHORDS: u32 = 16;
-/// Halvings of a piece. What still crosses the near plane then is shorter than rounding and left out; what still bends is
-/// taken as it is, and counted.
+/// Halvings of a piece. A piece that still crosses the near plane then is shorter than rounding, and is left out; a
+/// piece that is still bent is used, and counted.
 pub const HALVINGS: u32 = 48;
 
 /// A view that lines are made for.
@@ -72,7 +72,7 @@ pub struct Lines {
     pub unresolved: usize,
 }
 
-/// What becomes of a piece.
+/// The next step for a piece.
 enum Fate {
     Outside,
     Chords(u32),
@@ -156,7 +156,7 @@ impl Flattening {
         let least = points.iter().map(|p| p.w).fold(f64::INFINITY, f64::min);
         let bend = self.bend(points);
         let squared = bend.length() / (8.0 * self.tolerance * least);
-        // NaN and what is too large are halved
+        // NaN and large values are halved
         if squared <= f64::from(MOST_CHORDS * MOST_CHORDS) {
             Fate::Chords((squared.sqrt().ceil() as u32).max(1))
         } else {

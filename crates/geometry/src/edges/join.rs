@@ -14,7 +14,7 @@ use crate::model::Bounds;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Chords in a stretch, to look for what is near.
+/// Chords in a stretch, for the search of near stretches.
 const STRETCH_CHORDS: usize = 64;
 
 /// The boundary of a part.
@@ -89,8 +89,8 @@ impl Boundaries {
         Trail { stretch, sheet: &sheets[stretch.face] }
     }
 
-    /// Finds the edges of `some`: stretches in order, each with the nearest free one between the same vertices; what
-    /// stays alone joins an edge that is there.
+    /// Finds the edges of `some`: stretches in order, each with the nearest free one between the same vertices. A
+    /// stretch that stays alone joins an existing edge.
     fn pair(&mut self, some: &[usize], sheets: &[Sheet], reach: f64) {
         for &i in some {
             if self.samples[i].points.is_empty() {
@@ -123,7 +123,7 @@ impl Boundaries {
             });
             self.edges.push(uses);
         }
-        // where three faces meet, the third found nothing free
+        // where three faces meet, no free stretch is left for the third
         for &single in some {
             let own = taken[&single];
             if self.edges[own].len() != 1 {
@@ -143,8 +143,8 @@ impl Boundaries {
         self.edges.retain(|uses| !uses.is_empty());
     }
 
-    /// Of `others` the one next to `first`, and its distance, where that is within `reach`; pieces of one edge of the
-    /// source come first, and may be as far apart as loose edges.
+    /// The stretch of `others` next to `first`, and its distance, where that is within `reach`; pieces of one edge of
+    /// the source come first, and may be as far apart as loose edges.
     fn best(
         &self,
         first: usize,
@@ -163,7 +163,7 @@ impl Boundaries {
         best.map(|(_, distance, j)| (j, distance))
     }
 
-    /// Largest distance of three inner points of `a` from `b`; beyond `limit`, some distance that is.
+    /// Largest distance of three inner points of `a` from `b`; if beyond `limit`, any distance beyond it.
     fn apart(&self, a: usize, b: usize, sheets: &[Sheet], limit: f64) -> f64 {
         let (trail, other) = (self.trail(sheets, a), self.trail(sheets, b));
         let (own, samples) = (&self.samples[a].points, &self.samples[b]);
@@ -193,8 +193,8 @@ impl Boundaries {
         t(0.3) > t(0.6)
     }
 
-    /// Joins edges that have one stretch only, where a file's edges lie off its surfaces: ends within `loose` of
-    /// each other become one vertex, stretches within `loose` of a point are dropped, and the others are paired again.
+    /// Joins edges that have one stretch only, where a file's edges lie off its surfaces. Ends within `loose` of each
+    /// other become one vertex, stretches within `loose` of a point are dropped, and the others are paired again.
     pub fn mend(&mut self, sheets: &[Sheet], loose: f64) {
         let single: Vec<usize> = self.edges.iter().filter(|e| e.len() == 1).map(|e| e[0].0).collect();
         let points = &self.cut.vertices.points;

@@ -1,13 +1,13 @@
-//! What an edge is to the eye: by the angle at which its faces meet.
+//! The kind of an edge, by the angle at which its faces meet.
 //!
 //! ```text
 //!        A's inward direction a = n × t      n = S_u × S_v, t along A's loop, which has the face on its left
 //!      ◀──────●──────▶ b                     the surface continues where b = -a: turn = angle(a, -b)
 //! ```
 //!
-//! The directions into the faces decide, not their normals: neighbours of an open part may be turned differently. The
-//! angle is taken at three points of each curve of the first use; between them it is not bounded. Where a face has no
-//! normal (a pole, a cusp), the point says nothing.
+//! The directions into the faces decide, not their normals: neighbours of an open part may be oriented differently. The
+//! angle is measured at three points of each curve of the first use; between them it is not bounded. A point at which a
+//! face has no normal (a pole, a cusp) is skipped.
 
 use super::sheet::Sheet;
 use super::stretch::Stretch;
@@ -18,7 +18,7 @@ use std::f64::consts::PI;
 
 /// Points of each curve at which the angle is taken.
 const POINTS: [f64; 3] = [0.12, 0.5, 0.88];
-/// Chords in each curve of another use, among which a point of the first is looked for.
+/// Chords in each curve of another use, for the search of the point next to one of the first use.
 const CHORDS: u32 = 8;
 /// A normal shorter than this share of its derivatives' product is none.
 const FLAT: f64 = 1e-9;
@@ -51,7 +51,7 @@ pub(super) fn kind(sheets: &[Sheet], stretches: &[Stretch], uses: &[(usize, bool
             }
         }
     }
-    // faces without a normal anywhere along it: nothing says that they continue each other
+    // faces without a normal anywhere along it: their angle is unknown, so it is sharp
     let turn = turn.unwrap_or(PI);
     let own = others.iter().all(|(other, _)| stretches[*other].face == first.face);
     let kind = match (turn <= smooth, own) {
@@ -62,7 +62,7 @@ pub(super) fn kind(sheets: &[Sheet], stretches: &[Stretch], uses: &[(usize, bool
     (kind, turn)
 }
 
-/// Another use of the edge, to be asked at points of the first.
+/// Another use of the edge, evaluated next to points of the first.
 struct Across<'s, 'a> {
     sheet: &'s Sheet<'a>,
     stretch: &'s Stretch,

@@ -5,9 +5,9 @@
 //!     ╱ │ ╲       sides of one triangle                                                   border
 //! ```
 //!
-//! Corners at the same place, bit for bit, are one, across all meshes of a part: formats without shared vertices and
-//! files with a mesh a face have creases like others. A triangle without area has no angle: its sides are neither. Three
-//! triangles or more at a side make a crease.
+//! Corners at the same place, bit for bit, are one, across all meshes of a part. So formats without shared vertices,
+//! and files with a mesh a face, have the same creases. A triangle without area has no angle: its sides are neither. A
+//! side of three triangles or more is a crease.
 
 use crate::model::{EdgeKind, Mesh, MeshEdge};
 use glam::DVec3;
@@ -49,7 +49,7 @@ pub(super) fn edges(meshes: &[Mesh], crease: f64) -> Vec<MeshEdge> {
     found
 }
 
-/// `None` for a side that no eye sees.
+/// `None` for a side that is neither.
 fn kind(meshes: &[Mesh], edge: &MeshEdge, crease: f64) -> Option<EdgeKind> {
     let along = edge.ends[1] - edge.ends[0];
     // the direction into each triangle, across the side

@@ -1,4 +1,4 @@
-//! The edges of a part, found from its faces, their loops and what the source says of shared edges.
+//! The edges of a part, from its faces, their loops and the shared edges that the source states.
 //!
 //! ```text
 //!   sheet     loops of each face, in (u, v) and in space
@@ -11,9 +11,9 @@
 //!   curve     length of an edge; the line or circle that it is
 //! ```
 //!
-//! Edges are found on demand, not when a file is read. An import stores only what cannot be found again: the edge of the
-//! source that each trim curve comes from. Pictures without lines do not pay for the rest; and a curve found from the
-//! trimmed surface lies on that surface, where the curve that the file states may lie beside it.
+//! Edges are found on demand, not when a file is read. An import stores only data that cannot be found again: the edge
+//! of the source of each trim curve. Pictures without lines do not pay for the rest. A curve found from the trimmed
+//! surface lies on that surface; the curve stated by the file may lie beside it.
 //!
 //! Tolerances, in shares of the diagonal of the part's control points: points within `1e-5` are one; where a part should
 //! be closed and is not, loops without partner may be `2e-4` apart; fits aim at `1e-8`.
@@ -40,8 +40,8 @@ use stretch::Stretch;
 
 /// Points that are the same, in shares of the part's diagonal.
 pub const REACH: f64 = 1e-5;
-/// How far apart edges may lie that nothing else meets, in shares of the part's diagonal: a few times what is found in
-/// sloppy files. For parts that should be closed, and for pieces of one edge of the source.
+/// How far apart loose edges may lie that no other edge meets, in shares of the part's diagonal: a few times the gaps
+/// of sloppy files. For parts that should be closed, and for pieces of one edge of the source.
 pub const LOOSE: f64 = 2e-4;
 /// Reach for parts that bound a volume but whose edges do not meet, in turn.
 const RETRIED: [f64; 2] = [1e-5, 4e-5];
@@ -56,7 +56,7 @@ const SECTIONS: usize = 48;
 pub struct EdgeError {
     /// Index into the part's faces.
     pub face: usize,
-    /// What is wrong with it.
+    /// The reason.
     pub source: SplineError,
 }
 
@@ -71,8 +71,8 @@ impl Part {
 
     /// The part's edges and vertices.
     ///
-    /// Each trim curve that is not a point in space belongs to one use of one edge. What the source states as one edge is
-    /// one, unless the seam of a face cuts it. Where the source shares edges, no search is made for them.
+    /// Each trim curve that is not a point in space belongs to one use of one edge. An edge of the source is one edge,
+    /// unless the seam of a face cuts it. Edges that the source shares are not searched for.
     ///
     /// # Errors
     /// [`EdgeError`] for a face whose surface or loops overflow.
@@ -94,7 +94,7 @@ impl Part {
     ) -> Result<Edges, EdgeError> {
         let stretches = &found.cut.stretches;
         let edge = |uses: &Vec<(usize, bool)>| {
-            // the curve is taken where it is exact
+            // the curve comes from the face on which it is exact
             let exact = |(s, _): &(usize, bool)| sheets[stretches[*s].face].is_exact(&stretches[*s].pieces);
             let base = uses.iter().position(exact).unwrap_or(0);
             let along = uses[base].1;

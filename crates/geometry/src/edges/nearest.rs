@@ -138,7 +138,7 @@ mod tests {
         assert_eq!(nearest(&arc(), DMat4::IDENTITY, DVec2::splat(100.0), 49.9), None);
     }
 
-    /// A line that runs through the plane of the eye: the part in front is found.
+    /// An edge that runs through the plane of the eye: the part in front is found.
     #[test]
     fn what_is_behind_the_eye_is_not_near() {
         let ends = vec![DVec4::new(10.0, 0.0, 0.0, 1.0), DVec4::new(10.0, 40.0, 0.0, -1.0)];

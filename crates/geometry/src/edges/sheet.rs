@@ -19,7 +19,7 @@ use glam::{DVec2, DVec3, DVec4};
 /// Pieces of a curve in space, end to end.
 type Chain = Vec<Span<Bezier<DVec4>>>;
 
-/// Halvings of one piece of a fit; beyond them the distance reached is what counts.
+/// Halvings of one piece of a fit; the distance that they reach is reported.
 const HALVINGS: u32 = 10;
 /// A line of constant parameter, in shares of the domain.
 const ISO: f64 = 1e-12;
@@ -33,7 +33,7 @@ pub struct Sheet<'a> {
     pub face: &'a Face,
     /// Its surface's patches.
     pub grid: PatchGrid,
-    /// `S = origin + a u + b v` when the surface is that.
+    /// `S = origin + a u + b v` for a plane of this form.
     pub plane: Option<[DVec3; 3]>,
 }
 
@@ -120,7 +120,7 @@ impl<'a> Sheet<'a> {
     /// `pieces`, end to end, as one spline over the parameters of `Sheet::in_space`.
     ///
     /// # Errors
-    /// [`SplineError`] where the pieces are no spline.
+    /// [`SplineError`] where the pieces do not make a spline.
     pub fn in_plane(&self, pieces: &[Bezier<DVec3>]) -> Result<BSpline<DVec3>, SplineError> {
         if let Some(Iso { along_v, at, from, to }) = self.iso(pieces) {
             let end = |t: f64| if along_v { DVec2::new(at, t) } else { DVec2::new(t, at) };
@@ -137,7 +137,7 @@ impl<'a> Sheet<'a> {
     /// `reach`.
     ///
     /// # Errors
-    /// [`SplineError`] where a line of constant parameter is no spline.
+    /// [`SplineError`] where a line of constant parameter does not make a spline.
     pub(super) fn in_space(&self, pieces: &[Bezier<DVec3>], reach: f64) -> Result<(Chain, f64), SplineError> {
         if let Some(Iso { along_v, at, from, to }) = self.iso(pieces) {
             let whole = isocurve(&self.face.surface, at, along_v)?;

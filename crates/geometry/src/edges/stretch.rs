@@ -21,7 +21,7 @@ use std::collections::{BTreeMap, HashSet};
 
 /// Turn of a loop, in radians, that makes a vertex.
 const CORNER: f64 = 0.02;
-/// Chords in a piece, to look for what is near.
+/// Chords in a piece, for the search of near vertices.
 const CHORDS: usize = 16;
 /// Share of the distance between the ends of an edge by which two faces may disagree on an end: sloppy files.
 const APART: f64 = 0.25;
@@ -55,7 +55,7 @@ struct Loop<'s, 'a> {
 
 /// One run of a loop that is a piece of an edge of the source.
 struct Use {
-    /// Of all loops, and of its runs.
+    /// The loop, and the run among its runs.
     at: (usize, usize),
     face: usize,
     edge: EdgeRef,
@@ -68,7 +68,7 @@ struct Use {
 pub(super) struct Cut {
     pub vertices: Vertices,
     pub stretches: Vec<Stretch>,
-    /// Faces of which loops are points, and how many.
+    /// Faces with loops that are points, and how many.
     pub lost: Vec<(usize, usize)>,
     /// Largest distance between ends that were made one.
     pub deviation: f64,
@@ -218,7 +218,7 @@ fn shared(loops: &[Loop], size: f64) -> Vec<Vec<Use>> {
 /// Parameters at which a piece passes a vertex, ends included, in order, and the vertices.
 fn cuts(sheet: &Sheet, c: &Bezier<DVec3>, order: &Ordered, reach: f64) -> Vec<(f64, usize)> {
     let chords: Vec<DVec3> = (0..=CHORDS).map(|k| sheet.at(c, k as f64 / CHORDS as f64)).collect();
-    // a curve stays within a chord's length of its chords, unless it is wilder than any trim
+    // a curve is assumed to stay within a chord's length of its chords
     let slack = reach + chords.windows(2).map(|w| w[0].distance(w[1])).fold(0.0, f64::max);
     let (lo, hi) = chords.iter().fold((chords[0], chords[0]), |(a, b), p| (a.min(*p), b.max(*p)));
     let (lo, hi) = (lo - slack, hi + slack);
@@ -246,8 +246,8 @@ fn cuts(sheet: &Sheet, c: &Bezier<DVec3>, order: &Ordered, reach: f64) -> Vec<(f
 /// Parts of pieces, by number and from where to where, since a vertex.
 type Opened = (Vec<(usize, f64, f64)>, usize);
 
-/// Cuts a section of a loop, given by the numbers of its pieces, at the vertices that it passes; of a section that is the
-/// whole loop, what comes before the first vertex belongs to the last stretch.
+/// Cuts a section of a loop, given by the numbers of its pieces, at the vertices that it passes. In a section that is
+/// the whole loop, the part before the first vertex belongs to the last stretch.
 fn stretches(l: &Loop, section: &[usize], order: &Ordered, reach: f64, out: &mut Cut) {
     let mut head = Vec::new();
     let mut open: Option<Opened> = None;

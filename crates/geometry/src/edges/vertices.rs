@@ -1,4 +1,4 @@
-//! Points that are the same: by nearness, or because the source says so.
+//! Points that are the same: by nearness, or by the source's statement.
 
 use crate::model::Bounds;
 use glam::DVec3;
@@ -8,7 +8,7 @@ use std::collections::HashMap;
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
     pub points: Vec<DVec3>,
-    /// The point that stands for each, or one nearer to it.
+    /// The representative of each point, or a point nearer to it.
     up: Vec<usize>,
     cells: HashMap<[i64; 3], Vec<usize>>,
     reach: f64,
@@ -44,7 +44,7 @@ impl Vertices {
         })
     }
 
-    /// The number that stands for `number` and all that are one with it.
+    /// The representative of `number`.
     pub fn root(&self, mut number: usize) -> usize {
         while self.up[number] != number {
             number = self.up[number];
@@ -52,7 +52,7 @@ impl Vertices {
         number
     }
 
-    /// Makes two points one; the distance between those that stand for them.
+    /// Makes two points one; returns the distance between their representatives.
     pub fn unite(&mut self, a: usize, b: usize) -> f64 {
         let (a, b) = (self.root(a), self.root(b));
         let (first, second) = (a.min(b), a.max(b));
@@ -60,7 +60,7 @@ impl Vertices {
         self.points[a].distance(self.points[b])
     }
 
-    /// All points with their numbers, to be asked for by place.
+    /// All points with their numbers, sorted for queries by place.
     pub fn ordered(&self) -> Ordered {
         let bounds = self.points.iter().copied().fold(Bounds::EMPTY, Bounds::with);
         let axis = (bounds.max - bounds.min).max_position();

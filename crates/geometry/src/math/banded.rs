@@ -191,7 +191,7 @@ mod tests {
             if let Ok(f) = a.factor() {
                 f.solve(&mut b);
                 let size = b.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-                prop_assume!(size < 1e3); // badly conditioned draws say nothing
+                prop_assume!(size < 1e3); // badly conditioned draws are skipped
                 for (p, q) in b.iter().zip(&x) {
                     prop_assert!((p - q).abs() < 1e-6, "{} {}", p, q);
                 }

@@ -5,7 +5,7 @@
 //!
 //!    c1                                            0   no root
 //!    ●   c2                                        1   exactly one root
-//!   ╱  ╲ ●                                         more: halve, and ask both halves
+//!   ╱  ╲ ●                                         more: halve, and count again
 //!  ●    ╲  ╲
 //!  c0────╲──╲────▶ t                             Descartes' rule in Bernstein form: the count
 //!         ╲  ●  c3                               never falls short of the number of roots.
@@ -59,10 +59,10 @@ pub fn value(coefficients: &[f64], t: f64) -> f64 {
 
 /// Parameters in `[0, 1]`, ascending, where the polynomial changes sign.
 ///
-/// `noise` holds the rounding error of each coefficient, not negative: a coefficient that does not
-/// exceed its noise has no known sign and does not count. Roots without a change of sign (double
-/// roots) are left out; a stretch of unknown sign between opposite signs counts as one change, at
-/// its middle. Roots are accurate to the rounding of [`value`].
+/// `noise` holds the rounding error of each coefficient, not negative: the sign of a coefficient that does not exceed
+/// its noise is unknown, and does not count. Roots without a change of sign (double roots) are left out; a stretch of
+/// unknown sign between opposite signs counts as one change, at its middle. Roots are accurate to the rounding of
+/// [`value`].
 ///
 /// Cost: `O(n²)` per halving and root.
 pub fn sign_changes(coefficients: &[f64], noise: &[f64]) -> Vec<f64> {

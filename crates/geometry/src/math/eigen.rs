@@ -10,9 +10,8 @@
 /// Sweeps over the three entries; convergence is quadratic, five or six suffice.
 const SWEEPS: u32 = 16;
 
-/// Eigenvalues of `a` (of which the upper triangle counts) and their eigenvectors, the columns of a rotation
-/// or reflection: `vectors[k]` belongs to `values[k]`. Accurate to rounding of the largest entry. Without
-/// order.
+/// Eigenvalues of `a` (only the upper triangle is read) and their eigenvectors, the columns of a rotation or
+/// reflection: `vectors[k]` belongs to `values[k]`. Accurate to rounding of the largest entry. Not sorted.
 pub fn symmetric(mut a: [[f64; 3]; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
     let mut vectors = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for _ in 0..SWEEPS {

@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn a_corner_is_found_and_the_error_is_told() {
+    fn a_corner_is_found_and_the_error_is_reported() {
         let ([sum, smooth], [error, _]) = integrate(&|x: f64| [(x - 0.3).abs(), x.exp()], (0.0, 1.0), 1e-12);
         assert!((sum - 0.29).abs() < 1e-8 && error >= (sum - 0.29).abs() && error < 1e-7, "{sum} {error}");
         assert!((smooth - (1.0_f64.exp() - 1.0)).abs() < 1e-14);

@@ -1,11 +1,11 @@
 //! The least value of a function between two parameters, by golden section: one value a step.
 //!
 //! ```text
-//!   low ├──────────┼─────┼──────────┤ high     the lesser of c and d lies in what is kept, and is c or d of the next step
+//!   low ├──────────┼─────┼──────────┤ high     the lesser of c and d stays inside, and is c or d of the next step
 //!                  c     d
 //! ```
 
-/// Of the span, what one step leaves.
+/// Share of the span after one step.
 const SECTION: f64 = 0.618_033_988_749_894_9;
 
 /// The two inner parameters after `steps` steps, in order: the least value of a function with one valley lies within

@@ -2,11 +2,10 @@
 
 /// A zero of `f` between `a` and `b`, where `f(a)` and `f(b)` have opposite signs.
 ///
-/// False position with the Illinois rule, and a bisection whenever three steps have not halved the
-/// bracket: superlinear on simple roots, at most four times the steps of bisection on any. Stops on
-/// an exact zero or when the bracket is two neighbouring numbers or shorter than `tolerance`; the
-/// result is the end of the bracket with the smaller `|f|`. Without opposite signs the end with the
-/// smaller `|f|` is returned.
+/// False position with the Illinois rule, and a bisection whenever three steps have not halved the bracket: superlinear
+/// on simple roots, at most four times the steps of bisection on any. Stops on an exact zero or when the bracket is two
+/// neighbouring numbers or shorter than `tolerance`; the result is the end of the bracket with the smaller `|f|`. If
+/// the signs are not opposite, the end with the smaller `|f|` is returned.
 ///
 /// Source: M. Dowell, P. Jarratt, *A modified regula falsi method*, BIT 11, 1971.
 pub fn bracketed(mut f: impl FnMut(f64) -> f64, mut a: f64, mut b: f64, tolerance: f64) -> f64 {

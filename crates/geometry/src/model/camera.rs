@@ -28,7 +28,7 @@ pub enum Projection {
     Pinhole {
         /// Pixels per unit slope, across and down.
         focal: DVec2,
-        /// The principal point: the pixel position that the view axis is seen at.
+        /// The principal point: the pixel position of the view axis.
         principal: DVec2,
     },
 }
@@ -50,7 +50,8 @@ pub struct Camera {
     pub size: (u32, u32),
 }
 
-/// Smallest height of a picture beside what it lies at: a picture of 4096 rows then has steps of 16 roundings of `f64`.
+/// Least height of a picture relative to the distance of its content: a picture of 4096 rows then has steps of 16
+/// roundings of `f64`.
 const LEAST_STEP: f64 = 4096.0 * 16.0 * f64::EPSILON;
 /// Largest ratio of the two focal lengths: bounds of the frame use the longer one for both.
 const MOST_OBLONG: f64 = 2.0;
@@ -179,8 +180,8 @@ impl Camera {
         Self { eye, target: eye + axes.z_axis, up: -axes.y_axis, ..self }
     }
 
-    /// A camera that shows the sphere around `bounds` from direction `from` (towards the eye); the depth range encloses it.
-    /// [`Camera::framing`] shows a model as large as it fits.
+    /// A camera that shows the sphere around `bounds` from direction `from` (towards the eye); the depth range encloses
+    /// it. [`Camera::framing`] fits a model tightly.
     pub fn around(bounds: Bounds, from: DVec3, up: DVec3, fov_y: f64, size: (u32, u32)) -> Self {
         let radius = (bounds.diagonal() * 0.5).max(1e-9);
         let centre = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
@@ -239,8 +240,7 @@ impl Camera {
         }
     }
 
-    /// The pixel position at which the view axis is seen. Without a [`Projection::Pinhole`] it is the middle of the
-    /// picture.
+    /// The pixel position of the view axis. Without a [`Projection::Pinhole`] it is the middle of the picture.
     pub fn principal_px(&self) -> DVec2 {
         match self.projection {
             Projection::Pinhole { principal, .. } => principal,
@@ -261,7 +261,7 @@ impl Camera {
         DMat4::from_cols(x, y, rz, w).transpose()
     }
 
-    /// Model coordinates to Vulkan's clip space, as the engine's depth target has it: x to the right, y down, depth 1 at
+    /// Model coordinates to Vulkan's clip space, as in the engine's depth target: x to the right, y down, depth 1 at
     /// the near plane and 0 at the far one. A host that draws its own geometry by this matrix, with `GREATER_OR_EQUAL`,
     /// hides the model and is hidden by it.
     ///
@@ -314,7 +314,7 @@ impl Camera {
 mod tests {
     use super::*;
 
-    /// Pixels and clip space say the same, in both projections; right, down and near have the signs that Vulkan has.
+    /// Pixels and clip space agree, in both projections; right, down and near have Vulkan's signs.
     #[test]
     fn clip_space_is_that_of_pixels() {
         let off = Projection::Pinhole { focal: DVec2::new(250.0, 240.0), principal: DVec2::new(160.0, 90.0) };
@@ -351,7 +351,7 @@ mod tests {
         camera.posed(rotation, DVec3::new(0.2, -0.1, 9.0))
     }
 
-    /// Pixels follow OpenCV's formula, written out here; the ray of a pixel runs through the point that is seen there.
+    /// Pixels follow OpenCV's formula, written out here; the ray of a pixel runs through the projected point.
     #[test]
     fn calibrated_cameras_see_points_where_the_formula_says() {
         let camera = off_centre();

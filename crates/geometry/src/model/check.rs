@@ -1,4 +1,4 @@
-//! What a model must be to be drawn: its fields are public, so a host or a file may violate each rule.
+//! The rules of a model that can be drawn: its fields are public, so a host or a file may violate each one.
 //!
 //! ```text
 //!   memory, file ──▶ Model ──check──▶ upload
@@ -12,8 +12,8 @@
 use super::{Colour, Face, Instance, Model, Part, TrimLoop};
 use glam::DVec2;
 
-/// A loop may reach this far beyond its surface's domain, in widths of the domain. Files round loops, and a loop of a closed
-/// surface may begin anywhere within one period; what is farther off belongs to another surface.
+/// A loop may reach this far beyond its surface's domain, in widths of the domain. Files round loops, and a loop of a
+/// closed surface may begin anywhere within one period; a loop farther off belongs to another surface.
 const BEYOND: f64 = 1.0;
 /// Least volume of a transformed unit cube, as a share of the product of its sides' lengths: `1e-12` is near the
 /// rounding of a product of three `f64` matrices.
@@ -27,7 +27,7 @@ pub enum ModelError {
     /// An instance of nothing.
     #[error("instance {instance} is of part {part}, and there are {parts}")]
     Part { instance: usize, part: usize, parts: usize },
-    /// A placement that is not made of numbers.
+    /// A placement that is not finite.
     #[error("the transform of instance {instance} is not finite")]
     Transform { instance: usize },
     /// A placement that makes a body a plane, a line or a point.
@@ -39,7 +39,7 @@ pub enum ModelError {
     /// A mesh with the number of the background.
     #[error("mesh {mesh} of part {part} has number 0, which is the background's")]
     MeshNumber { part: usize, mesh: usize },
-    /// A colour that is not one.
+    /// An invalid colour.
     #[error("the colour of {what} is not between 0 and 1")]
     Colour { what: Coloured },
     /// A trim curve of an edge that the part does not have.
@@ -205,7 +205,7 @@ mod tests {
         Model { parts: vec![part], instances: vec![placed], ..Model::default() }
     }
 
-    /// Each thing that may be wrong, and the sentence that says it.
+    /// Each fault, with the sentence that names it.
     #[test]
     fn each_fault_is_named_with_its_place() {
         assert_eq!(plate().check(), Ok(()));
@@ -255,7 +255,7 @@ mod tests {
         }
     }
 
-    /// What files hold: loops that end a little beyond the domain, mirrored and tiny placements.
+    /// Valid models from files: loops that end a little beyond the domain, mirrored and tiny placements.
     #[test]
     fn what_files_hold_passes() {
         let mut model = plate();

@@ -1,4 +1,4 @@
-//! Edges: where the faces of a part meet or end, and vertices: where edges do.
+//! Edges, where the faces of a part meet or end, and vertices, where edges meet.
 //!
 //! ```text
 //!            ●───────── curve in space ────────●        Edge: a chain of rational Bézier pieces
@@ -7,9 +7,9 @@
 //!     face B │  loop 1, curves 5 to 7.25, back  │        kind: sharp, smooth, seam, border
 //! ```
 //!
-//! A [`Part`](super::Part) stores of its edges only what cannot be found again: which trim curves are pieces of which
-//! edge of the source ([`TrimLoop::edges`](super::TrimLoop::edges)), and that edge's number there. All else is found by
-//! [`Part::edges`](super::Part::edges).
+//! A [`Part`](super::Part) stores only data on its edges that cannot be found again: which trim curves are pieces of
+//! which edge of the source ([`TrimLoop::edges`](super::TrimLoop::edges)), and that edge's number there.
+//! [`Part::edges`](super::Part::edges) finds the rest.
 
 use crate::spline::{Bezier, Span};
 use glam::{DVec3, DVec4};
@@ -44,7 +44,7 @@ pub struct EdgeRef {
     pub forward: bool,
 }
 
-/// What an edge is to the eye.
+/// The kind of an edge, by the angle across it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum EdgeKind {
@@ -115,13 +115,14 @@ pub struct Edges {
     /// Points nearer to each other than this, in model units, are one. Pieces of loops within it are points and belong
     /// to no edge.
     pub reach: f64,
-    /// How far apart, in model units, what stands for one edge may be: loops that were joined, and curves fitted to them.
+    /// Largest distance, in model units, between curves that are taken as one edge: loops that were joined, and curves
+    /// fitted to them.
     pub deviation: f64,
-    /// Faces of which loops lie within [`Edges::reach`] of a point and have no edge, and how many loops.
+    /// Faces with loops that lie within [`Edges::reach`] of a point and have no edge, and how many loops.
     pub lost: Vec<(usize, usize)>,
 }
 
-/// What makes an edge smooth, and a side of triangles a crease.
+/// The angles from which an edge is sharp, and a side of triangles a crease.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeLimits {
     /// Radians: an edge across which the surface nowhere turns more is smooth.

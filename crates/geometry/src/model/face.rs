@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 #[cfg(feature = "serde")]
 use serde::Deserialize;
 
-/// What a surface was in its source, before it became a rational B-spline.
+/// The kind of a surface in its source, before it became a rational B-spline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[allow(missing_docs)]
@@ -52,7 +52,7 @@ pub struct LoopAt {
 pub struct Face {
     /// Number in the source, written to the face-id image; for STEP `#123` is 123. Never 0.
     pub id: u32,
-    /// What the surface was in the source.
+    /// The kind of the surface in the source.
     pub kind: SurfaceKind,
     /// The carrier surface.
     pub surface: Surface,
@@ -64,7 +64,7 @@ pub struct Face {
     pub colour: Option<Colour>,
 }
 
-/// Why a face is not one.
+/// Why a face is invalid.
 #[allow(missing_docs)] // the messages say what each field is
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FaceError {
@@ -88,7 +88,7 @@ pub enum FaceError {
     Degree { curve: usize, degree: usize },
 }
 
-/// What is stored of a [`TrimLoop`], before it is checked.
+/// The stored form of a [`TrimLoop`], before it is checked.
 #[cfg(feature = "serde")]
 #[derive(Deserialize)]
 struct LoopData {
@@ -175,7 +175,7 @@ impl TrimLoop {
     }
 
     /// The edge of the source of which each curve is a piece: one entry a curve, or none at all where the source has no
-    /// shared edges. `None` for what no edge asked for: seams and sides at poles that were inserted.
+    /// shared edges. `None` for curves without an edge: inserted seams and sides at poles.
     pub fn edges(&self) -> &[Option<EdgeRef>] {
         &self.edges
     }
@@ -189,7 +189,7 @@ impl TrimLoop {
     /// the first of the next: both move.
     ///
     /// # Errors
-    /// [`FaceError::NoPoint`], or [`FaceError::ControlPoint`] for a place that is none.
+    /// [`FaceError::NoPoint`], or [`FaceError::ControlPoint`] for a place that is not finite.
     pub fn with_point(&self, curve: usize, point: usize, to: DVec2) -> Result<Self, FaceError> {
         let mut curves = self.curves.clone();
         let count = curves.len();
@@ -211,7 +211,7 @@ impl TrimLoop {
     /// The loop moved by `step` in `(u, v)`.
     ///
     /// # Errors
-    /// [`FaceError`] where it is no step.
+    /// [`FaceError`] where the step is not finite.
     pub fn translated(&self, step: DVec2) -> Result<Self, FaceError> {
         let point = |p: &DVec3| DVec3::from_point(p.point() + step, p.z);
         let curves = self.curves.iter().map(|c| Bezier { points: c.iter().map(point).collect() }).collect();
@@ -255,8 +255,8 @@ impl TrimLoop {
 }
 
 impl Face {
-    /// Box of the control points of the part of the surface that its loops can reach: it contains the trimmed face, and
-    /// may be much larger than it. How far the face reaches is [`Face::bounds`].
+    /// Box of the control points of the part of the surface that its loops can reach. It contains the trimmed face, and
+    /// may be much larger than it: [`Face::bounds`] is tight.
     pub fn control_bounds(&self) -> Bounds {
         let (lo, hi) = self
             .loops

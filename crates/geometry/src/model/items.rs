@@ -1,31 +1,31 @@
-//! Transparent and opaque solids, separated: the solids that a ray is followed through.
+//! A model's solids, the transparent ones separated: the objects that a ray passes through.
 //!
 //! ```text
 //!   model.solids: (glass block + gear) , nut        closed parts, one of glass
 //!        │ operands of unions at the root                │
-//!        ├─ opaque ───▶ one solid: gear, nut             ├─ opaque ──▶ drawn as faces, as ever
+//!        ├─ opaque ───▶ one solid: gear, nut             ├─ opaque ──▶ drawn as faces
 //!        └─ clear  ───▶ one solid a colour: glass block  └─ clear  ──▶ one solid each
 //! ```
 //!
-//! Clear solids are objects of their own: none swallows what is within it, another clear solid or an opaque one.
+//! Clear solids are separate objects: each keeps its own surface inside another clear solid, and around an opaque one.
 
 use super::solid::Operands;
 use super::{Colour, Instance, Model, Part, Primitive, Shape, Solid, SolidError};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A model's solids in the order in which a ray's way through them is told.
+/// A model's solids, in the order of the list of surfaces along a ray.
 #[derive(Clone, Debug, Default)]
 pub struct Items {
-    /// The solids that are opaque; all of them together are one in the picture.
+    /// The opaque solids; the picture shows their union.
     pub opaque: Vec<Solid>,
-    /// Closed parts that are opaque, as solids; only where all are wanted. Their faces are drawn in any case.
+    /// Opaque closed parts, as solids; only where all are asked for. Their faces are drawn in any case.
     pub parts: Vec<Solid>,
-    /// The solids that are seen through, closed parts among them.
+    /// The transparent solids, closed parts among them.
     pub clear: Vec<Solid>,
-    /// Of each instance of the model: drawn as faces, not as a solid that is seen through.
+    /// For each instance of the model: drawn as faces, not as a transparent solid.
     pub drawn: Vec<bool>,
-    /// Instances that are not closed and not opaque: they have no inside, and are drawn opaque.
+    /// Transparent instances that are not closed: they have no inside, and are drawn opaque.
     pub open: usize,
 }
 
@@ -35,7 +35,7 @@ fn is_opaque(colour: Colour) -> bool {
 }
 
 impl Primitive {
-    /// Whether no face of it is seen through: opacities within half a 255th of 1 are 1.
+    /// Whether no face of it is transparent: opacities within half a 255th of 1 are 1.
     pub fn is_opaque(&self) -> bool {
         match &self.shape {
             Shape::Part(part) => part.colours().all(|c| is_opaque(c.unwrap_or(self.colour))),
@@ -45,7 +45,7 @@ impl Primitive {
 }
 
 impl Part {
-    /// Of its faces, and of its meshes where they bound it.
+    /// The colours of its faces, and of its meshes where they bound it.
     fn colours(&self) -> impl Iterator<Item = Option<Colour>> {
         let meshes = if self.faces.is_empty() { &self.meshes[..] } else { &[] };
         self.faces.iter().map(|f| f.colour).chain(meshes.iter().map(|m| m.colour))
@@ -53,13 +53,13 @@ impl Part {
 }
 
 impl Solid {
-    /// Whether no primitive that its expression names is seen through.
+    /// Whether no primitive that its expression names is transparent.
     pub fn is_opaque(&self) -> bool {
         self.tree().leaves().all(|p| self.primitives()[p as usize].is_opaque())
     }
 
-    /// The solid taken apart by what is seen through: operands of unions at the root that are opaque together make
-    /// the first, those of one colour one each, others one each. Their union is the solid.
+    /// The solid split by transparency: operands of unions at the root that are opaque make the first solid together,
+    /// clear ones of one colour one each, other operands one each. Their union is the solid.
     fn apart(&self) -> Result<Vec<Self>, SolidError> {
         let operands = Operands::of(self);
         let mut groups: Vec<(bool, Vec<u32>)> = vec![(true, Vec::new())];
@@ -84,7 +84,7 @@ impl Solid {
 }
 
 impl Instance {
-    /// Whether no face of the placed part is seen through.
+    /// Whether no face of the placed part is transparent.
     pub fn is_opaque(&self, part: &Part) -> bool {
         match self.colour {
             Some(colour) => is_opaque(colour),
@@ -94,13 +94,13 @@ impl Instance {
 }
 
 impl Model {
-    /// Whether something is seen through, or would be if it were closed.
+    /// Whether anything is transparent, or would be if it were closed.
     pub fn is_opaque(&self) -> bool {
         self.solids.iter().all(Solid::is_opaque) && self.placed_parts().all(|(instance, part)| instance.is_opaque(part))
     }
 
-    /// The model's solids, those that are seen through apart; `all`: closed parts that are opaque are wanted, too. A
-    /// part of a model that a volume trims has no inside.
+    /// The model's solids, transparent ones separated; `all`: opaque closed parts too. In a model that a volume trims,
+    /// a part has no inside.
     ///
     /// # Errors
     /// [`SolidError`] when an expression becomes too large.

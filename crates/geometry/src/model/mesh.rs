@@ -1,4 +1,4 @@
-//! A triangle mesh: what a source gave as facets, drawn as those facets.
+//! A triangle mesh: facets of the source, drawn as they are.
 //!
 //! ```text
 //!   positions: p0 p1 p2 p3 ...        one per vertex, part coordinates
@@ -25,11 +25,11 @@ pub struct Mesh {
     normals: Vec<[DVec3; 3]>,
 }
 
-/// Why triangles are not a mesh.
+/// Why triangles do not make a mesh.
 #[allow(missing_docs)] // the messages say what each field is
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeshError {
-    /// A triangle names a vertex that is not there.
+    /// A triangle names a vertex that does not exist.
     #[error("triangle {triangle} names vertex {vertex} of {vertices}")]
     Vertex { triangle: usize, vertex: u32, vertices: usize },
     /// A coordinate is not finite.
@@ -40,7 +40,7 @@ pub enum MeshError {
     Normals { normals: usize, triangles: usize },
 }
 
-/// What is stored of a [`Mesh`], before it is checked.
+/// The stored form of a [`Mesh`], before it is checked.
 #[cfg(feature = "serde")]
 #[derive(Deserialize)]
 struct MeshData {

@@ -5,21 +5,22 @@
 //!         │            ├─ faces: [Face]
 //!         │            │       ├─ surface: Surface      rational B-spline over (u, v)
 //!         │            │       └─ loops:   [TrimLoop]   closed chains of rational Bézier curves in (u, v)
-//!         │            │       │              └─ edges      which edge of the source each curve is a piece of
-//!         │            ├─ meshes: [Mesh]                what the source gave as facets
+//!         │            │       │              └─ edges      the edge of the source of each curve
+//!         │            ├─ meshes: [Mesh]                facets of the source
 //!         │            └─ stated_edges                  numbers of the source's edges; Part::edges finds them
 //!         ├─ solids: [Solid]          Boolean: primitives and an expression over them
 //!         └─ instances: [Instance]    part index, transform to model space, colour
 //! ```
 //!
-//! A point of a face's domain belongs to the face when the winding number of its loops around the
-//! point is not zero; a face without loops is its whole surface. Outer loops run counter-clockwise
-//! in `(u, v)`, holes clockwise: the importers see to it, so parity and winding agree.
+//! A point of a face's domain belongs to the face when the winding number of its loops around the point is not zero; a
+//! face without loops is its whole surface. Outer loops run counter-clockwise in `(u, v)`, holes clockwise: the
+//! importers orient them, so parity and winding agree.
 //!
 //! Lengths are millimetres where the source file has a unit, else the file's own numbers.
 
 mod camera;
 mod check;
+mod curvature;
 mod edge;
 mod face;
 mod images;
@@ -51,10 +52,10 @@ use glam::{DAffine3, DVec3};
 /// Red, green, blue, opacity in linear light, each in `[0, 1]`.
 pub type Colour = [f32; 4];
 
-/// Colour of what has none in its source.
+/// Colour of faces without a colour in the source.
 pub const GREY: Colour = [0.262, 0.262, 0.262, 1.0];
 
-/// Everything that one file or scene holds.
+/// The content of a file or scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "stored::ModelData"))]
@@ -65,10 +66,10 @@ pub struct Model {
     pub parts: Vec<Part>,
     /// Placed bodies; a part without an instance is not drawn.
     pub instances: Vec<Instance>,
-    /// Boolean solids, in model coordinates; what is drawn is the union of those that are opaque, and each that is seen
-    /// through by itself: [`Model::items`].
+    /// Boolean solids, in model coordinates. The opaque ones are drawn as their union, each transparent one by itself:
+    /// [`Model::items`].
     pub solids: Vec<Solid>,
-    /// Volume within which faces and meshes are drawn: see [`Model::trim_by`]. `None`: everywhere.
+    /// The volume within which faces and meshes are drawn: see [`Model::trim_by`]. `None`: everywhere.
     pub trim: Option<Solid>,
     /// Length unit of the source, for the record; coordinates are already millimetres.
     pub unit: String,
@@ -85,12 +86,12 @@ pub struct Part {
     pub name: String,
     /// Its faces.
     pub faces: Vec<Face>,
-    /// Its facets, where the source has nothing better.
+    /// Its facets, where the source has no exact faces.
     pub meshes: Vec<Mesh>,
     /// The faces (or the meshes) bound a volume and their normals point out of it.
     pub closed: bool,
-    /// Edges that the source states and that faces may share, by the number that [`EdgeRef::edge`] gives them: where each
-    /// stands in the source, `None` where it has no number there. Empty where the source states no shared edges.
+    /// Edges that the source states and that faces may share, indexed by [`EdgeRef::edge`]: the place of each in the
+    /// source, `None` where it has no number there. Empty where the source states no shared edges.
     pub stated_edges: Vec<Option<EdgeSource>>,
 }
 
@@ -118,7 +119,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box of nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
 
     /// Grown to hold `p`.
@@ -169,16 +170,16 @@ impl Part {
 }
 
 impl Model {
-    /// Largest share of their diagonal by which faces of Boolean solids may be apart and yet be one face, as
-    /// [`SurfaceTable::new`] has it: [`coincident`](Self::coincident), between [`SurfaceTable::FINEST`] and
-    /// [`SurfaceTable::COARSEST`]; [`SurfaceTable::ROUNDED`] where nothing is said.
+    /// Largest share of their diagonal by which faces of Boolean solids may be apart and yet be one face, as in
+    /// [`SurfaceTable::new`]: [`coincident`](Self::coincident), between [`SurfaceTable::FINEST`] and
+    /// [`SurfaceTable::COARSEST`]; [`SurfaceTable::ROUNDED`] by default.
     pub fn coincidence(&self) -> f64 {
         let said = self.coincident.filter(|share| !share.is_nan());
         said.map_or(SurfaceTable::ROUNDED, |share| share.clamp(SurfaceTable::FINEST, SurfaceTable::COARSEST))
     }
 
-    /// Box of the placed boxes of all parts' [control points](Part::control_bounds) and of the solids, model coordinates:
-    /// it contains the model, and may be much larger than it. How far the model reaches is [`Model::bounds`].
+    /// Box of the placed boxes of all parts' [control points](Part::control_bounds) and of the solids, model
+    /// coordinates. It contains the model, and may be much larger than it: [`Model::bounds`] is tight.
     pub fn control_bounds(&self) -> Bounds {
         let parts: Vec<Bounds> = self.parts.iter().map(Part::control_bounds).collect();
         let placed =

@@ -3,15 +3,15 @@
 //! ```text
 //!   section   closed parts and solids the plane passes through      ┌──────┐ n
 //!             become Boolean: part * block on the kept side         │ part ├──▶      normal · p <= offset stays
-//!             what it leaves whole stays as it is, the rest goes    └──────┘
-//!   trim_by   surfaces stay where they are inside the volume        open shells; solids: their volume within it
+//!             what lies wholly on that side stays, the rest goes    └──────┘
+//!   trim_by   surfaces are kept inside the volume               open shells; solids: their volume within it
 //! ```
 
 use super::{Bounds, Colour, GREY, Instance, Model, Part, Primitive, Shape, Solid, SolidError};
 use glam::{DAffine3, DMat3, DVec3};
 use std::sync::Arc;
 
-/// The block on the kept side reaches so far beyond what it cuts, relative to its size: no other side of the
+/// The block on the kept side reaches this far beyond the part that it cuts, relative to its size: no other side of the
 /// block cuts anything.
 const MARGIN: f64 = 0.1;
 
@@ -22,7 +22,7 @@ struct Plane {
     offset: f64,
 }
 
-/// Where a box is.
+/// The side of a box.
 enum Place {
     Kept,
     Gone,
@@ -45,7 +45,7 @@ impl Plane {
         }
     }
 
-    /// A block below the plane around everything of the corners that is there; only its top cuts.
+    /// A block below the plane, around the part of the corners' box there; only its top cuts.
     fn block(self, corners: &[DVec3], colour: Colour, id: u32) -> Primitive {
         let (u, v) = self.normal.any_orthonormal_pair();
         let axes = DMat3::from_cols(u, v, self.normal);
@@ -59,14 +59,13 @@ impl Plane {
 }
 
 impl Model {
-    /// What is left of the model where `normal · p <= offset`, model coordinates, the cut faces closed: closed
-    /// parts and Boolean solids that the plane passes through become Boolean solids, each with a cap in its own
-    /// colour. Faces that have a colour keep it; the numbers of such a part's faces become the first of them, and
-    /// its cap gets a number beyond all others. Parts that are not closed have no inside and stay open: they are
-    /// [trimmed](Self::trim_by). Other parts, and what trims them already, stay as they are.
+    /// The model where `normal · p <= offset`, model coordinates, with the cuts closed. Closed parts and Boolean solids
+    /// that the plane passes through become Boolean solids, each with a cap in its own colour. Faces that have a colour
+    /// keep it; all faces of such a part get the number of the first, and its cap gets a number beyond all others.
+    /// Parts that are not closed have no inside and stay open: they are [trimmed](Self::trim_by). Parts on the kept
+    /// side, and an earlier trimming volume, stay unchanged.
     ///
-    /// A face of a part that lies in the plane itself is drawn or not as roundings have it: such planes are to
-    /// be avoided.
+    /// Rounding decides whether a face in the plane itself is drawn: avoid such planes.
     ///
     /// # Errors
     /// [`SolidError::Shape`] when the normal is zero or a number is not finite.
@@ -136,10 +135,10 @@ impl Model {
         Ok(left)
     }
 
-    /// Trims every surface by a volume, model coordinates: what is outside of it is not drawn. Parts are open
-    /// shells then, whose other side shows where they are cut; of Boolean solids stays the
-    /// [intersection](Solid::intersection), in the volume's colours where it cuts. Points on the volume's
-    /// boundary stay. Once more: what is in both volumes.
+    /// Trims every surface by a volume, model coordinates: points outside of it are not drawn. Parts are then open
+    /// shells, and show their other side where they are cut. A Boolean solid becomes its
+    /// [intersection](Solid::intersection) with the volume, in the volume's colours where it cuts. Points on the
+    /// volume's boundary are kept. A second call keeps the points in both volumes.
     ///
     /// Its primitives need equations: a volume with meshes or parts among them is refused when the model is
     /// drawn.
@@ -178,7 +177,7 @@ impl Instance {
 }
 
 impl Part {
-    /// The part without colours of its faces and meshes; the very same where none has any.
+    /// The part without colours of its faces and meshes; the same `Arc` where none has any.
     pub fn uncoloured(part: &Arc<Self>) -> Arc<Self> {
         let own = part.faces.iter().map(|f| f.colour).chain(part.meshes.iter().map(|m| m.colour));
         if own.flatten().next().is_none() {

@@ -1,4 +1,4 @@
-//! The stored form of a model: what a file says becomes a [`Model`] only if it passes [`Model::check`].
+//! The stored form of a model, which becomes a [`Model`] only if it passes [`Model::check`].
 //!
 //! ```text
 //!   bytes ──serde──▶ ModelData ──Model::check──▶ Model

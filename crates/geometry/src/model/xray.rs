@@ -1,15 +1,15 @@
-//! Opacity by name: parts and faces that hide what one wants to see.
+//! Opacity by name, for parts and faces that hide others.
 
 use super::{Colour, GREY, Model, Part, Shape, Solid};
 use std::sync::Arc;
 
-/// No part, face or primitive is called so.
+/// No part, face or primitive has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("nothing is called `{name}`; there are {known}")]
 pub struct UnknownName {
-    /// What was asked for.
+    /// The name.
     pub name: String,
-    /// What there is.
+    /// The names that exist.
     pub known: String,
 }
 
@@ -17,13 +17,13 @@ pub struct UnknownName {
 const MOST_LISTED: usize = 20;
 
 impl Model {
-    /// Gives the opacity `alpha`, from 0 to 1, to what has a name: occurrences called so, or whose part is, and for `#N`
-    /// all faces, meshes and primitives of that number, as the face image tells it. A face of an occurrence that is
-    /// painted as a whole is seen through with all of it. What is seen through needs an inside: see
-    /// [`Items::open`](super::Items::open).
+    /// Gives the opacity `alpha`, from 0 to 1, to everything of a name: occurrences of that name, or whose part has it;
+    /// and for `#N` all faces, meshes and primitives of that number, as in the face image. If an occurrence has a
+    /// colour as a whole and one of its faces is named, all of the occurrence becomes transparent. Transparent objects
+    /// need an inside: see [`Items::open`](super::Items::open).
     ///
     /// # Errors
-    /// [`UnknownName`] says what there is; the model is as it was.
+    /// [`UnknownName`] lists the names that exist; the model is unchanged.
     pub fn xray(&mut self, names: &[&str], alpha: f32) -> Result<(), UnknownName> {
         let alpha = alpha.clamp(0.0, 1.0);
         let mut changed = self.clone();
@@ -88,7 +88,7 @@ impl Model {
         found
     }
 
-    /// What may be named, for a message.
+    /// The names that exist, for a message.
     fn known(&self) -> String {
         let own = self.placed_parts().flat_map(|(i, part)| [&i.name, &part.name]);
         let mut names: Vec<String> = own.filter(|n| !n.is_empty()).map(|n| format!("`{n}`")).collect();
@@ -107,7 +107,7 @@ impl Model {
 }
 
 impl Part {
-    /// Whether some face or mesh is chosen.
+    /// Sets the opacity of chosen faces and meshes; whether there were any.
     fn set_opacity(&mut self, alpha: f32, chosen: impl Fn(u32) -> bool) -> bool {
         let faces = self.faces.iter_mut().map(|f| (f.id, &mut f.colour));
         let all = faces.chain(self.meshes.iter_mut().map(|m| (m.id, &mut m.colour)));
@@ -122,7 +122,7 @@ impl Part {
 }
 
 impl Solid {
-    /// Of the primitives that are chosen.
+    /// Sets the opacity of chosen primitives.
     fn set_opacity(&mut self, alpha: f32, chosen: impl Fn(u32) -> bool) {
         for p in self.primitives.iter_mut().filter(|p| chosen(p.id)) {
             p.colour[3] = alpha;
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_is_told_with_what_is() {
+    fn an_absent_name_is_reported_with_the_present_ones() {
         let mut m = model();
         let error = m.xray(&["#3", "nut"], 0.5).unwrap_err();
         assert_eq!(error.to_string(), "nothing is called `nut`; there are `bolt`, `left`, `right`, #3, #4, #7");

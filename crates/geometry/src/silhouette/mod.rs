@@ -1,4 +1,4 @@
-//! Silhouettes of a face: where it folds as a view sees it.
+//! Silhouettes of a face: curves along which it folds in a view.
 //!
 //! ```text
 //!   Q = (X, Y, W) in homogeneous pixels       f(u, v) = det [Q, Q_u, Q_v] = 0   where the picture of the face folds
@@ -11,11 +11,11 @@
 //!      └──────╱┴───────┘    branches that meet are one [`Fold`]
 //! ```
 //!
-//! `f` is a Bernstein polynomial, and its coefficients bound it: small closed folds are not missed, and no start is
-//! searched by samples. A point of a fold is the root of `f` on a line across the cell, exact to rounding. Where a side of
-//! a patch is a point in space (a pole), `f` has the side as a factor, which is divided out. Where a fold runs along a side
-//! of a patch inside the surface, the side is the fold; along the surface's own border the fold is an edge of the face, not
-//! found here.
+//! `f` is a Bernstein polynomial, and its coefficients bound it: small closed folds are not missed, and samples are not
+//! needed to find a start. A point of a fold is the root of `f` on a line across the cell, exact to rounding. Where a
+//! side of a patch is a point in space (a pole), `f` has the side as a factor, which is divided out. Where a fold runs
+//! along a side of a patch inside the surface, the side is the fold. Along the surface's own border the fold is an edge
+//! of the face, and not found here.
 //!
 //! Source: G. Elber, E. Cohen, *Hidden curve removal for free form surfaces*, SIGGRAPH 1990 (folds as zeros of a spline);
 //! T. W. Sederberg, R. J. Meyers, *Loop detection in surface patch intersections*, CAGD 5, 1988 (division until no closed
@@ -46,7 +46,7 @@ pub struct Fold {
     branches: Vec<(Branch, bool)>,
 }
 
-/// A point of a fold, and where it goes from there.
+/// A point of a fold, and the fold's direction there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoldPoint {
     /// In the surface's domain.
@@ -63,13 +63,13 @@ struct Branch {
     over_v: bool,
     /// From where to where, in the patch's unit square.
     range: (f64, f64),
-    /// Within what the other parameter lies; a point where the branch is a side of the patch.
+    /// Bounds of the other parameter; a point where the branch is a side of the patch.
     bracket: (f64, f64),
 }
 
 impl Silhouette {
-    /// The folds of a surface as `matrix` shows it: from the surface's coordinates to homogeneous pixels, as
-    /// [`Camera::pixel_matrix`](crate::model::Camera::pixel_matrix) has them. Loops are not looked at.
+    /// The folds of a surface in the view of `matrix`, which maps the surface's coordinates to homogeneous pixels, as
+    /// [`Camera::pixel_matrix`](crate::model::Camera::pixel_matrix) does. Loops are not applied.
     ///
     /// Cost: microseconds a patch that has no fold, some milliseconds a patch that has.
     pub fn new(grid: &PatchGrid, matrix: &DMat4) -> Self {
@@ -84,7 +84,7 @@ impl Silhouette {
 }
 
 impl Fold {
-    /// The number of branches, which is where the parameter ends.
+    /// The number of branches: the end of the parameter.
     pub fn length(&self) -> usize {
         self.branches.len()
     }

@@ -12,7 +12,7 @@ const NOISE: f64 = 1e-13;
 const ON_SIDE: f64 = 1e-9;
 /// A side whose control points lie within this share of the patch's size is a point.
 const POLE: f64 = 1e-9;
-/// To this share of a cell a root is found.
+/// Share of a cell to which a root is found.
 const PLACE: f64 = 1e-15;
 
 /// `f` of a patch over its unit square, sides that are factors divided out.
@@ -22,7 +22,7 @@ pub(super) struct FoldNet {
     pub k: usize,
     /// `u` fastest.
     pub values: Vec<f64>,
-    /// What coefficients below are rounding.
+    /// Coefficients below this are rounding.
     pub noise: f64,
     /// The patch's rectangle in the surface's domain.
     pub low: DVec2,
@@ -43,7 +43,7 @@ pub(super) enum Side {
 impl Side {
     pub const ALL: [Self; 4] = [Self::Left, Self::Right, Self::Bottom, Self::Top];
 
-    /// Along it `v` moves.
+    /// `v` changes along it.
     pub fn over_v(self) -> bool {
         matches!(self, Self::Left | Self::Right)
     }
@@ -55,7 +55,7 @@ impl Side {
 }
 
 impl FoldNet {
-    /// Of a patch in a view, and the sides that are folds. `None` of a patch that is seen edge-on.
+    /// The net of a patch in a view, and the sides that are folds. `None` for a patch that is seen edge-on.
     pub fn new(of: &SurfacePatch, matrix: &DMat4) -> Option<(Self, Vec<Side>)> {
         let patch = &of.patch;
         let projected: Vec<DVec4> = patch.points.iter().map(|p| *matrix * *p).collect();
@@ -85,7 +85,7 @@ impl FoldNet {
             let [x, y, z] = [0, 1, 2].map(|c| part(c).times(&of(c)));
             Net::build(x.n, x.k, |i, j| x.at(i, j) + y.at(i, j) + z.at(i, j))
         };
-        // what is lost where a small patch is far from the picture's origin
+        // precision lost where a small patch is far from the picture's origin
         let lost = 1.0 + centre.abs().max_element() * deep / across;
         let noise = NOISE * lost.min(1e6) * qu.largest() * qv.largest();
         let all = function.all();
@@ -122,7 +122,7 @@ impl FoldNet {
         }
     }
 
-    /// Divides the side out as often as it is a factor, and says how often that is.
+    /// Divides the side out as often as it is a factor; returns how often.
     fn divide(&mut self, side: Side) -> usize {
         let mut times = 0;
         loop {

@@ -7,18 +7,18 @@ use crate::spline::PatchGrid;
 use glam::DMat4;
 use std::sync::Arc;
 
-/// Where a cell is divided: not in the middle, where models are symmetric and folds lie.
+/// Where a cell is divided: not in the middle, where symmetric models have their folds.
 const SHARE: f64 = 0.486_3;
 /// Pixels: a cell this small is not divided further.
 const SMALL: f64 = 0.002;
-/// Divisions of a patch of which no size is known.
+/// Divisions of a patch whose size in pixels is unknown.
 const LEVELS: u32 = 24;
 /// Cells of a patch; a fold without crossings takes some dozens.
 const BUDGET: usize = 20_000;
-/// Branches shorter than this share of a patch are none.
+/// Branches shorter than this share of a patch are dropped.
 const SHORT: f64 = 1e-13;
 
-/// What was found in all patches.
+/// The branches of all patches.
 #[derive(Debug, Default)]
 pub(super) struct Traced {
     pub branches: Vec<Branch>,
@@ -80,7 +80,7 @@ fn patch_branches(net: &Arc<FoldNet>, out: &mut Traced) {
         let row = n + 1;
         let along_u = cell.values.chunks_exact(row).flat_map(|r| r.windows(2).map(|w| w[1] - w[0]));
         let along_v = cell.values.iter().zip(&cell.values[row..]).map(|(a, b)| b - a);
-        // differences of coefficients lose no more than twice what they do
+        // differences of coefficients have at most twice their rounding
         let graph_over_v = n > 0 && sign(along_u, 2.0 * net.noise).is_some_and(|s| s != 0.0);
         let graph_over_u = k > 0 && sign(along_v, 2.0 * net.noise).is_some_and(|s| s != 0.0);
         if graph_over_v || graph_over_u {

@@ -75,8 +75,8 @@ pub fn revolve(
         }
         let across = axis.cross(radial);
         let centre = origin * p.w + axial;
-        // weight w stands for the point (centre + spoke / w): on the circle for w = 1, where the end tangents meet
-        // for w = cos h
+        // weight w is that of the point (centre + spoke / w): on the circle for w = 1, where the end tangents meet for
+        // w = cos h
         let at = |angle: f64, w: f64| {
             let (s, c) = sin_cos(angle);
             (centre * w + radial * c + across * s).extend(p.w * w)

@@ -7,8 +7,8 @@
 //!               knots[k]  knots[k + 1]
 //! ```
 //!
-//! Source: L. Piegl, W. Tiller, *The NURBS Book*, 1997, algorithms A2.2 and A2.3; derivatives here by
-//! the recurrence (2.9), which costs little more for the two that are asked for.
+//! Source: L. Piegl, W. Tiller, *The NURBS Book*, 1997, algorithms A2.2 and A2.3; derivatives here by the recurrence
+//! (2.9), which costs little more for two derivatives.
 
 use super::MAX_DEGREE;
 use super::bspline::find_span;

@@ -1,11 +1,11 @@
-//! Bernstein polynomials: the evaluation that the shaders repeat word for word.
+//! Bernstein polynomials: the evaluation that the shaders repeat step by step.
 
 use super::Control;
 
 /// Largest degree of a surface or trim curve, in each direction.
 ///
-/// The evaluation keeps no per-degree table, so the limit is a contract with the file formats
-/// (real files reach 14), not a buffer size.
+/// The evaluation has no per-degree table, so the limit is a contract with the file formats (real files reach 14), not
+/// a buffer size.
 pub const MAX_DEGREE: usize = 15;
 
 /// `n` over `k`, exact for every `n` up to 50.
@@ -16,9 +16,9 @@ pub fn binomial(n: usize, k: usize) -> f64 {
 
 /// `sum B_i^n(t) p_i` by Horner's scheme in `t / (1 - t)`.
 ///
-/// Exact at both ends: `t = 0` returns `points[0]` and `t = 1` the last point, bit for bit, which
-/// is what makes neighbouring patches meet without a crack. Cost: `3 n` multiply-adds a coordinate.
-/// Relative error below `2 n` ulp of the largest control value for `t` in `[0, 1]`.
+/// Exact at both ends: `t = 0` returns `points[0]` and `t = 1` the last point, bit for bit, so neighbouring patches
+/// meet without a crack. Cost: `3 n` multiply-adds a coordinate. Relative error below `2 n` ulp of the largest control
+/// value for `t` in `[0, 1]`.
 ///
 /// Source: Farin 2002, section 4.3 (`hornbez`).
 pub(super) fn horner<P: Control>(points: &[P], t: f64) -> P {
@@ -58,8 +58,8 @@ const CHOOSE: [[f64; MAX_DEGREE + 1]; MAX_DEGREE + 1] = {
 /// Room in a [`Row`] for every degree.
 pub(super) const FULL: usize = MAX_DEGREE + 1;
 
-/// What [`horner`] multiplies the points with, for many rows at one `t`; the values are its own, bit
-/// for bit.
+/// The factors with which [`horner`] multiplies the points, for many rows at one `t`; the values are the same, bit for
+/// bit.
 pub(super) struct Row<const ROOM: usize> {
     s: f64,
     degree: usize,
@@ -149,7 +149,7 @@ mod tests {
     use super::*;
     use glam::DVec4;
 
-    /// What the formula says, with a division a step.
+    /// The formula itself, with a division a step.
     fn divided(points: &[DVec4], t: f64) -> DVec4 {
         let n = points.len() - 1;
         let (mut factor, mut choose, mut sum) = (1.0, 1.0, points[0] * (1.0 - t));

@@ -1,4 +1,4 @@
-//! One rational Bézier curve and the piece of a B-spline that it is.
+//! A rational Bézier curve, and a piece of a B-spline as one.
 
 use super::{Control, bernstein};
 use crate::math::bernstein::split;

@@ -5,7 +5,7 @@ use super::{Bezier, Control, MAX_DEGREE, Span};
 #[cfg(feature = "serde")]
 use serde::Deserialize;
 
-/// Why a spline is not one.
+/// Why a spline is invalid.
 #[allow(missing_docs)] // the messages say what each field is
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SplineError {
@@ -15,7 +15,7 @@ pub enum SplineError {
     /// `knots = points + degree + 1` does not hold.
     #[error("{knots} knots do not fit {points} control points of degree {degree}")]
     KnotCount { knots: usize, points: usize, degree: usize },
-    /// The control net of a surface has not the size that its knots ask for.
+    /// The control net of a surface does not have the size that its knots require.
     #[error("{points} control points do not make a net of {count_u} by {count_v}")]
     NetSize { points: usize, count_u: usize, count_v: usize },
     /// Fewer control points than the degree needs.
@@ -48,7 +48,7 @@ pub struct BSpline<P> {
     pub(super) points: Vec<P>,
 }
 
-/// What is stored of a [`BSpline`], before it is checked.
+/// The stored form of a [`BSpline`], before it is checked.
 #[cfg(feature = "serde")]
 #[derive(Deserialize)]
 struct BSplineData<P> {
@@ -67,8 +67,8 @@ impl<P: Control> TryFrom<BSplineData<P>> for BSpline<P> {
 }
 
 impl<P: Control> BSpline<P> {
-    /// Checks the invariants. A knot inside the domain that is there more often than the degree allows is taken as
-    /// often as that, where the control points say that the curve is one piece.
+    /// Checks the invariants. A knot inside the domain whose multiplicity exceeds the degree is reduced to the degree,
+    /// where the control points show that the curve is one piece.
     ///
     /// # Errors
     /// The first of [`SplineError`] that does not hold.
@@ -265,10 +265,10 @@ fn to_beziers<P: Control>(degree: usize, knots: &[f64], points: &[P]) -> Vec<Spa
 
 /// The spans of one knot vector, made ready to cut rows of control points into Bézier pieces.
 ///
-/// Each piece is found by *blossoming*: control point `i` of the piece over `[a, b]` is the polar
-/// value at `degree - i` copies of `a` and `i` copies of `b`. Neighbouring pieces share their end
-/// control point bit for bit: the later piece takes the earlier one's. What neighbours are mixed in depends on
-/// the knots alone, and what the copies of `a` give serves all points of a piece.
+/// Each piece is found by *blossoming*: control point `i` of the piece over `[a, b]` is the polar value at `degree - i`
+/// copies of `a` and `i` copies of `b`. Neighbouring pieces share their end control point bit for bit: the later piece
+/// takes the earlier one's. The mixing weights depend on the knots alone, and the rounds with `a` are shared by all
+/// points of a piece.
 #[derive(Clone, Debug)]
 pub(super) struct Cuts {
     degree: usize,

@@ -8,8 +8,7 @@
 //!   t_0    t_1    t_2  …    t_n
 //! ```
 //!
-//! A factored system serves any number of right sides, each in linear time: that is what makes grids of a
-//! million points cheap.
+//! A factored system serves any number of right sides, each in linear time. So grids of a million points are cheap.
 //!
 //! Source: C. de Boor, *A Practical Guide to Splines*, 2001, chapters IV and XVII (tensor products).
 
@@ -18,7 +17,7 @@ use crate::math::banded::{Banded, Factored, Singular};
 use rayon::prelude::*;
 use std::ops::{Add, Mul, Sub};
 
-/// What stands for the two equations that the values leave open.
+/// The end conditions: two equations that the values leave open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
     /// No bending at the ends: second derivative 0. Error `O(h²)` there.
@@ -32,7 +31,7 @@ pub enum Ends {
     Periodic,
 }
 
-/// What can be interpolated: numbers and vectors.
+/// Values that can be interpolated: numbers and vectors.
 pub trait Linear:
     Copy + Default + PartialEq + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self> + Send + Sync
 {
@@ -117,7 +116,7 @@ impl Cubic {
         Ok(this)
     }
 
-    /// 3, or less where too few values allow no more.
+    /// 3, or less where there are too few values.
     pub fn degree(&self) -> usize {
         self.degree
     }

@@ -8,14 +8,15 @@
 //!   A_uv = A_v w - 2 A w_v                  S_uv = A_uv / w³        (v alike)
 //! ```
 //!
-//! Numerators and `w³` are multiplied out *exactly* as Bernstein nets of one degree, so terms that cancel do cancel (on a
-//! cylinder `S_uv` comes out as zero). With `B_i` the basis, `|Σ B_i a_i| / Σ B_i w_i` is at most the largest
-//! `|a_i| / w_i`. The nets are halved where that is more than [`SPARE`] above what the derivatives are known to reach:
-//! no bound is more above the truth than this, unless [`MOST_HALVINGS`] did not suffice.
+//! Numerators and `w³` are multiplied out *exactly* as Bernstein nets of one degree, so terms that cancel do cancel (on
+//! a cylinder `S_uv` comes out as zero). With `B_i` the basis, `|Σ B_i a_i| / Σ B_i w_i` is at most the largest `|a_i|
+//! / w_i`. The nets are halved where this bound is more than [`SPARE`] above a value that a derivative reaches: no
+//! bound is farther above the truth, unless [`MOST_HALVINGS`] did not suffice.
 //!
-//! **The twist.** What a triangulation is off by hangs on the second derivative along a step `(x, y)`, a vector, and
-//! bounding its three terms apart adds up what may point in different ways, or be large in different places. So the
-//! mixed term is bounded last, by the smallest `b` that makes, with `a = sup |S_uu|` and `c = sup |S_vv|`,
+//! **The twist.** The error of a triangulation depends on the second derivative along a step `(x, y)`, a vector.
+//! Separate bounds of its three terms add up vectors that may have different directions, or be large in different
+//! places. So the mixed term is bounded last, by the smallest `b` that makes, with `a = sup |S_uu|` and `c = sup
+//! |S_vv|`,
 //!
 //! ```text
 //!   |S_uu x² + 2 S_uv x y + S_vv y²| <= a x² + 2 b |x y| + c y²         for all x, y, everywhere
@@ -43,11 +44,11 @@ use super::net::{Net, Value, nets, numerators};
 use glam::DVec3;
 use std::ops::{Add, Mul, Sub};
 
-/// What a bound may be above the truth, as a share of it.
+/// How far a bound may be above the truth, as a share of it.
 const SPARE: f64 = 1.0 / 32.0;
 /// Halvings of the patch, along both parameters together: pieces of a sixteenth by a sixteenth at the smallest.
 const MOST_HALVINGS: u32 = 8;
-/// Second derivatives below this share of the first ones are as good as none: not worth a halving.
+/// Second derivatives below this share of the first ones count as none: not worth a halving.
 const FLAT: f64 = 1e-9;
 
 /// Largest lengths of a patch's derivatives over its unit square.
@@ -90,7 +91,7 @@ impl Patch {
     }
 }
 
-/// Coefficients of the numerators of all derivatives, and of what they are divided by.
+/// Coefficients of the numerators of all derivatives, and of their denominator.
 #[derive(Clone, Copy, Default)]
 struct Terms {
     u: DVec3,
@@ -102,7 +103,7 @@ struct Terms {
 }
 
 impl Terms {
-    /// Of `S_u`, `S_v`, `S_uu`, `S_uv`, `S_vv`.
+    /// The lengths of `S_u`, `S_v`, `S_uu`, `S_uv`, `S_vv`.
     fn lengths(&self) -> [f64; 5] {
         [self.u, self.v, self.uu, self.uv, self.vv].map(|d| d.length() / self.weight)
     }
@@ -110,13 +111,13 @@ impl Terms {
     /// The smallest `b` of the module's inequalities, and at most `uv`.
     fn twist(&self, uu: f64, vv: f64, uv: f64) -> f64 {
         let [a, b, c] = [self.uu, self.uv, self.vv].map(|d| d / self.weight);
-        // a bound of 0 has nothing below it that could be multiplied
+        // for a bound of 0 the numerators vanish
         let over = |x: f64, bound: f64| if bound > 0.0 { x.abs() / bound } else { 0.0 };
         let square = b.length_squared() + (a.dot(c) - uu * vv) / 2.0;
         over(a.dot(b), uu).max(over(b.dot(c), vv)).max(square.max(0.0).sqrt()).min(uv)
     }
 
-    /// All at once, apart but for the weight.
+    /// Combines all terms one by one, except for the weight.
     fn map(self, other: Self, of: impl Fn(DVec3, DVec3) -> DVec3, weight: f64) -> Self {
         Self {
             u: of(self.u, other.u),
@@ -192,7 +193,7 @@ impl Piece {
         self.net.all().iter().map(of).fold([0.0; N], both)
     }
 
-    /// The largest over the corners, which are on the surface: no bound is below it.
+    /// The largest over the corners, which lie on the surface: a lower limit of any bound.
     fn reached<const N: usize>(&self, of: impl Fn(&Terms) -> [f64; N]) -> [f64; N] {
         let (n, k) = (self.net.n, self.net.k);
         [(0, 0), (n, 0), (0, k), (n, k)].map(|(i, j)| of(&self.net.at(i, j))).into_iter().fold([0.0; N], both)
@@ -224,10 +225,10 @@ fn largest<const N: usize>(pieces: &[Piece], of: impl Fn(&Terms) -> [f64; N]) ->
     pieces.iter().map(|p| p.most(&of)).fold([0.0; N], both)
 }
 
-/// The pieces, halved until each one's bound is near what is reached somewhere.
+/// The pieces, halved until each one's bound is near a value that is reached somewhere.
 fn halved<const N: usize>(mut open: Vec<Piece>, of: impl Fn(&Terms) -> [f64; N]) -> Vec<Piece> {
     let [u, v, uu, uv, vv] = largest(&open, Terms::lengths);
-    // not worth a halving: what vanishes but for rounding, and a thousandth of the largest
+    // not worth a halving: derivatives that are rounding, or below a thousandth of the largest
     let least = (FLAT * u.max(v)).max(1e-3 * uu.max(uv).max(vv));
     let mut done = Vec::new();
     while !open.is_empty() {

@@ -1,4 +1,4 @@
-//! Second derivatives, curvature, and normals that exist where the derivatives say nothing.
+//! Second derivatives, curvature, and normals also where the first derivatives do not give one.
 //!
 //! ```text
 //!    n · • ──── pole: S_u = 0, so S_u × S_v = 0        N(s, t) = S_u × S_v as one Bernstein net:
@@ -8,10 +8,10 @@
 //!    ▔▔▔▔▔▔▔▔▔                                          the lowest i + j with a sum that is not 0 gives it
 //! ```
 //!
-//! With `A = P_u w - P w_u` and `B = P_v w - P w_v` the cross product is `A × B / w⁴`: a polynomial vector divided
-//! by something positive. Cut so that the point is a corner of its patch, the net `A × B` has the Taylor terms of
-//! the corner as its first differences; where those before it vanish, the first that does not is the limit along
-//! the diagonal into the patch. On a collapsed side, where all of a row vanishes, that is the limit across the side.
+//! With `A = P_u w - P w_u` and `B = P_v w - P w_v` the cross product is `A × B / w⁴`: a polynomial vector divided by a
+//! positive number. The patch is cut so that the point is a corner. Then the first differences of the net `A × B` are
+//! the Taylor terms at the corner; the first term that does not vanish is the limit along the diagonal into the patch.
+//! On a collapsed side a whole row vanishes, and the limit is that across the side.
 //!
 //! Source: X. Ye, *Normal direction at degenerate points of NURBS surfaces*, 1996 (the idea); curvature from
 //! M. P. do Carmo, *Differential Geometry of Curves and Surfaces*, 1976, section 3.3.
@@ -62,11 +62,10 @@ impl Curvature {
 const FLAT: f64 = 1e-6;
 /// A derivative below this share of its largest value over the patch is mostly rounding.
 const STILL: f64 = 1e-8;
-/// A Taylor term of the normals below this share of the product of its factors gives way to the next one. Rounding
-/// turns a term of the share `x` by `1e-16 / x`, leaving it out turns the normal by about `x`: the square root of the
-/// rounding balances both.
+/// A Taylor term of the normals below this share of the product of its factors is skipped. Rounding turns a term of the
+/// share `x` by `1e-16 / x`, skipping it turns the normal by about `x`: the square root of the rounding balances both.
 const FAINT: f64 = 1e-8;
-/// Below this share all is rounding; a patch that nowhere rises above [`FAINT`] is asked again down to here.
+/// Below this share all is rounding; a patch that nowhere rises above [`FAINT`] is tried again down to this.
 const NOISE: f64 = 1e-13;
 
 impl Jet2 {
@@ -115,8 +114,8 @@ impl Jet2 {
 impl Surface {
     /// Point and derivatives up to the second at `(u, v)`, clamped to the domain.
     ///
-    /// Straight from the B-splines that act there: nothing is cut, so single evaluations are cheap
-    /// (`O(p² + q² + p q)`). Across a knot the derivatives are those of the span after it.
+    /// Computed from the B-splines that act there, without cutting the surface: single evaluations are cheap (`O(p² +
+    /// q² + p q)`). At a knot the derivatives are those of the span after it.
     pub fn jet2(&self, u: f64, v: f64) -> Jet2 {
         let ((ku, kv), (nu, nv), (pu, pv)) = (self.knots(), self.counts(), self.degrees());
         let (a, b) = (Basis::new(pu, ku, nu, u), Basis::new(pv, kv, nv, v));
@@ -131,7 +130,8 @@ impl Surface {
     }
 
     /// Principal, Gaussian and mean curvature at `(u, v)`. `None` where the tangents span no plane, or one of them is
-    /// below `1e-8` of the control net's own speed there: at poles, and so near them that rounding rules.
+    /// below `1e-8` of the control net's own speed there: at poles, and so near them that the tangents are mostly
+    /// rounding.
     pub fn curvature(&self, u: f64, v: f64) -> Option<Curvature> {
         let jet = self.jet2(u, v);
         let ((ku, kv), (nu, nv), (pu, pv)) = (self.knots(), self.counts(), self.degrees());

@@ -1,4 +1,4 @@
-//! Tensor-product Bernstein polynomials multiplied out: exact nets of what derivatives are made of.
+//! Tensor-product Bernstein polynomials multiplied out: exact nets of derivatives' numerators.
 //!
 //! ```text
 //!   P, w ──du, dv──▶ P_u, w_u, …  ──times, minus──▶ A = P_u w - P w_u      as one net each: its hull bounds it,
@@ -11,7 +11,7 @@ use super::{Control, Patch, binomial};
 use glam::{DVec2, DVec3, DVec4};
 use std::ops::{Add, Mul, Sub};
 
-/// `P` and `w`. Derivatives do not change when the surface is moved; moved to the origin, less cancels.
+/// `P` and `w`, moved to the origin: derivatives do not change, and fewer digits cancel.
 pub(super) fn nets(patch: &Patch) -> (Net<DVec3>, Net<f64>) {
     let centre = patch.points[patch.points.len() / 2].point();
     let (n, k) = (patch.degree_u, patch.degree_v);
@@ -28,7 +28,7 @@ pub(crate) struct Net<T> {
     values: Vec<T>,
 }
 
-/// What a net has for coefficients.
+/// The coefficients of a net.
 pub(crate) trait Value:
     Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
 {
@@ -76,7 +76,7 @@ impl<T: Value> Net<T> {
         &self.values
     }
 
-    /// The same function, of a degree that is no lower.
+    /// The same function, of the same degree or a higher one.
     pub fn elevated(&self, n: usize, k: usize) -> Self {
         if (self.n, self.k) == (n, k) {
             return self.clone();
@@ -143,7 +143,7 @@ fn halve<T: Value>(row: &mut [T], other: &mut [T]) {
     let n = row.len() - 1;
     for last in (0..=n).rev() {
         other[last] = row[n];
-        // what is behind stays: row[k] after k steps is a coefficient of the first half
+        // row[k] after k steps is a coefficient of the first half, and stays
         for i in (n - last + 1..=n).rev() {
             row[i] = (row[i - 1] + row[i]) * 0.5;
         }

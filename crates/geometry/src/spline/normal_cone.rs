@@ -1,4 +1,4 @@
-//! A cone that holds every normal of a patch.
+//! A cone that contains every normal of a patch.
 //!
 //! ```text
 //!              axis                    S_u within an angle a of one direction, S_v within b of another, which are
@@ -9,10 +9,10 @@
 //!       ───────╲│╱──────── patch       axis: across both directions
 //! ```
 //!
-//! *Proof.* A unit normal `n` is across some `S_u` and some `S_v`, so it leans towards their axes by sines of at most `sin a`
-//! and `sin b`. Its part in the plane of the two axes has these as its products with them, and the longest vector of that
-//! plane which does has the length above. Where that is below 1 no normal lies in the plane, and all of them, being
-//! connected, lie on one side of it.
+//! *Proof.* A unit normal `n` is perpendicular to some `S_u` and some `S_v`, so its products with their axes are at
+//! most `sin a` and `sin b`. The component of `n` in the plane of the two axes has the same products, and the longest
+//! vector of that plane with such products has the length above. Where that is below 1 no normal lies in the plane, and
+//! all of them, being connected, lie on one side of it.
 //!
 //! `S_u` and `S_v` need not belong to one point: the cone holds the normals of triangles whose sides run along `u` and `v`
 //! between points of the surface, too, since such a side is a mean of tangents.
@@ -30,7 +30,7 @@ use glam::DVec3;
 pub struct NormalCone {
     /// A unit vector.
     pub axis: DVec3,
-    /// Of half the cone's angle, which is below 90 degrees.
+    /// Sine of half the cone's angle, which is below 90 degrees.
     pub sine: f64,
 }
 
@@ -47,8 +47,8 @@ impl Patch {
     }
 }
 
-/// A direction, and the sine of the largest angle that any of these has with it; `None` from 90 degrees on. Vectors of
-/// no length have no direction: those that are but roundings of the others.
+/// A direction, and the sine of the largest angle between it and any of these vectors; `None` from 90 degrees on.
+/// Vectors that are mere rounding of the others count as of no length, and have no direction.
 fn directions(all: &[DVec3]) -> Option<(DVec3, f64)> {
     const ROUNDING: f64 = 1e-12;
     let longest = all.iter().map(|d| d.length()).fold(0.0, f64::max);
@@ -86,7 +86,7 @@ mod tests {
         assert!(cone.axis.distance(DVec3::Z) < 1e-15 && cone.sine < 1e-15, "{cone:?}");
     }
 
-    /// Of a quarter of a cylinder the normals turn by 90 degrees, the lines along it by none.
+    /// On a quarter of a cylinder the normals turn by 90 degrees, the lines along it by none.
     #[test]
     fn of_a_quarter_cylinder_it_is_as_wide_as_the_normals() {
         let half = std::f64::consts::FRAC_1_SQRT_2;

@@ -83,7 +83,7 @@ impl<P: Control> BSpline<P> {
         Ok(curve)
     }
 
-    /// Clamped in, clamped out.
+    /// Clamped to clamped.
     fn elevated_once(&self) -> Self {
         let p = self.degree;
         let knots: Vec<f64> =
@@ -113,7 +113,7 @@ impl<P: Control> BSpline<P> {
         if at[0] >= end {
             return self.points[n - 1];
         }
-        // only the control points of the spans from the first argument's to the last one's matter
+        // the polar form depends only on the control points of the spans from the first argument's to the last one's
         let first = (self.knots.partition_point(|k| *k <= at[0]) - 1).clamp(p, n - 1);
         let last = (self.knots.partition_point(|k| *k < at[p - 1]).max(1) - 1).clamp(p, n - 1);
         let (from, to) = (first.min(last) - p, first.max(last) + 1);

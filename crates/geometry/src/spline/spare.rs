@@ -1,4 +1,4 @@
-//! Knots that a source states more often than a spline of one piece has them.
+//! Knots whose multiplicity exceeds the degree, in a spline that is one piece.
 //!
 //! ```text
 //!   degree 2, knots ... 3 3 3 ...      before the knot the curve ends in P_l, behind it the curve begins in P_r
@@ -7,14 +7,14 @@
 //!        P_l != P_r   two curves: no spline
 //! ```
 //!
-//! Writers that join pieces of curves and surfaces leave such knots. Points between `P_l` and `P_r`, of knots
-//! stated even more often, move nothing.
+//! Writers that join pieces of curves and surfaces leave such knots. Points between `P_l` and `P_r`, of even higher
+//! multiplicity, have no effect.
 //!
 //! Source: L. Piegl, W. Tiller, *The NURBS Book*, 2nd edition, 1997, section 2.2, property P2.3.
 
 use std::ops::Range;
 
-/// The points that change nothing, and as many knots from the same place on; `same` compares two points.
+/// The points without effect, and as many knots from the same place on; `same` compares two points.
 pub(super) fn spare(degree: usize, knots: &[f64], same: impl Fn(usize, usize) -> bool) -> Vec<Range<usize>> {
     let points = knots.len().saturating_sub(degree.saturating_add(1));
     if degree == 0 || points <= degree || !knots.is_sorted() {
@@ -24,7 +24,7 @@ pub(super) fn spare(degree: usize, knots: &[f64], same: impl Fn(usize, usize) ->
     let mut out = Vec::new();
     let mut first = 0;
     for run in knots.chunk_by(|x, y| x == y) {
-        // the first behind the run's knots is that of the point on the far side
+        // the first knot after the run belongs to the point on the far side
         let behind = first + run.len().saturating_sub(degree);
         if run.len() > degree && run[0] > a && run[0] < b && same(first - 1, behind - 1) {
             out.push(first..behind);
@@ -34,7 +34,7 @@ pub(super) fn spare(degree: usize, knots: &[f64], same: impl Fn(usize, usize) ->
     out
 }
 
-/// What is left without the ranges, which rise.
+/// The rest without the ranges, which ascend.
 pub(super) fn without<T: Copy>(all: &[T], ranges: &[Range<usize>]) -> Vec<T> {
     let kept = |i: &usize| !ranges.iter().any(|r| r.contains(i));
     (0..all.len()).filter(kept).map(|i| all[i]).collect()

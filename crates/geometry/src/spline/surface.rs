@@ -22,7 +22,7 @@ pub struct Surface {
     points: Vec<DVec4>,
 }
 
-/// What is stored of a [`Surface`], before it is checked.
+/// The stored form of a [`Surface`], before it is checked.
 #[cfg(feature = "serde")]
 #[derive(Deserialize)]
 struct SurfaceData {
@@ -67,8 +67,8 @@ pub struct PatchGrid {
 }
 
 impl Surface {
-    /// Checks the invariants. A knot inside the domain that is there more often than the degree allows is taken as
-    /// often as that, where the control points say that the surface is one piece.
+    /// Checks the invariants. A knot inside the domain whose multiplicity exceeds the degree is reduced to the degree,
+    /// where the control points show that the surface is one piece.
     ///
     /// # Errors
     /// The first of [`SplineError`] that does not hold, `u` before `v`.
@@ -100,7 +100,7 @@ impl Surface {
         Ok(Self { degree_u: degrees.0, degree_v: degrees.1, knots_u, knots_v, points })
     }
 
-    /// From parts that are known to keep the invariants.
+    /// From parts that satisfy the invariants.
     pub(super) fn with_net(
         (degree_u, degree_v): (usize, usize),
         (knots_u, knots_v): (&[f64], &[f64]),

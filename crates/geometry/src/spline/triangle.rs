@@ -28,11 +28,10 @@ pub const fn triangle_points(n: usize) -> usize {
     (n + 1) * (n + 2) / 2
 }
 
-/// The surface over `[0, 1]²` that the triangular patch is the part `u + v <= 1` of.
+/// The surface over `[0, 1]²` whose part `u + v <= 1` is the triangular patch.
 ///
-/// `points` are homogeneous, `(n + 1)(n + 2) / 2` of them, in the order of the figure. The error is a few
-/// roundings, magnified by at most `3^n` in the corner `(1, 1)` that the triangle does not reach, and by
-/// less than 4 inside it.
+/// `points` are homogeneous, `(n + 1)(n + 2) / 2` of them, in the order of the figure. The error is a few roundings,
+/// magnified by at most `3^n` in the corner `(1, 1)`, outside the triangle, and by less than 4 inside it.
 ///
 /// # Errors
 /// [`SplineError`] for a wrong degree or count, and for weights that are not positive over the square.

@@ -26,7 +26,7 @@ pub enum RectSide {
     Inside,
     /// No point belongs to the face, and no trim curve touches the rectangle.
     Outside,
-    /// A trim curve meets the closed rectangle, or comes too near to tell.
+    /// A trim curve meets the closed rectangle, or comes too near to decide.
     Boundary,
 }
 
@@ -64,7 +64,7 @@ impl LoopIndex {
 
 fn piece_meets(piece: &Piece, curve: &Bezier<DVec3>, rect: (DVec2, DVec2)) -> bool {
     if piece.straight {
-        // boxes overlap; what separates two convex shapes can then only be the line itself
+        // boxes overlap: only the line itself can still separate two convex shapes
         let (lo, hi) = rect;
         let corners = [lo, DVec2::new(hi.x, lo.y), hi, DVec2::new(lo.x, hi.y)];
         let sides = corners.map(|c| orientation(piece.start, piece.end, c));

@@ -4,7 +4,7 @@
 //!        ╲   ╱            two chains that run one way along an axis change sides: on one scan line A is left of B, on
 //!   v ────●─╳─●────       another right of it, each time by more than a margin
 //!     ───● ╱ ╲ ●───
-//!        B╱   ╲A          what only touches, or runs along, does not count
+//!        B╱   ╲A          chains that only touch, or run along each other, do not count
 //! ```
 
 use super::meet::{Box2, each_pair};
@@ -14,31 +14,32 @@ use crate::model::TrimLoop;
 use crate::spline::{Bezier, Control};
 use glam::{DVec2, DVec3};
 
-/// By which chains must change sides, as a share of the smaller loop's box: files keep joints less exactly than their
-/// digits say, and loops that touch should.
+/// By how much chains must change sides, as a share of the smaller loop's box: joints in files are less exact than
+/// their digits, and loops may touch.
 const MARGIN: f64 = 1e-3;
 /// Share of a piece's parameters to which its place on a scan line is found: far below the margin.
 const PLACE: f64 = 1e-12;
-/// Where chains are asked for their sides between two ends of pieces: also just behind the one and before the other.
+/// Places between two ends of pieces at which the sides of chains are compared, also just after the one and before the
+/// other.
 const SHARES: [f64; 5] = [0.02, 0.25, 0.5, 0.75, 0.98];
-/// Bisections to the place where two chains meet: it is only told.
+/// Bisections to the place where two chains meet: it only serves a message.
 const BISECTIONS: u32 = 40;
-/// Pairs of boxes that meet and are looked at: more take longer than reading the face.
+/// Pairs of overlapping boxes that are compared: more would take longer than reading the face.
 const MOST_PAIRS: usize = 1 << 22;
 
-/// What was found.
+/// The result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Crossing {
     /// None.
     No,
     /// Near this point in `(u, v)`.
     At(DVec2),
-    /// Too many curves lie beside each other to say.
+    /// Too many curves lie beside each other to decide.
     Unknown,
 }
 
-/// A place found where `loops` cross themselves or each other by more than a thousandth of the smaller loop. Nearly
-/// linear where few boxes of curves overlap.
+/// A place where `loops` cross themselves or each other by more than a thousandth of the smaller loop. Nearly linear
+/// where few boxes of curves overlap.
 pub fn crossing(loops: &[TrimLoop]) -> Crossing {
     let curves: Vec<Vec<Bezier<DVec3>>> = loops.iter().map(|l| l.curves().collect()).collect();
     let boxes: Vec<Hull> = curves.iter().flatten().map(Hull::new).collect();
@@ -53,7 +54,7 @@ pub fn crossing(loops: &[TrimLoop]) -> Crossing {
     pairs(&chains, |chain| (chain.lo, chain.hi), |a, b| change_sides(a, b, margins[a.of].min(margins[b.of])))
 }
 
-/// The first answer of `ask` about two whose boxes meet.
+/// The first answer of `ask` on two whose boxes meet.
 fn pairs<T>(all: &[T], bounds: impl Fn(&T) -> Box2, ask: impl Fn(&T, &T) -> Option<DVec2>) -> Crossing {
     let boxes: Vec<Box2> = all.iter().map(bounds).collect();
     let mut asked = 0;
@@ -72,7 +73,7 @@ struct Hull {
     ends: [DVec2; 2],
     lo: DVec2,
     hi: DVec2,
-    /// Some leg of the control polygon runs against the chord: else no line across it is met twice.
+    /// Some leg of the control polygon runs against the chord; if not, no line across the chord meets the curve twice.
     turns_back: bool,
 }
 
@@ -85,7 +86,7 @@ impl Hull {
         Self { ends: [start, end], lo, hi, turns_back }
     }
 
-    /// In more than a corner where the one ends and the other begins.
+    /// The boxes share more than a corner where one curve ends and the other begins.
     fn meets(&self, other: &Self) -> bool {
         let (lo, hi) = (self.lo.max(other.lo), self.hi.min(other.hi));
         !(lo == hi && self.ends.contains(&lo) && other.ends.contains(&lo))
@@ -103,7 +104,7 @@ struct Chain<'c> {
     curves: &'c [Bezier<DVec3>],
 }
 
-/// Of both axes.
+/// The chains along both axes.
 fn chains(of: usize, curves: &[Bezier<DVec3>]) -> Vec<Chain<'_>> {
     let mut pieces: Vec<Piece> = Vec::new();
     for (index, curve) in curves.iter().enumerate() {
@@ -115,7 +116,7 @@ fn chains(of: usize, curves: &[Bezier<DVec3>]) -> Vec<Chain<'_>> {
 fn along<'c>((of, curves): (usize, &'c [Bezier<DVec3>]), axis: usize, pieces: &[Piece]) -> Vec<Chain<'c>> {
     let rises = |p: &Piece| p.end[axis] - p.start[axis];
     let mut moving: Vec<Piece> = pieces.iter().filter(|p| rises(p) != 0.0).cloned().collect();
-    // begin where a chain does
+    // begin at the start of a chain
     let turn = |a: &Piece, b: &Piece| rises(a) * rises(b) < 0.0;
     let first = (1..moving.len()).find(|&i| turn(&moving[i - 1], &moving[i])).unwrap_or(0);
     moving.rotate_left(first);
@@ -146,13 +147,13 @@ impl Chain<'_> {
         ends.filter(move |x| (lo..=hi).contains(x))
     }
 
-    /// What the other coordinate cannot leave where that along the axis has a value.
+    /// Bounds of the other coordinate at a value along the axis.
     fn range(&self, value: f64) -> (f64, f64) {
         let (lo, hi) = self.pieces[self.index(value)].bounds();
         (lo[1 - self.axis], hi[1 - self.axis])
     }
 
-    /// The other coordinate where that along the axis has a value between those of its ends.
+    /// The other coordinate at a value along the axis between the chain's ends.
     fn place(&self, value: f64) -> f64 {
         let (axis, across) = (self.axis, 1 - self.axis);
         let piece = &self.pieces[self.index(value)];
@@ -194,7 +195,7 @@ fn change_sides(a: &Chain<'_>, b: &Chain<'_>, margin: DVec2) -> Option<DVec2> {
     let (mut before, mut last) = (0.0, lo);
     for pair in ends.windows(2) {
         let line = |share: f64| pair[0] + share * (pair[1] - pair[0]);
-        // one piece of either: mostly their boxes lie apart
+        // one piece of each: mostly their boxes lie apart
         let ((a_lo, a_hi), (b_lo, b_hi)) = (a.range(line(0.5)), b.range(line(0.5)));
         let sides = (a_lo - b_hi, b_lo - a_hi);
         let shares: &[f64] = if sides.0.max(sides.1) > margin[1 - axis] { &[0.5] } else { &SHARES };
@@ -223,7 +224,7 @@ fn meeting(a: &Chain<'_>, b: &Chain<'_>, (mut from, mut to): (f64, f64), apart: 
         let line = 0.5 * (from + to);
         if (a.place(line) - b.place(line)) * apart > 0.0 { to = line } else { from = line }
     }
-    // where one of them jumps across the other, along a piece across the axis, the other one knows the place
+    // where one chain jumps across the other, along a piece across the axis, the other one gives the place
     let jump = |c: &Chain<'_>| (c.place(to) - c.place(from)).abs();
     let (line, place) = (to, if jump(a) <= jump(b) { a.place(to) } else { b.place(to) });
     if a.axis == 0 { DVec2::new(line, place) } else { DVec2::new(place, line) }
@@ -308,7 +309,7 @@ mod tests {
 
     /// A comb of 3000 teeth whose boxes all meet, so far do they lean; upright, each is beside two others.
     #[test]
-    fn too_many_are_told() {
+    fn too_many_are_reported() {
         let comb = |lean: f64, first: u32| {
             let teeth = (first..3000).flat_map(|k| [(f64::from(2 * k), 0.0), (f64::from(2 * k + 1) + lean, 1.0)]);
             let points: Vec<(f64, f64)> = teeth.chain([(6000.0, -1.0), (0.0, -1.0)]).collect();
@@ -319,7 +320,7 @@ mod tests {
         assert_eq!(comb(0.0, 0), Crossing::No);
     }
 
-    /// Holes in rows and columns, as perforated sheets have them: all are told apart, and one that crosses another is found.
+    /// Holes in rows and columns, as in perforated sheets: none crosses another, and one that does is found.
     #[test]
     fn many_loops_side_by_side() {
         let hole = |k: u32| {

@@ -1,4 +1,4 @@
-//! How far a point is from the nearest trim curve: for judging answers that a tie may excuse.
+//! The distance of a point from the nearest trim curve: judges use it to excuse ties.
 
 use super::LoopIndex;
 use super::piece::{Piece, within};

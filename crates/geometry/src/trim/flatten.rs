@@ -1,4 +1,4 @@
-//! How many chords a rational Bézier curve needs: a guarantee, in arithmetic that a shader repeats.
+//! The number of chords that a rational Bézier curve needs: guaranteed, in arithmetic that a shader repeats.
 //!
 //! A chord of the curve is the image of the linear interpolant of the *homogeneous* curve
 //! `(X, Y, W)`. Let `q` be its abscissa at parameter `t` and `L = X - q W`. The interpolant of `L`

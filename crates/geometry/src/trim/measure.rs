@@ -32,7 +32,7 @@ fn strip(surface: &Surface, spans: &[f64], u: f64, v: f64) -> f64 {
 }
 
 impl Face {
-    /// Area of what the loops keep, squares of model units, in the coordinates of the part.
+    /// Area inside the loops, squares of model units, in the coordinates of the part.
     ///
     /// Cost: some hundred evaluations of the surface for each trim curve and each knot span in u.
     pub fn area(&self) -> f64 {
@@ -64,7 +64,7 @@ impl Face {
     pub fn radius(&self) -> Option<f64> {
         let ((u0, u1), (v0, v1)) = self.surface.domain();
         let at = |s: f64, t: f64| self.surface.jet2(u0 + s * (u1 - u0), v0 + t * (v1 - v0));
-        // curvatures along both families of curves of constant parameter, at points of neither's end
+        // curvatures along both families of curves of constant parameter, at inner points of both
         let curvatures = |s: f64, t: f64| {
             let jet = at(s, t);
             let normal = jet.du.cross(jet.dv).normalize_or_zero();

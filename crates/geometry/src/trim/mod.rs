@@ -1,4 +1,4 @@
-//! Which points of a domain the trim loops keep: the exact test, and the table that answers fast.
+//! Which points of a domain belong to the trimmed face: the exact test, and the table that decides fast.
 //!
 //! ```text
 //!   v ▲      ╭───<───╮         winding number of p = sum over the curves right of p on its scan line:
@@ -61,7 +61,7 @@ pub use winding::LoopIndex;
 /// Crossings of the scan line `v`, with sign, of any curve that runs from ordinate `from` to `to`:
 /// `+1` up, `-1` down, `0` when both ends lie on the same side. Bottom-open, top-closed.
 ///
-/// Sums telescope over a chain, so the two ends of a chain tell its crossings.
+/// Sums telescope over a chain, so the two ends of a chain determine its crossings.
 fn climbs(from: f64, to: f64, v: f64) -> i32 {
     i32::from(to >= v) - i32::from(from >= v)
 }

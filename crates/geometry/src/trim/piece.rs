@@ -115,7 +115,7 @@ fn lies_right(curve: &Bezier<DVec3>, mut a: (f64, DVec2), mut b: (f64, DVec2), p
     b.1.x > p.x // the first parameter found whose v reaches the scan line
 }
 
-/// `p` kept inside the box of `a` and `b`: rounding must not undo the monotony.
+/// `p` clamped to the box of `a` and `b`: rounding must not undo the monotony.
 pub(super) fn within(p: DVec2, a: DVec2, b: DVec2) -> DVec2 {
     p.clamp(a.min(b), a.max(b))
 }

@@ -1,4 +1,4 @@
-//! The u-intercept table of one face: the meaning that the GPU's table must have.
+//! The u-intercept table of one face: the reference for the GPU's table.
 //!
 //! ```text
 //!   v ▲
@@ -11,11 +11,10 @@
 //!     └────────────────────────────────────▶ u
 //! ```
 //!
-//! The domain's `v` range is cut into equal strips, strip `i` into `mu_i` equal cells, and a cell is
-//! sampled at its centre: the row of a point is the nearest one. Curves are replaced by chords; each
-//! chord writes its `u` into every row it crosses (bottom-open, top-closed); each row is sorted and
-//! the winding number turned into in/out transitions, so that duplicated, overlapping and wrongly
-//! nested loops need no further thought by whoever reads the row.
+//! The domain's `v` range is cut into equal strips, strip `i` into `mu_i` equal cells, and a cell is sampled at its
+//! centre: the row of a point is the nearest one. Curves are replaced by chords; each chord writes its `u` into every
+//! row it crosses (bottom-open, top-closed). Each row is sorted, and its winding numbers become in/out transitions. So
+//! a reader of the row needs no special case for duplicated, overlapping or wrongly nested loops.
 //!
 //! Source: R. Wu, J. Peters, *Correct resolution rendering of trimmed spline surfaces*, 2014, with
 //! rows at cell centres instead of cell bottoms (halves the largest displacement) and winding
@@ -95,7 +94,7 @@ impl TrimTable {
         self.base[strip] + j.min(rows - 1)
     }
 
-    /// Whether `(u, v)` belongs to the face, judged on the nearest scan line.
+    /// Whether `(u, v)` belongs to the face, decided on the nearest scan line.
     pub fn contains(&self, u: f64, v: f64) -> bool {
         self.whole || self.row(self.row_of(v)).partition_point(|&flip| flip <= u) % 2 == 1
     }

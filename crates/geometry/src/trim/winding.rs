@@ -20,10 +20,9 @@ use glam::{DVec2, DVec3};
 
 /// Trim loops, prepared for queries.
 ///
-/// Straight curves (and curves of any degree whose control points are exactly collinear) are decided
-/// without rounding. For the others a point farther from the curve than a few ulp of the largest
-/// coordinate is decided right; nearer points get one consistent answer, in which the loops are
-/// still closed. Straight curves of no length are left out.
+/// Straight curves (and curves of any degree whose control points are exactly collinear) are decided without rounding.
+/// For other curves a point farther from the curve than a few ulp of the largest coordinate is decided right; nearer
+/// points get one consistent answer, in which the loops are still closed. Straight curves of no length are dropped.
 #[derive(Clone, Debug)]
 pub struct LoopIndex {
     pub(super) curves: Vec<Bezier<DVec3>>,
@@ -47,7 +46,7 @@ pub(super) struct Node {
     pub link: Link,
 }
 
-/// What a node holds.
+/// The content of a node.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Link {
     Piece(u32),

@@ -1,4 +1,4 @@
-//! What has no sense is refused by every construction, with words that name what is wrong.
+//! Every construction refuses degenerate input, with words that name the fault.
 
 use crate::{line, planar};
 use glam::{DVec2, DVec3, DVec4};
@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 
 const NAN: f64 = f64::NAN;
 
-/// What is tried, and words of its refusal; `""` where it must be made.
+/// The name of a case, its result, and words of its refusal; `""` where it must succeed.
 type Row = (&'static str, Result<(), ConstructError>, &'static str);
 
 fn row<T>(name: &'static str, made: Result<T, impl Into<ConstructError>>, words: &'static str) -> Row {
@@ -337,7 +337,7 @@ fn subdivision() {
     }
 }
 
-/// The table sees what is made that should not be.
+/// The table notices a construction that should fail and does not.
 #[test]
 #[should_panic(expected = "a wall was made")]
 fn what_is_made_is_seen() {

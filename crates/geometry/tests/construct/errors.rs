@@ -1,4 +1,4 @@
-//! What cannot be made is named.
+//! Constructions that fail name the fault.
 
 use crate::{line, planar};
 use glam::DVec3;
@@ -25,7 +25,7 @@ fn lathes() {
         let refused = lathe(&planar(&[(1.0, 0.0), (1.0, 1.0)]), angle);
         assert!(matches!(refused, Err(ConstructError::Range { .. })), "{angle}");
     }
-    // touching from one side is a pole, wherever it is
+    // a profile that touches the axis from one side has a pole, wherever it touches
     assert!(lathe(&planar(&[(1.0, 0.0), (0.0, 1.0), (1.0, 2.0)]), TAU).is_ok());
 }
 

@@ -1,4 +1,4 @@
-//! Surfaces made from curves: what they must pass through, how far they may be off, and what cannot be made.
+//! Surfaces made from curves: the points and curves that they pass through, their errors, and refused input.
 //!
 //! `tools/random_cases` runs 10,000 random cases of each; see [`cases`].
 

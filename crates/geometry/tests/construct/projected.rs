@@ -45,7 +45,7 @@ proptest! {
             for k in 0..=16 {
                 let uv = c.point(f64::from(k) / 16.0);
                 let off = (from_axis(grid.point(uv.x, uv.y), centre, along) - radius).abs();
-                // beside the bound, what the outline itself is rounded by
+                // beside the bound, the rounding of the outline itself
                 prop_assert!(off <= cast.deviation + 1e-12, "{off:e} of {:e}", cast.deviation);
             }
             let (a, b) = (c.point(0.0), c.point(1.0));
@@ -65,7 +65,7 @@ fn flat() -> Surface {
 }
 
 #[test]
-fn what_cannot_be_cast_is_told() {
+fn curves_that_cannot_be_cast_are_reported() {
     let ring = |x: f64, r: f64| circle(DVec3::new(x, 0.0, 1.0), DVec3::Z, DVec3::X, r, std::f64::consts::TAU).unwrap();
     let cast = |ring: BSpline<DVec4>, along: DVec3| project(&flat(), &[ring], along, 1e-6);
     let misses = |r: Result<_, ConstructError>, from: f64, to: f64| match r {

@@ -1,4 +1,4 @@
-//! Loft, Coons and Gordon surfaces pass through what they are made of.
+//! Loft, Coons and Gordon surfaces pass through their curves.
 
 use crate::{EXACT, at, curve, fractions, line, points};
 use glam::{DVec3, DVec4};
@@ -23,7 +23,7 @@ fn off_section(s: &impl Fn(f64, f64) -> DVec3, section: &BSpline<DVec4>) -> f64 
     roots.fold(off(0.0).min(off(1.0)), f64::min)
 }
 
-/// Sections stacked along z, so that `z` tells the section.
+/// Sections stacked along z, so that `z` identifies the section.
 fn stack(n: std::ops::Range<usize>) -> impl Strategy<Value = Vec<BSpline<DVec4>>> {
     let section = curve(4, 0.8..1.25);
     prop::collection::vec((section, 0.6..1.4f64), n).prop_map(|all| {
@@ -65,7 +65,7 @@ proptest! {
         let [bottom, top, left, right] = &all;
         let built = coons(Boundary { bottom, top, left, right }, 1e-9);
         let Ok(surface) = built else {
-            // end weights are up to 1.7 / 0.6 of those inside, which the sum need not survive
+            // end weights are up to 1.7 / 0.6 of those inside: the sum may have weights that are not positive
             prop_assert!(all.iter().any(|c| !c.is_polynomial()));
             return Ok(());
         };

@@ -1,4 +1,4 @@
-//! Solids have the volume that they should, which fails for any normal that points inwards, and close.
+//! Solids have the right volume, which fails for any normal that points inwards, and close.
 
 use crate::{EXACT, fractions, planar};
 use glam::{DVec2, DVec3};

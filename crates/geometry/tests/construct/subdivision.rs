@@ -1,5 +1,5 @@
-//! Subdivision surfaces against the schemes' rules, written here once more for plain lists of polygons: every vertex
-//! of a refined mesh, in the limit, lies on the faces; sides are shared to the bit; what is no mesh is named.
+//! Subdivision surfaces against the schemes' rules, written again here for plain lists of polygons. Every vertex of a
+//! refined mesh, in the limit, lies on the faces; sides are shared to the bit; invalid meshes are named.
 
 use crate::EXACT;
 use glam::DVec3;
@@ -188,7 +188,7 @@ fn patches(part: &Part) -> Vec<(SurfacePatch, DVec3, DVec3)> {
     .collect()
 }
 
-/// Limits of the vertices of a refined mesh lie on the faces, within the bound that they state.
+/// Limits of the vertices of a refined mesh lie on the faces, within the stated bound.
 fn lies_on_the_limit(mesh: &ControlMesh, scheme: Scheme, made: &Subdivided, steps: usize) {
     let fine = (0..steps).fold(mesh.clone(), |m, _| step(&m, scheme));
     let reach = made.deviation + EXACT * size(mesh);
@@ -253,7 +253,7 @@ fn unshared(part: &Part) -> usize {
             }
         }
     }
-    // what is left may be a whole side beside its halves, which were sides of their own
+    // an unshared whole side may lie beside its halves, which were sides of their own
     let mut left: Vec<Vec<DVec3>> = open.values().cloned().collect();
     left.sort_by(|a, b| b[0].distance(b[b.len() - 1]).total_cmp(&a[0].distance(a[a.len() - 1])));
     for side in left {

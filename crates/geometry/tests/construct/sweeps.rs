@@ -104,7 +104,7 @@ fn frames(sweep: &Sweep) -> Vec<Placed> {
     all.iter().enumerate().map(placed).collect()
 }
 
-/// Largest distance between a sweep and the one described, at all steps.
+/// Largest distance between a sweep and its description, at all steps.
 fn deviation(sweep: &Sweep, surface: &selvedge_geometry::spline::Surface) -> f64 {
     let s = points(surface);
     let (a, b) = sweep.profile.domain();

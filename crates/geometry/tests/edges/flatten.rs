@@ -155,7 +155,7 @@ fn wild_curves_keep_the_bound() {
     }
 }
 
-/// What passes beside the eye, and the eye's plane: shown as far as it is in front of the near plane.
+/// A line beside the eye, and through the eye's plane: shown as far as it is in front of the near plane.
 #[test]
 fn a_line_past_the_eye_is_cut_at_the_near_plane() {
     let line = of([DVec3::new(0.1, 0.1, -4.0), DVec3::new(0.1, 0.1, 8.0)].map(|p| p.extend(1.0)).to_vec());

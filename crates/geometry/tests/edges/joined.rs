@@ -77,9 +77,10 @@ fn solids_that_touch_along_an_edge_stay_closed() {
     assert!(edges.closed());
 }
 
-/// A pipe between two others meets them in curves that no equation gives: fitted, on the first face, within what is said.
+/// A pipe between two others meets them in curves without an equation: fitted, on the first face, within the stated
+/// deviation.
 #[test]
-fn a_fitted_curve_says_how_far_it_is_off() {
+fn a_fitted_curve_reports_its_error() {
     use glam::DVec2;
     use selvedge_geometry::model::TrimLoop;
     use selvedge_geometry::spline::Bezier;
@@ -108,9 +109,9 @@ fn nothing_has_no_edges() {
     assert!(edges.edges.is_empty() && edges.vertices.is_empty() && edges.closed());
 }
 
-/// A hole smaller than the reach has no edge, and is told.
+/// A hole smaller than the reach has no edge, and is reported.
 #[test]
-fn a_loop_that_is_a_point_is_told() {
+fn a_loop_that_is_a_point_is_reported() {
     use glam::DVec2;
     use selvedge_geometry::model::TrimLoop;
     use selvedge_geometry::spline::Bezier;

@@ -51,8 +51,8 @@ fn on_face(face: &Face, trim_loop: Option<usize>, position: f64) -> DVec3 {
     face.surface.jet(uv.x, uv.y).point
 }
 
-/// What holds for the edges of every part: curves run between their vertices, uses lie along the curves in the direction
-/// that they say, `tolerance` apart at most, and no piece of a loop has two edges. Whole loops belong to edges except for
+/// Rules for the edges of every part: curves run between their vertices, uses lie along the curves in their stated
+/// direction, `tolerance` apart at most, and no piece of a loop has two edges. Whole loops belong to edges except for
 /// `poles` curves.
 #[track_caller]
 fn check(part: &Part, edges: &Edges, tolerance: f64, poles: usize) {

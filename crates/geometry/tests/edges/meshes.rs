@@ -28,7 +28,7 @@ fn a_cube_of_facets_has_twelve_creases() {
     assert!(
         found.of_meshes.iter().all(|e| e.triangles.len() == 2 && (e.ends[0].distance(e.ends[1]) - 1.0).abs() < 1e-15)
     );
-    // a mesh a face says the same
+    // the same with a mesh a face
     let apart = cube().iter().map(|q| quads(&[*q])).collect();
     let found = edges(apart, 20.0);
     assert_eq!((found.counts().mesh_creases, found.counts().mesh_borders), (12, 0));
@@ -58,7 +58,7 @@ fn a_crease_is_an_angle() {
     assert_eq!(counts(12, 31.0), (0, 24));
 }
 
-/// Winding does not matter, a third triangle does, and one without area says nothing.
+/// Winding does not matter, a third triangle does, and one without area is ignored.
 #[test]
 fn odd_triangles() {
     let flat = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];

@@ -84,9 +84,9 @@ fn a_cylinder_has_two_circles_and_a_seam() {
     assert!(seam.turn < 1e-9);
 }
 
-/// The lid of a cylinder as far beside its rim as no tolerance allows.
+/// The lid of a cylinder farther beside its rim than any tolerance allows.
 #[test]
-fn a_lid_beside_its_rim_is_told() {
+fn a_lid_beside_its_rim_is_reported() {
     let mut part = cylinder(2.0, 3.0);
     let by = glam::DAffine3::from_translation(DVec3::Z * 0.1);
     part.faces[2].surface = part.faces[2].surface.transformed(&by);

@@ -1,4 +1,4 @@
-//! Edges that the source says are one.
+//! Edges that the source states as one.
 
 use super::{check, counts, open, sheet};
 use glam::{DVec2, DVec3};
@@ -45,7 +45,7 @@ fn an_edge_of_the_source_is_one_however_sloppy() {
     sources.sort();
     assert_eq!(sources, [70, 71, 72, 73, 74, 75, 76]);
     check(&part, &edges, 0.0101, 0);
-    // the same without what the source says
+    // the same without the source's statement
     let mut bare = part;
     bare.faces.iter_mut().for_each(|f| f.loops = f.loops.drain(..).map(TrimLoop::without_edges).collect());
     assert_eq!(bare.edges().unwrap().single(), 8);
@@ -59,7 +59,7 @@ fn an_edge_whose_uses_lie_apart_is_not_joined() {
     assert_eq!(pair(0.01, [true, true]).edges().unwrap().single(), 8);
 }
 
-/// What the source keeps apart, but geometry does not.
+/// Edges that the source separates, but geometry does not.
 #[test]
 fn edges_of_two_numbers_at_one_place_are_joined() {
     let mut part = pair(0.0, [true, false]);

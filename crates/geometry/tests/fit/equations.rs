@@ -1,4 +1,4 @@
-//! Fitted equations: the bound holds between all samples, sides meet bit for bit, bad surfaces are named.
+//! Fitted equations: the bound holds between all samples, sides meet bit for bit, errors name bad surfaces.
 
 use glam::DVec3;
 use proptest::prelude::*;
@@ -6,7 +6,7 @@ use selvedge_geometry::construct::ConstructError;
 use selvedge_geometry::construct::fit::{Fit, FitOptions, Side, fit};
 use std::f64::consts::{PI, TAU};
 
-/// Largest distance at `n²` even points shifted off every symmetry; nothing of the fit's own points.
+/// Largest distance at `n²` even points shifted off every symmetry and off the fit's own points.
 fn worst(fit: &Fit, f: &dyn Fn(f64, f64) -> DVec3, n: usize) -> f64 {
     let ((u0, u1), (v0, v1)) = fit.surface.domain();
     let at = |(a, b): (f64, f64), i: usize| a + (b - a) * ((i as f64 + 0.382) / n as f64);
@@ -28,7 +28,7 @@ fn sphere_has_a_seam_and_two_poles() {
         let fit = fit(sphere, (0.0, TAU), (-0.5 * PI, 0.5 * PI), &FitOptions::new(tolerance)).unwrap();
         let met = worst(&fit, &sphere, 301);
         assert!(met <= fit.bound && fit.bound <= tolerance, "{met:e} {:e} {tolerance:e}", fit.bound);
-        // neither useless: an order of magnitude at most lies between the bound and the truth
+        // a useful bound, too: at most an order of magnitude above the truth
         assert!(fit.bound <= 12.0 * met + 1e-12, "{met:e} {:e}", fit.bound);
         assert_eq!((fit.sides.u, fit.sides.v), (Side::Periodic, Side::Open));
         assert!(fit.sides.poles[0].is_none() && fit.sides.poles[1].is_none());
@@ -62,7 +62,7 @@ fn torus_closes_both_ways() {
 
 /// A cone's seam is smooth, a drop's profile creases at its seam, a Moebius strip's sides do not meet point by point.
 #[test]
-fn sides_are_told_apart() {
+fn sides_are_distinguished() {
     let options = FitOptions::new(1e-5);
     let cone = fit(|u, v| DVec3::new(v * u.cos(), v * u.sin(), v), (0.0, TAU), (0.0, 2.0), &options).unwrap();
     assert_eq!((cone.sides.u, cone.sides.poles[2]), (Side::Periodic, Some(DVec3::ZERO)));

@@ -68,7 +68,7 @@ fn heights_lie_on_their_surface() {
     assert!(matches!(bad(&samples, HeightField { z: (f64::NAN, 1.0), ..field }), ConstructError::NotFinite { .. }));
 }
 
-/// Of data from a bicubic spline space nothing is lost; of noise half is.
+/// Data from a bicubic spline space are reproduced; half of noise is removed.
 #[test]
 fn least_squares_reproduce_and_smooth() {
     let f = |u: f64, v: f64| DVec3::new(u, v, u * u * u - 2.0 * u * v * v + v);
@@ -146,7 +146,7 @@ proptest! {
         prop_assert_eq!(corner, g.points()[0]);
     }
 
-    /// The reported error of an approximation is what evaluation at the parameters finds.
+    /// The reported error of an approximation is that of evaluation at the parameters.
     #[test]
     fn errors_are_reported_truly(g in any_grid()) {
         let (nu, nv) = g.counts();

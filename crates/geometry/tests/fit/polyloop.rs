@@ -94,7 +94,7 @@ fn four_points_reproduce_cubics() {
     let mut vertices: Vec<DVec2> = (0..8).map(|i| f(f64::from(i))).collect();
     vertices.push(p(9.0, -50.0));
     let fine = PolyLoop::new(vertices).unwrap().four_points(0.0625, 4).unwrap();
-    // between vertices 2 and 5 no other vertex than those of the cubic has had a say
+    // between vertices 2 and 5 the scheme uses vertices of the cubic only
     for i in 2 * 16..=5 * 16 {
         let expected = f(i as f64 / 16.0);
         assert!(fine.vertices()[i].distance(expected) < 1e-12, "{i}");
@@ -106,7 +106,7 @@ fn any_loop() -> impl Strategy<Value = PolyLoop> {
         .prop_filter_map("neighbours coincide", |v| PolyLoop::new(v.into_iter().map(|(x, y)| p(x, y)).collect()).ok())
 }
 
-/// Vertices at whole numbers, all different, none straight on: whatever is asked has an exact answer in integers.
+/// Vertices at whole numbers, all different, none straight on: every predicate has an exact answer in integers.
 fn whole_loop() -> impl Strategy<Value = Vec<[i64; 2]>> {
     prop::collection::vec(prop::array::uniform2(-6i64..7), 3..9).prop_filter("straight on, or twice", |v| {
         let n = v.len();
@@ -126,8 +126,8 @@ fn side(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
 }
 
 proptest! {
-    /// Left turns, inflection edges and convexity are what integers say: a loop is convex when no vertex lies on
-    /// the other side of any edge. Orientation is the sign of the area of a loop around a point that all edges see.
+    /// Left turns, inflection edges and convexity agree with integers: a loop is convex when no vertex lies on the
+    /// other side of any edge. Orientation is the sign of the area of a loop around a point that all edges see.
     #[test]
     fn turns_inflections_and_convexity_by_integers(v in whole_loop()) {
         let n = v.len();
@@ -176,8 +176,8 @@ proptest! {
         prop_assert_eq!(curve.point(0.0), curve.point(n as f64));
     }
 
-    /// A vertex that is moved moves four segments of the approximating curve; what is inserted and removed again
-    /// leaves no trace.
+    /// A vertex that is moved moves four segments of the approximating curve; inserting a vertex and removing it again
+    /// restores the loop.
     #[test]
     fn edits_are_local_and_can_be_undone(l in any_loop(), at in 0usize..12, to in (-1.0f64..1.0, -1.0f64..1.0)) {
         let n = l.vertices().len();
@@ -189,7 +189,7 @@ proptest! {
         edited.move_to(at, to).unwrap();
         let (before, after) = (l.approximating().unwrap(), edited.approximating().unwrap());
         for i in 0..n {
-            // segment i runs from vertex i: vertices i - 1 to i + 2 have a say
+            // segment i runs from vertex i: it depends on vertices i - 1 to i + 2
             let near = (0..4).any(|k| (i + n - 1 + k) % n == at);
             let t = i as f64 + 0.37;
             let moved = before.point(t).distance(after.point(t));
@@ -228,7 +228,8 @@ proptest! {
         prop_assert!(fine.vertices()[1].distance((a + b) * 0.5) < 1e-15);
     }
 
-    /// Around a convex loop every rotation and reversal says the same; the hull contains the approximating curve.
+    /// Around a convex loop every rotation and reversal gives the same result; the hull contains the approximating
+    /// curve.
     #[test]
     fn regular_polygons_are_convex(n in 3usize..40, start in 0.0f64..6.0, shift in 0usize..40, t in 0.0f64..1.0) {
         let mut v: Vec<DVec2> =

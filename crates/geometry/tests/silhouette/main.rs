@@ -49,7 +49,7 @@ fn as_a_grid_has_it(surface: &Surface, from: DVec3, cells: u32) -> usize {
     let size = DVec2::new(u1 - u0, v1 - v0);
     let at = |i: u32, j: u32| DVec2::new(u0, v0) + size * DVec2::new(f64::from(i), f64::from(j)) / f64::from(cells);
     let step = size / f64::from(cells);
-    // points of a steep branch are farther apart than cells: what lies between them counts
+    // points of a steep branch are farther apart than cells: the stretches between them count
     let lines: Vec<Vec<DVec2>> =
         found.folds.iter().map(|fold| points(fold).iter().map(|uv| *uv / step).collect()).collect();
     let from_fold = |p: DVec2| {

@@ -1,4 +1,4 @@
-//! What every patch promises: bilinear, bicubic, any degree, polynomial and rational.
+//! Properties of every patch: bilinear, bicubic, any degree, polynomial and rational.
 
 use glam::{DVec3, DVec4};
 use proptest::prelude::*;

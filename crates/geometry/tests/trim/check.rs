@@ -1,8 +1,8 @@
-//! How a hard case states its answer.
+//! The form of a hard case.
 //!
-//! A row `(u, v, w)` states the winding number `w` at `(u, v)`. Every row is put to the exact index
-//! and to a table with a scan line exactly at `v`: coordinates are dyadic or one ulp from it, so
-//! that chords of straight loops are exact in both.
+//! A row `(u, v, w)` states the winding number `w` at `(u, v)`. Every row is checked with the exact index and with a
+//! table that has a scan line exactly at `v`. Coordinates are dyadic or one ulp from it, so chords of straight loops
+//! are exact in both.
 
 use crate::shapes::at;
 use selvedge_geometry::model::TrimLoop;
@@ -17,11 +17,11 @@ pub const fn down(x: f64) -> f64 {
     x.next_down()
 }
 
-/// Chords per curve of the tables below: a deviation of about 1e-4 for unit arcs, so tables are not
-/// asked about points nearer than that to a bent curve.
+/// Chords per curve of the tables below: a deviation of about 1e-4 for unit arcs, so rows for tables lie no nearer than
+/// that to a bent curve.
 pub const CHORDS: u32 = 64;
 
-/// The rows, put to the index.
+/// Checks the rows with the index.
 pub fn expect_winding(loops: &[TrimLoop], rows: &[(f64, f64, i32)]) {
     let index = LoopIndex::new(loops);
     for &(u, v, winding) in rows {
@@ -43,7 +43,7 @@ pub fn table_at(loops: &[TrimLoop], v: f64) -> TrimTable {
     table
 }
 
-/// The rows, put to the index and to a table.
+/// Checks the rows with the index and with a table.
 pub fn expect(loops: &[TrimLoop], rows: &[(f64, f64, i32)]) {
     expect_winding(loops, rows);
     for &(u, v, winding) in rows {

@@ -1,4 +1,4 @@
-//! The chord count keeps its promise, and does not ask for much more than it needs.
+//! The chord count satisfies its bound, and is not much larger than necessary.
 
 use crate::shapes::{at, circle, curve};
 use glam::{DVec2, DVec3};

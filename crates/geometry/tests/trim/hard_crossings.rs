@@ -237,7 +237,7 @@ fn duplicates_keep_and_opposites_cancel() {
     expect(&[square.clone(), square.clone()], &[(0.5, 0.5, 2), (1.5, 0.5, 0)]);
     expect(&[square.clone(), square.clone().reversed()], &[(0.5, 0.5, 0), (0.0, 0.5, 0)]);
     expect_winding(&[ring.clone(), ring.clone().reversed()], &[(2.0, 2.0, 0), (1.0, 2.0, 0), (2.5, 2.5, 0)]);
-    // conservative: a curve is a curve, even where another cancels it
+    // conservative: a curve counts even where another one cancels it
     let index = LoopIndex::new(&[square.clone(), square.reversed()]);
     assert_eq!(index.classify(at(0.5, 0.5), at(1.5, 0.75)), RectSide::Boundary);
 }

@@ -1,4 +1,4 @@
-//! Curves and surfaces that no rational spline is, by splines of degree 5 with a measured error.
+//! Splines of degree 5 for curves and surfaces that no rational spline reproduces, with a measured error.
 //!
 //! ```text
 //!   f over [a, b]: quintic through six Chebyshev points; error measured at two points between each two
@@ -6,8 +6,8 @@
 //!   surfaces   columns and rows of the grid are halved, whichever err
 //! ```
 //!
-//! For a surface, interpolated in u and then in v, the error is at most that in u and [`LEBESGUE`] times
-//! that in v. The parametrisation stays: equal parameters are equal points, within the error.
+//! A surface is interpolated in u, then in v: its error is at most the error in u plus [`LEBESGUE`] times the error in
+//! v. The spline keeps the parametrisation: equal parameters are equal points, within the error.
 
 use super::fit::{PEAK, QUINTIC, chebyshev};
 use crate::spline::arc::assemble;

@@ -1,12 +1,12 @@
-//! Edges that are a border of their spline surface, control point for control point.
+//! Edges that run along a border of their spline surface and share its control points.
 //!
 //! ```text
 //!   S(u, v1) = C(t)    u = u0 + (u1 - u0) (t - t0) / (t1 - t0)        or run the other way
 //! ```
 //!
-//! Modellers cut such edges out of the surface and write the same numbers twice. Two curves of one degree, over one
-//! knot vector, with the same weights are nowhere farther apart than their control points: the pre-image is
-//! known without looking for a single point of it.
+//! Modellers cut such edges out of the surface and write the same numbers twice. Two curves of the same degree, knots
+//! and weights are nowhere farther apart than their control points. So the pre-image is known, and no point is
+//! inverted.
 
 use super::curve::Curve;
 use super::edge::EdgeCurve;
@@ -29,7 +29,7 @@ pub(super) struct Border {
     pub gap: f64,
 }
 
-/// Share of a domain within which knots are the same, and of a weight: rounding.
+/// Relative difference up to which two knots, or two weights, count as equal: rounding.
 const SAME: f64 = 1e-12;
 
 impl Border {

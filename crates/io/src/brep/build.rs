@@ -1,4 +1,4 @@
-//! From a face as files state it to a face that can be drawn.
+//! Builds one face: from a surface, edges in space and a tolerance to a trimmed spline surface.
 
 use super::carrier::CarrierError;
 use super::edge::EdgeCurve;
@@ -17,21 +17,21 @@ use crate::trim::{Crossing, crossing};
 use glam::{DVec2, DVec3};
 use std::rc::Rc;
 
-/// A face, and what its making found.
+/// A face, with the notes and errors of building it.
 #[derive(Clone, Debug)]
 pub struct BuiltFace {
-    /// The face; its carrier is tight around its loops (a B-spline is kept whole). Of faces built from edges, each trim
-    /// curve names its own by its place in the list of edges.
+    /// The face. Its carrier is tight around its loops (a B-spline is kept whole). In a face built from edges, each
+    /// trim curve names its edge by the index in the list of edges.
     pub face: Face,
-    /// What had to be healed or is doubtful, with lengths in mm.
+    /// What was repaired or is ambiguous, with lengths in mm.
     pub notes: Vec<String>,
-    /// Largest distance in mm, on the surface, of a trim curve from the points nearest to its edge: what
-    /// fitting, straightening and joining cost.
+    /// Largest distance in mm, on the surface, of a trim curve from the pre-image of its edge: the error of fitting,
+    /// straightening and joining.
     pub deviation: f64,
-    /// Largest distance in mm of an edge from the surface, which is the source's. No point of a trim curve
-    /// is farther from its edge than `deviation + gap`.
+    /// Largest distance in mm of an edge from the surface, as the source states both. No point of a trim curve is
+    /// farther from its edge than `deviation + gap`.
     pub gap: f64,
-    /// Loops that the source states and the face lacks, and why: holes are filled, or borders gone.
+    /// Loops of the source that the face lacks, and why: its holes are filled, or its borders missing.
     pub lost: Vec<String>,
 }
 
@@ -43,25 +43,24 @@ const MAX_TURNS: f64 = 1e4;
 
 /// Builds the carrier and the trim loops of one face.
 ///
-/// `tolerance` is the source's length tolerance in mm. Vertices and poles within it (kept between
-/// `1e-9` and `1e-5` of the face's diagonal) are the same. Trim curves, fitted or replaced by lines of
-/// constant parameter, follow the pre-image of their edge to a hundredth of it, kept between `1e-9` (or a
-/// quarter of the tolerance, where that is less) and `1e-7` of the diagonal: at `1e-7` a face 4000 pixels wide
-/// is right to half a pixel when enlarged a thousand times, and tighter fits would only repeat the noise of
-/// most files. For an edge that does not lie on the surface, its distance from it stands for the tolerance
-/// where that is larger.
+/// `tolerance` is the source's length tolerance in mm, clamped to between `1e-9` and `1e-5` of the face's diagonal.
+/// Vertices and poles within it are the same. Trim curves, fitted or replaced by lines of constant parameter, follow
+/// the pre-image of their edge to a hundredth of it. That target is clamped to between `1e-9` (or a quarter of the
+/// tolerance, where that is less) and `1e-7` of the diagonal: at `1e-7` a face 4000 pixels wide is right to half a
+/// pixel when enlarged a thousand times, and a tighter fit would only follow the noise of most files. For an edge that
+/// does not lie on the surface, its distance from the surface replaces the tolerance where it is larger.
 ///
 /// # Errors
 /// [`BuildError`] names the face or edge and the reason.
 pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result<BuiltFace, BuildError> {
     match build(face, edges, tolerance, false) {
-        // edges that meet beside the tip of the surface go around it in place of through it
+        // edges that end beside a tip of the surface leave a rim open: let them end at the tip
         open @ Err(BuildError::OpenRim { .. }) => build(face, edges, tolerance, true).or(open),
         built => built,
     }
 }
 
-/// `beside`: edges that end beside a tip of the surface end at it.
+/// `beside`: edges that end beside a tip of the surface count as ending at it.
 fn build(face: &FaceGeometry, edges: &[Edge], tolerance: f64, beside: bool) -> Result<BuiltFace, BuildError> {
     let tolerance = if tolerance > 0.0 && tolerance.is_finite() { tolerance } else { 1e-6 };
     let mut notes = Vec::new();
@@ -97,11 +96,11 @@ fn build(face: &FaceGeometry, edges: &[Edge], tolerance: f64, beside: bool) -> R
     let mut loops = Vec::new();
     let mut lines = Lines::new();
     let mut hint = None;
-    let mut doubtful = face.doubtful;
+    let mut ambiguous = face.ambiguous;
     for bound in uses {
         let mut strands = Vec::new();
-        let (bound, turned) = order::heal(bound, face.id, eps, &mut notes);
-        doubtful |= turned;
+        let (bound, turned) = order::sort(bound, face.id, eps, &mut notes);
+        ambiguous |= turned;
         for edge in bound {
             let more = Strand::of_edge(&support, &Rc::new(edge), hint, &mut lines);
             hint = more.last().map(|s| s.end).or(hint);
@@ -123,7 +122,7 @@ fn build(face: &FaceGeometry, edges: &[Edge], tolerance: f64, beside: bool) -> R
     if loops.is_empty() {
         return whole(face, &support, notes);
     }
-    let directions = if doubtful { Directions::Doubtful(&mut notes) } else { Directions::Sound };
+    let directions = if ambiguous { Directions::Ambiguous(&mut notes) } else { Directions::Sound };
     let loops = arrange(&support, loops, &vertices, limits, directions)?;
     let (loops, range) = come_home(&support, loops);
     if !(0..2).all(|i| range[i].1 > range[i].0 && (range[i].1 - range[i].0).is_finite()) {
@@ -175,8 +174,7 @@ fn build(face: &FaceGeometry, edges: &[Edge], tolerance: f64, beside: bool) -> R
     Ok(BuiltFace { face, notes, deviation, gap, lost })
 }
 
-/// What is told of loops that cross: points within two of them, or within a hole and nothing else, follow the non-zero
-/// rule.
+/// A note on loops that cross. Points within two loops, or within a hole alone, follow the non-zero rule.
 pub fn crossing_note(loops: &[TrimLoop]) -> Option<String> {
     match crossing(loops) {
         Crossing::No => None,
@@ -185,7 +183,7 @@ pub fn crossing_note(loops: &[TrimLoop]) -> Option<String> {
     }
 }
 
-/// The bounds that have no edge left. One at a pole says no more than that the face reaches the pole.
+/// The bounds that have no edge left. A bound at a pole is none of them: it says only that the face reaches the pole.
 fn lost(face: &FaceGeometry, edges: &[Edge], uses: &[Vec<EdgeCurve>], support: &Support) -> Vec<String> {
     let lists = face.bounds.iter().filter_map(|b| match b {
         Boundary::Edges(list) => Some(list),
@@ -203,8 +201,8 @@ fn lost(face: &FaceGeometry, edges: &[Edge], uses: &[Vec<EdgeCurve>], support: &
     empty.map(told).collect()
 }
 
-/// The edges of each bound in the direction of the bound; those without length are left out. A single edge that bounds
-/// nothing as its vertices lie is once around its curve.
+/// The edges of each bound in the direction of the bound; edges without length are left out. A single edge whose
+/// vertices make it bound nothing is taken once around its curve.
 fn edge_uses(face: &FaceGeometry, edges: &[Edge]) -> Result<Vec<Vec<EdgeCurve>>, BuildError> {
     let lists = face.bounds.iter().filter_map(|b| match b {
         Boundary::Edges(list) => Some(list),

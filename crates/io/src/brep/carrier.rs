@@ -32,7 +32,7 @@ pub(super) struct Carrier {
 pub(super) enum CarrierError {
     /// A closed spline cannot be repeated across its seam.
     Seam,
-    /// The control net is not one.
+    /// The control net is invalid.
     Spline(SplineError),
 }
 

@@ -29,7 +29,7 @@ impl Curve {
     /// basis curve, turned around when it runs backwards: the vertices of its edge bound it.
     ///
     /// # Errors
-    /// What is wrong with its numbers.
+    /// Why its numbers define no curve.
     pub fn new(geometry: &CurveGeometry, eps: f64) -> Result<Self, &'static str> {
         let axes = |f: &Frame, a: f64, b: f64| {
             let positive = a > 0.0 && b > 0.0 && a.is_finite() && b.is_finite();

@@ -21,7 +21,7 @@ use super::strand::Strand;
 use super::support::Support;
 use glam::DVec2;
 
-/// A run of strands inside one period, with where it begins and ends on the cut.
+/// A run of strands within one period, and where it begins and ends on the cut.
 struct Chain {
     strands: Vec<Strand>,
     source: usize,
@@ -128,8 +128,8 @@ pub(super) fn cut_open(
     }
 }
 
-/// All loops cut at `cut + k period` and moved into `[cut, cut + period]`: the chains of those that
-/// cross it, and those that do not.
+/// All loops cut at `cut + k period` and moved into `[cut, cut + period]`: the chains of loops that cross it, and the
+/// loops that do not.
 fn cut_loops(support: &Support, loops: &[Loop], axis: usize, cut: f64, period: f64) -> (Vec<Chain>, Vec<Loop>) {
     let eps = 1e-9 * period;
     let (mut chains, mut whole) = (Vec::new(), Vec::new());

@@ -1,4 +1,4 @@
-//! Curves and surfaces defined by others: offsets, and curves on surfaces.
+//! Curves and surfaces derived from other ones: offsets, and curves on surfaces.
 //!
 //! ```text
 //!   offset surface   S + d n         of an extrusion or revolution: its profile moved, then swept again,
@@ -7,9 +7,9 @@
 //!   curve on surface S(c(t))         fitted
 //! ```
 //!
-//! Fits keep the parametrisation and come with their largest error in mm; they aim at a hundredth of the
-//! tolerance, kept between `1e-9` and `1e-7` of the size. V is the fixed direction of the offset curve, T
-//! and n are unit tangent and normal.
+//! Fits keep the parametrisation and come with their largest error in mm. They aim at a hundredth of the tolerance,
+//! clamped to between `1e-9` and `1e-7` of the size. V is the fixed direction of the offset curve, T and n are unit
+//! tangent and normal.
 //!
 //! Source: ISO 10303-42, 4.4.44 (offset_curve_3d) and 4.5.23 (offset_surface).
 
@@ -62,12 +62,13 @@ pub fn offset_surface(
     }
 }
 
-/// What of an offset lies farther than this share of its distance from its edges lies on the wrong side.
+/// The stated side is wrong if edges are farther off than this share of the distance, and this share of that on the
+/// other side.
 const WRONG: f64 = 0.1;
 
-/// The surface made by `offset` at `distance`, mm, or at the same distance on the other side of its basis, where `edges`,
-/// points of its borders, lie there and not here: normals and indicators are wrong in files more often than edges are.
-/// The last value tells that it is on the other side.
+/// The surface made by `offset` at `distance`, mm. Where `edges`, points of its borders, lie at the same distance on
+/// the other side of its basis and not here, the surface on that side: files state wrong normals and indicators more
+/// often than wrong edges. The last value is true for the other side.
 ///
 /// # Errors
 /// Those of `offset` at `distance`.

@@ -10,7 +10,7 @@ use glam::DVec3;
 pub(super) struct EdgeCurve {
     /// Number in the source.
     pub id: u32,
-    /// Which of the body's edges it is; the loop runs it from start to end, or back.
+    /// Its index among the body's edges, and whether the loop runs it from start to end.
     pub used: (usize, bool),
     /// Turned around where the loop runs it backwards.
     pub curve: Curve,
@@ -43,7 +43,7 @@ impl EdgeCurve {
         let mut this = Self::without_range(edge, forward, eps)?;
         let closed = edge.start.distance(edge.end) <= 1e-3 * eps;
         if !this.set_range(closed, eps) {
-            // an open curve met in the opposite order: the sense flag is wrong, the vertices are not
+            // on an open curve the order of the vertices outweighs the sense flag
             this.curve = this.curve.reversed();
             this.turned = true;
             if !this.set_range(closed, eps) {
@@ -54,8 +54,8 @@ impl EdgeCurve {
         Ok((this.length > eps).then_some(this))
     }
 
-    /// The edge as a loop of its own: once around its curve, or along all of one whose ends nearly meet, whichever way the
-    /// vertices lie beside each other. `None` where that closes no loop.
+    /// The edge as a whole loop: once around its curve, or along all of a curve whose ends nearly meet, whatever the
+    /// order of the vertices. `None` where it closes no loop.
     ///
     /// # Errors
     /// As [`EdgeCurve::new`].
@@ -138,8 +138,7 @@ impl EdgeCurve {
         ahead > 0.0 && !short
     }
 
-    /// The curve closes but for a gap, and the vertices are its two ends: the edge is all of it, for nothing lies in the
-    /// gap.
+    /// The curve closes except for a gap, and the vertices are its two ends: the edge is the whole curve.
     fn spans_its_gap(&self) -> bool {
         let (Curve::Pieces(_), Some((a, b))) = (&self.curve, self.curve.domain()) else { return false };
         let [first, last] = [a, b].map(|t| self.curve.point(t));

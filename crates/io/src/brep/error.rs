@@ -25,7 +25,7 @@ pub enum BuildError {
     /// A face without loops on a surface that has no end.
     #[error("face #{face} has no loop and its surface is not closed")]
     Unbounded { face: u32 },
-    /// A loop runs around a closed surface and nothing closes the other side.
+    /// A loop runs around a closed surface, and no other loop closes the other side.
     #[error("face #{face}: a loop runs around the surface and no other loop or pole closes it")]
     OpenRim { face: u32 },
     /// A loop that runs more than once around, or around both ways.
@@ -37,10 +37,10 @@ pub enum BuildError {
     /// The loops enclose nothing.
     #[error("face #{face}: a loop encloses no area")]
     NoArea { face: u32 },
-    /// The finished trim curve is not one.
+    /// The finished trim loop is invalid.
     #[error("face #{face}: {source}")]
     Loop { face: u32, source: FaceError },
-    /// The finished carrier surface is not one.
+    /// The finished carrier surface is invalid.
     #[error("carrier of face #{face}: {source}")]
     Carrier { face: u32, source: SplineError },
 }

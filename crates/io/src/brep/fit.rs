@@ -23,15 +23,15 @@ use std::sync::LazyLock;
 /// Halvings before a piece is kept as it is and its error reported: `2^-16` of an edge.
 const MAX_DEPTH: u32 = 16;
 
-/// Curves of one strand, beside eight for each cut, after which no piece is halved any more. Real faces have
-/// some hundreds in all their loops; damaged ones, whose pre-image is noise, would ask for `2^16`.
+/// Curves of one strand, beside eight for each cut, after which no piece is halved any more. Real faces have some
+/// hundreds in all their loops. Damaged ones, whose pre-image is noise, would need `2^16`.
 const MAX_CURVES: usize = 2048;
 
 /// Between two points of interpolation the error runs like the product of the distances from them all. Its
 /// peak is at most this many times what is found at 0.3 and 0.7 of the way.
 pub(super) const PEAK: f64 = 1.25;
 
-/// Share of a parameter, or of the length of a line, by which a point is off it for no other reason than rounding.
+/// Share of a parameter, or of a line's length, by which rounding alone moves a point off the line.
 const ROUNDING: f64 = 1e-15;
 
 /// Trim curves of one strand.
@@ -43,7 +43,7 @@ pub(super) struct Fitted {
     pub deviation: f64,
 }
 
-/// What a fit is made for.
+/// A surface on which strands are fitted.
 pub(super) struct Fitter<'a> {
     /// The surface.
     pub support: &'a Support,
@@ -200,13 +200,14 @@ impl Fitter<'_> {
                 let wanted = self.point(self.to_carrier(path));
                 error = error.max(fitted.distance(wanted));
                 if let Some(raw) = raw {
-                    // most strands are where their trace is: one point for both, but for turning there and back
+                    // most strands lie on their trace: one point serves both, unless a law converts parameters there
+                    // and back
                     let same = raw == path && self.carrier.axes.iter().all(Axis::is_linear);
                     let traced = if same { wanted } else { self.support.point(raw) };
                     deviation = deviation.max(PEAK * fitted.distance(traced));
                 }
                 if error > target && !last {
-                    break; // how bad it is matters only where it must be taken
+                    break; // only a fit that is taken needs its exact error
                 }
             }
             if best.as_ref().is_none_or(|b| error < b.0) {

@@ -13,7 +13,7 @@ impl Frame {
     /// where that is parallel too (ISO 10303-42, `build_axes` and `first_proj_axis`). `None` when
     /// the axis has no direction.
     pub fn new(origin: DVec3, axis: DVec3, reference: DVec3) -> Option<Self> {
-        /// Sine of the angle to the axis below which a reference says nothing.
+        /// Sine of the angle to the axis below which a reference counts as parallel.
         const PARALLEL: f64 = 1e-9;
         let z = axis.try_normalize()?;
         let across = |r: DVec3| {

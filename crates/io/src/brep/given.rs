@@ -1,11 +1,11 @@
-//! Faces of splines whose trims the source states in the spline's own parameters: taken as they are.
+//! Spline faces whose trim curves the source states in the spline's own parameters: they are used unchanged.
 //!
 //! ```text
 //!   stated   ─────▶ ┆ ───▶        drawn   ─────▶──▶───▶        a straight piece where two do not meet
 //! ```
 //!
-//! Nothing is derived, so nothing deviates, but where two curves miss each other by less than the tolerance: there the
-//! later one begins where the earlier one ends.
+//! A curve deviates only where it misses the one before it by less than the tolerance: it is moved to begin where that
+//! one ends.
 
 use super::build::crossing_note;
 use super::curve::segment;
@@ -16,16 +16,16 @@ use crate::model::{Bounds, Face, SurfaceKind, TrimLoop};
 use crate::spline::{Bezier, Control, Surface};
 use glam::{DVec2, DVec3};
 
-/// Share of the face's diagonal by which control points may leave the surface: sloppiness. They are put back.
+/// Share of the face's diagonal by which control points may lie outside the surface; they are moved to its border.
 const OUTSIDE: f64 = 1e-5;
 
 /// Share of a domain that a curve may be moved by to meet the one before it.
 const NEAR: f64 = 1e-7;
 
-/// Share of a domain within which points are the same: what weights divided out again leave.
+/// Share of a domain within which points are the same: the rounding of weights multiplied in and divided out.
 const ROUNDING: f64 = 1e-13;
 
-/// Share of a period that a joint may span: farther, the source means the way around.
+/// Share of a period that a joint may span; a wider one is a way around the surface.
 const AROUND: f64 = 0.25;
 
 /// Share of the face's diagonal by which a loop may be open, as for loops of edges.
@@ -43,14 +43,14 @@ struct Joined {
 /// The face of a spline whose loops are curves in its own `(u, v)`, in any order and direction; `map` is the
 /// spline's, `tolerance` in mm.
 ///
-/// Curves keep their image and their parametrisation. [`BuiltFace::deviation`] tells how far a curve was moved to
-/// meet the one before it: by no more than the tolerance. Wider gaps, up to a twentieth of the face, are closed by
-/// straight pieces and told. [`BuiltFace::gap`] tells how far control points were off the surface, beyond its border:
-/// `1e-5` of the face's diagonal at most. They are put there, so no curve moves farther.
+/// Curves keep their image and their parametrisation. [`BuiltFace::deviation`] is how far a curve was moved to meet the
+/// one before it: by no more than the tolerance. Wider gaps, up to a twentieth of the face, are closed by straight
+/// pieces, with a note. [`BuiltFace::gap`] is how far control points lay outside the surface: `1e-5` of the face's
+/// diagonal at most. They are moved to its border, so no curve moves farther.
 ///
 /// # Errors
-/// [`BuildError`] where curves leave the domain, run around a closed surface, or bound nothing: then their images in
-/// space may still bound a face.
+/// [`BuildError`] where curves leave the domain, run around a closed surface, or bound nothing. Their images in space
+/// may still bound a face.
 pub fn face_in_parameters(
     id: u32,
     (surface, map): (&Surface, &SurfaceMap),
@@ -96,7 +96,7 @@ fn range(surface: &Surface) -> DVec2 {
     DVec2::new(u.1 - u.0, v.1 - v.0)
 }
 
-/// The curves of a loop as rational Bézier pieces within the domain; those that are a point are left out.
+/// The curves of a loop as rational Bézier pieces within the domain; curves that are a point are left out.
 fn inside(id: u32, (surface, map): (&Surface, &SurfaceMap), curves: &[CurveGeometry]) -> Result<Joined, BuildError> {
     let (u, v) = surface.domain();
     let (lo, hi) = (DVec2::new(u.0, v.0), DVec2::new(u.1, v.1));
@@ -127,7 +127,7 @@ fn length(map: &SurfaceMap, at: DVec2, step: DVec2) -> f64 {
 }
 
 impl Joined {
-    /// Makes each curve begin where the one before it ends; the widest gap in mm that took a piece of its own.
+    /// Makes each curve begin where the one before it ends. Returns the widest gap in mm that needed a straight piece.
     fn close(
         &mut self,
         (face, size): (u32, f64),

@@ -16,10 +16,9 @@ const STEPS: usize = 30;
 impl Support {
     /// Native parameters of the point of the surface nearest to `p`.
     ///
-    /// `hint`: parameters of a point near by; it chooses the period, the angle at a pole, and the
-    /// sheet where a surface passes twice through one point. `accept`: distance of `p` from the surface
-    /// in mm that is no reason to look farther than from the hint. Accuracy: rounding for closed
-    /// forms, Newton to stagnation elsewhere.
+    /// `hint`: parameters of a point near by; it chooses the period, the angle at a pole, and the sheet where a surface
+    /// passes twice through one point. `accept`: a foot found from the hint is taken if `p` is this near to it, mm;
+    /// else all of the surface is searched. Accuracy: rounding for closed forms, Newton to stagnation elsewhere.
     pub fn invert(&self, p: DVec3, hint: Option<DVec2>, accept: f64) -> DVec2 {
         let found = self.principal(p, hint, accept);
         hint.map_or(found, |h| self.unwrap(found, h))
@@ -140,7 +139,7 @@ impl Support {
     }
 }
 
-/// Parameters that together see every part of the curve.
+/// Parameters from which Newton's method reaches every part of the curve.
 fn seeds(curve: &Curve) -> Vec<f64> {
     match curve {
         Curve::Line { .. } => vec![0.0],
@@ -207,7 +206,7 @@ fn foot(
     if let Curve::Pieces(p) = curve
         && !p.creases.is_empty()
     {
-        // at a corner the derivative is that of one side only: the other side is seen from its own seed
+        // at a corner the derivative belongs to one side; the other side has a seed of its own
         let beside = |t: &f64| {
             let i = seeds.iter().position(|s| s == t)?;
             Some([i.checked_sub(1), Some(i + 1)].into_iter().flatten())

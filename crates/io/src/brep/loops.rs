@@ -27,7 +27,7 @@ pub(super) struct Loop {
     pub winding: [i32; 2],
 }
 
-/// What the faults of a bound are measured with.
+/// The face's number and size, for errors and limits.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
     /// Face number.
@@ -37,7 +37,7 @@ pub(super) struct Limits {
 }
 
 impl Loop {
-    /// Chains `strands`; `notes` receives what had to be healed.
+    /// Chains `strands`; `notes` receives what was repaired.
     ///
     /// # Errors
     /// [`BuildError::EmptyLoop`], [`BuildError::OpenLoop`].
@@ -236,8 +236,8 @@ fn side_along_pole(support: &Support, before: &Strand, here: &Strand, pole: usiz
     start
 }
 
-/// Whether an end of a strand may move to the joint, and the strand with it: along its own line, or
-/// by no more than ten times the target and a quarter of the tolerance. Farther, the strand stays true to its edge, which another
+/// Whether an end of a strand may move to the joint, and the strand with it. It may move along its own line, or by at
+/// most ten times the target and a quarter of the tolerance. Otherwise the strand stays true to its edge, which another
 /// face shares, and a straight piece leads to the vertex.
 fn may_pull(support: &Support, strand: &Strand, from: DVec2, to: DVec2) -> bool {
     let speed = support.speed(from);
@@ -255,7 +255,7 @@ fn joint(support: &Support, a: &Strand, b: &Strand, onward: DVec2) -> DVec2 {
     let guess = 0.5 * (end + start);
     let vertex: DVec3 = 0.5 * (a.vertices[1] + b.vertices[0]);
     let mut joint = support.invert(vertex, Some(guess), vertex.distance(support.point(guess)));
-    // a vertex far off the surface, or near a pole, says less than the curves do
+    // far off the surface, or near a pole, the curves' ends are more accurate than the vertex
     let speed = support.speed(guess);
     let apart = |p: DVec2, q: DVec2| ((p - q) * speed).length();
     let reach = apart(end, start) + vertex.distance(support.point(guess)) + support.eps;

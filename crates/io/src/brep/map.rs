@@ -1,4 +1,4 @@
-//! Surfaces evaluated as they stand in the file, before there is a carrier.
+//! Surfaces evaluated as the file states them, before there is a carrier.
 
 use super::SurfaceGeometry;
 use super::support::Support;
@@ -13,7 +13,7 @@ impl SurfaceMap {
     /// `eps`: distance in mm below which two points are the same.
     ///
     /// # Errors
-    /// What is wrong with the surface's numbers.
+    /// Why its numbers define no surface.
     pub fn new(surface: &SurfaceGeometry, eps: f64) -> Result<Self, &'static str> {
         Support::new(surface, eps).map(Self)
     }

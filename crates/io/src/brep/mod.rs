@@ -1,4 +1,4 @@
-//! Boundary representation as CAD files state it, and its exact turn into [`Face`](crate::model::Face)s.
+//! Boundary representation as CAD files state it, and its exact conversion to [`Face`](crate::model::Face)s.
 //!
 //! A file says: *this analytic or spline surface, bounded by these edges in space*. The engine draws:
 //! *this rational B-spline surface, trimmed by these loops in its (u, v) domain*. This module is the
@@ -17,13 +17,13 @@
 //! |---|---|
 //! | edges and faces of a body that contradict each other | `settle` |
 //! | curves and surfaces made ready | `curve`, `pieces`, `edge`; `support`, `invert`, `spline` |
-//! | those defined by others | `derived`, `approximate` |
+//! | curves and surfaces derived from other ones | `derived`, `approximate` |
 //! | edge → pre-image in the standard's own `(u, v)` | `order`; `trace`, `border`, `preimage`, `strand` |
 //! | strands → loops without seams, oriented | `loops`; `rims`, `cut`; `nest` |
 //! | the standard's `(u, v)` → a spline's | `law`, `carrier`, `fit` |
 //! | loops stated in a spline's own `(u, v)` | `given` |
 //!
-//! Before that, `sweep` makes the faces of a solid that a plane area draws; `similarity` copies curves and surfaces.
+//! Before these steps, `sweep` makes the faces of swept solids, and `similarity` copies curves and surfaces.
 
 mod approximate;
 mod border;
@@ -125,8 +125,8 @@ pub enum SurfaceGeometry {
         direction: DVec3,
     },
     BSpline(Surface),
-    /// Only this rectangle of the basis' parameters: what a face shows that has no loop, or whose loops
-    /// are holes in the [natural border](Boundary::Natural).
+    /// This rectangle of the basis' parameters only. A face without loops shows all of it; loops may be holes in it,
+    /// its [natural border](Boundary::Natural).
     Window {
         basis: Box<SurfaceGeometry>,
         u: (f64, f64),
@@ -228,7 +228,7 @@ pub struct FaceGeometry {
     pub bounds: Vec<Boundary>,
     /// The face's outward normal is the surface's.
     pub same_sense: bool,
-    /// The directions of its loops are contradicted by its neighbours: where only they say which side of them on a
-    /// closed surface is the face, the smaller one is.
-    pub doubtful: bool,
+    /// The neighbours contradict the directions of its loops. On a closed surface, where only directions say which side
+    /// of the loops is the face, the smaller side is taken.
+    pub ambiguous: bool,
 }

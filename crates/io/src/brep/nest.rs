@@ -9,21 +9,20 @@ use super::{BuildError, law};
 use glam::DVec2;
 use std::rc::Rc;
 
-/// What the directions of loops are worth.
+/// Whether the directions of a face's loops can be trusted.
 pub(super) enum Directions<'n> {
     /// They keep the face on their left.
     Sound,
-    /// They contradict each other, or what else is stated; what is guessed against them is told.
-    Doubtful(&'n mut Vec<String>),
+    /// They contradict each other or the neighbours; a note says what was guessed against them.
+    Ambiguous(&'n mut Vec<String>),
 }
 
 /// Unrolled loops of a face, outer ones counter-clockwise and holes clockwise, without winding.
 ///
-/// The given directions are read in one case only: on a closed surface whose loops can all be
-/// contracted, they say whether the face is inside or outside of them; where they cannot be believed, it is the smaller
-/// part. A loop that runs along an edge
-/// twice, once each way, has the face on both sides of it and so needs no direction (and real files
-/// get it wrong there): the face is what it goes around.
+/// The given directions are read in one case only: on a closed surface whose loops can all be contracted, they say
+/// whether the face is inside or outside of the loops. If they are ambiguous, the face is the smaller part. A loop that
+/// runs along an edge twice, once each way, has the face on both sides of that edge. Its direction is not read, since
+/// real files get it wrong there: the face is the area that the loop goes around.
 pub(super) fn arrange(
     support: &Support,
     loops: Vec<Loop>,
@@ -37,7 +36,7 @@ pub(super) fn arrange(
     let outside = match directions {
         _ if !told_by_direction => false,
         Directions::Sound => is_outside(support, &loops),
-        Directions::Doubtful(notes) => {
+        Directions::Ambiguous(notes) => {
             let outside = share_inside(support, &loops) > 0.5;
             if outside != is_outside(support, &loops) {
                 let what = "its loops do not say which side of them it is; the smaller one is taken";
@@ -133,8 +132,8 @@ fn orient(support: &Support, loops: &mut [Loop]) {
     }
 }
 
-/// How many other polygons hold each one: a sweep along the axis on which they are the shorter, so that only those
-/// whose boxes meet are asked.
+/// How many other polygons hold each one. A sweep along the axis on which the polygons are shorter compares only
+/// polygons whose boxes meet.
 pub(super) fn depths(polygons: &[Vec<DVec2>]) -> Vec<usize> {
     let boxes: Vec<(DVec2, DVec2)> = polygons.iter().map(|p| bounds(p)).collect();
     let whole = boxes.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), (lo, hi)| (a.min(*lo), b.max(*hi)));

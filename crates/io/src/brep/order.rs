@@ -1,21 +1,21 @@
 //! The edges of a bound in an order and in directions that make a loop.
 //!
 //! ```text
-//!   listed  a─▶b  c─▶d  b─▶c  a─▶d          healed  a─▶b  b─▶c  c─▶d  d─▶a
+//!   listed  a─▶b  c─▶d  b─▶c  a─▶d          sorted  a─▶b  b─▶c  c─▶d  d─▶a
 //! ```
 //!
-//! An order that joins up within the tolerance is never touched: a loop may pass a vertex twice, and only
-//! the list says how.
+//! An order that joins up within the tolerance is left alone: a loop may pass a vertex twice, and only the list says in
+//! which order.
 
 use super::edge::EdgeCurve;
 use glam::DVec3;
 
-/// Edges of a loop that are put in order at most: each asks all others.
+/// Edges of a loop that are sorted at most: the cost is their square.
 const MOST: usize = 4096;
 
-/// Puts edges in order and turns around those that do not begin where the one before ends, but end there.
-/// Vertices within `50 eps` mm meet. True when half of them or more were turned: they do not say which way the loop runs.
-pub(super) fn heal(edges: Vec<EdgeCurve>, face: u32, eps: f64, notes: &mut Vec<String>) -> (Vec<EdgeCurve>, bool) {
+/// Sorts edges, and turns each one around that does not begin where the one before ends, but ends there. Vertices
+/// within `50 eps` mm meet. True when half of the edges or more were turned: the loop's direction is then unknown.
+pub(super) fn sort(edges: Vec<EdgeCurve>, face: u32, eps: f64, notes: &mut Vec<String>) -> (Vec<EdgeCurve>, bool) {
     let edges = match sorted(&edges, eps) {
         Some(order) => {
             notes.push(format!("face #{face}: the edges of a loop were put in order"));
@@ -30,8 +30,8 @@ fn near(p: DVec3, q: DVec3, eps: f64) -> bool {
     p.distance(q) <= 50.0 * eps
 }
 
-/// An order that joins up, where the given one does not and there is one: from the first edge always on to
-/// the nearest that begins, or else ends, where the last one ended.
+/// An order that joins up, where the given one does not and such an order is found: from the first edge always on to
+/// the nearest edge that begins, or else ends, where the last one ended.
 fn sorted(edges: &[EdgeCurve], eps: f64) -> Option<Vec<usize>> {
     let n = edges.len();
     let touch = |a: &EdgeCurve, b: &EdgeCurve| a.vertices.iter().any(|p| b.vertices.iter().any(|q| near(*p, *q, eps)));

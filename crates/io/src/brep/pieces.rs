@@ -20,7 +20,7 @@ struct Reach<'a> {
     /// Where the piece starts and ends.
     start: f64,
     end: f64,
-    /// What of that lies inside.
+    /// The part of the piece within the range.
     from: f64,
     to: f64,
     piece: &'a Bezier<DVec4>,

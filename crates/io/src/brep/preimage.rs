@@ -1,4 +1,4 @@
-//! The strands that an edge leaves on its support.
+//! From an edge to strands: its pre-image in the support's parameters.
 //!
 //! ```text
 //!   plane              affine image of the curve, exact
@@ -109,9 +109,8 @@ impl Strand {
 
 /// The line of constant coordinate that a trace follows within the target: its axis and value.
 ///
-/// Lines met before on the face keep their number, at the period nearest to this trace. The border of
-/// a spline is met within ten times the target: edges along it are often approximations of it, and
-/// fitting their noise would serve nobody.
+/// Lines met before on the face keep their number, at the period nearest to this trace. The border of a spline counts
+/// within ten times the target: edges along it are often approximations of it, and a fit would only follow their noise.
 fn constant_line(support: &Support, trace: &Trace, lines: &mut Lines) -> Option<(usize, f64)> {
     let (axis, value, off, speed) = trace.constant(support)?;
     let close = |x: f64, reach: f64| (x - value).abs() * speed <= reach;
@@ -143,10 +142,11 @@ fn pole_stops(support: &Support, edge: &EdgeCurve) -> Vec<(f64, Option<usize>)> 
     stops
 }
 
-/// Share of the face's size by which edges may end behind a pole: the tip of a cone that its maker missed.
+/// Share of the face's size by which edges may run past a pole: how far files miss the tip of a cone.
 const BEHIND: f64 = 1e-4;
 
-/// Lets poles reach as far as edges that pass through them end behind them: those edges meet at the pole, which is told.
+/// Widens the reach of a pole to the edges that pass through it and end behind it. They then meet at the pole; a note
+/// says so.
 pub(super) fn widen_poles(
     support: &mut Support,
     uses: &[Vec<EdgeCurve>],
@@ -165,7 +165,7 @@ pub(super) fn widen_poles(
     for (pole, behind) in support.poles.iter_mut().zip(behind) {
         if behind > pole.reach {
             notes.push(format!("face #{face}: edges end {behind:.3e} mm behind the tip of the surface, and now at it"));
-            // the neighbour ends as far away as rounding tells
+            // the neighbouring edge ends at the same distance, up to rounding
             pole.reach = 1.01 * behind;
         }
     }
@@ -174,8 +174,8 @@ pub(super) fn widen_poles(
 /// Share of the face's size by which edges may end before a pole or beside it.
 const BESIDE: f64 = 5e-3;
 
-/// Lets poles reach as far as edges end before them or beside them, those among them where a turned profile passes its
-/// axis without meeting it: those edges meet at the pole, which is told.
+/// Widens the reach of poles to the edges that end before or beside them. A point where a turned profile passes its
+/// axis without meeting it is such a pole. The edges then meet there; a note says so.
 pub(super) fn tips_beside(
     support: &mut Support,
     uses: &[Vec<EdgeCurve>],
@@ -190,7 +190,7 @@ pub(super) fn tips_beside(
             notes.push(format!(
                 "face #{face}: edges end {farthest:.3e} mm beside the tip of the surface, and now at it"
             ));
-            // the neighbour ends as far away as rounding tells
+            // the neighbouring edge ends at the same distance, up to rounding
             pole.reach = 1.01 * farthest;
         }
     }
@@ -212,7 +212,7 @@ fn passed_poles(support: &Support, edge: &EdgeCurve) -> Vec<(f64, Option<usize>)
         let (last, most) = (nodes.len() - 1, d.iter().copied().fold(0.0, f64::max));
         for i in 0..=last {
             let (before, after) = (i.saturating_sub(1), (i + 1).min(last));
-            // an end at the pole is no passing, and one far from it lies before it
+            // an end at the pole does not pass it, and an end far from the pole lies before it
             let end = (i == 0 || i == last) && (d[i] <= pole.reach || d[i] > CLOSE * most);
             if end || d[i] > d[before] || d[i] > d[after] {
                 continue;

@@ -1,4 +1,4 @@
-//! Edges and faces of one body that contradict each other: what most of them agree on wins.
+//! Edges and faces of one body that contradict each other: the majority wins.
 //!
 //! ```text
 //!   vertices  ●────────●  on both faces      the curve misses them: the straight edge between them, or the
@@ -8,7 +8,7 @@
 //!   ──▶ face B        on a closed surface that decides which side of it is the face
 //! ```
 //!
-//! An edge is settled once for all its faces, so neighbours go on agreeing.
+//! An edge is settled once for all its faces, so its faces still agree on it.
 
 use super::support::Support;
 use super::{Boundary, CurveGeometry, Edge, FaceGeometry, Frame, SurfaceGeometry};
@@ -17,24 +17,24 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// Share of an edge's length by which vertices may miss its curve, whatever the tolerance: nobody can see it.
+/// Share of an edge's length by which vertices may miss its curve, whatever the tolerance: too little to be seen.
 const FINE: f64 = 1e-6;
 
-/// Share of the distance by which a curve misses its vertices that another one may leave the faces.
+/// A replacement may leave the faces by this share of the distance by which the stated curve misses its vertices.
 const BETTER: f64 = 0.1;
 
-/// Cosine of the angle between a line and the vertices' own direction up to which they mean the same edge.
+/// Cosine of the angle between a line and the way from vertex to vertex, above which both mean the same edge.
 const ALONG: f64 = 0.99;
 
-/// How many tolerances vertices may miss a curve before that is told, where nothing better is known.
-const TOLD: f64 = 50.0;
+/// How many tolerances vertices may miss a curve by without a note, where no better curve is found.
+const REPORTED: f64 = 50.0;
 
 /// Steps along an edge in which its distance from a face is measured.
 const STEPS: u32 = 8;
 
-/// Puts right the lines and circles that miss their vertices, and marks the faces whose loops run against their
-/// neighbours' or whose normal points into a closed body that they enclose ([`FaceGeometry::doubtful`]). Returns
-/// what became of edges, by their numbers; `tolerance` in mm.
+/// Replaces lines and circles that miss their vertices. Marks the faces whose loops run against their neighbours', or
+/// whose normal points into a closed body that they enclose ([`FaceGeometry::ambiguous`]). Returns notes on edges, by
+/// their numbers; `tolerance` in mm.
 pub fn settle(edges: &mut [Edge], faces: &mut [&mut FaceGeometry], closed: bool, tolerance: f64) -> Vec<(u32, String)> {
     let limit = |e: &Edge| tolerance.max(FINE * e.start.distance(e.end));
     let off = |(index, e): (usize, &Edge)| (missed(e) > limit(e)).then_some((index, Vec::new()));
@@ -51,7 +51,7 @@ pub fn settle(edges: &mut [Edge], faces: &mut [&mut FaceGeometry], closed: bool,
     let mut notes = Vec::new();
     for (index, users) in off {
         let Some(edge) = edges.get_mut(index) else { continue };
-        let (miss, told) = (missed(&*edge), TOLD * limit(&*edge));
+        let (miss, told) = (missed(&*edge), REPORTED * limit(&*edge));
         let supports = users.iter().filter_map(|at| Support::new(&faces[*at].surface, tolerance).ok());
         let told = match better(&*edge, &supports.collect::<Vec<_>>(), (miss, tolerance)) {
             Some(better) => {
@@ -63,7 +63,7 @@ pub fn settle(edges: &mut [Edge], faces: &mut [&mut FaceGeometry], closed: bool,
         };
         notes.push((edge.id, format!("its curve misses its vertices by {miss:.3e} mm{told}")));
     }
-    doubt(edges, faces, closed, tolerance);
+    mark_ambiguous(edges, faces, closed, tolerance);
     notes
 }
 
@@ -174,8 +174,8 @@ impl Arc {
     }
 }
 
-/// Marks the faces whose loops say less than they should about which side of a closed surface is meant.
-fn doubt(edges: &[Edge], faces: &mut [&mut FaceGeometry], closed: bool, tolerance: f64) {
+/// Marks the faces whose loops do not say reliably which side of a closed surface is meant.
+fn mark_ambiguous(edges: &[Edge], faces: &mut [&mut FaceGeometry], closed: bool, tolerance: f64) {
     // uses of each edge along and against it, as seen against the normals of its faces
     let mut count = vec![[0u32; 2]; edges.len()];
     for face in faces.iter() {
@@ -201,7 +201,7 @@ fn doubt(edges: &[Edge], faces: &mut [&mut FaceGeometry], closed: bool, toleranc
                 _ => {}
             }
         }
-        face.doubtful |= against > with || (closed && !face.same_sense && encloses(&face.surface, edges, tolerance));
+        face.ambiguous |= against > with || (closed && !face.same_sense && encloses(&face.surface, edges, tolerance));
     }
 }
 

@@ -1,7 +1,7 @@
-//! Copies of curves and surfaces under a similarity: replicas, plane curves put into space, and what sweeps move.
+//! Copies of curves and surfaces under a similarity: replicas, plane curves placed in space, parts of sweeps.
 //!
-//! Parameters stay, but for a mirrored surface whose formula wants a right-handed frame: there `u` runs
-//! the other way, and the normal of the formula is the opposite of the copy's.
+//! The copy keeps the parameters, except where a surface is mirrored and its formula needs a right-handed frame: there
+//! `u` runs the other way, and the normal of the formula is the opposite of the copy's.
 
 use super::{CurveGeometry, Frame, SurfaceGeometry};
 use crate::spline::{BSpline, Control, Surface};

@@ -13,7 +13,7 @@ pub(super) struct SplineForm {
     /// As the source states it.
     pub surface: Surface,
     grid: PatchGrid,
-    /// What each patch tells of where to search, once something was searched for.
+    /// Where each patch lies; made by the first search.
     places: OnceCell<Vec<PatchPlace>>,
     /// Parameter ranges.
     pub domain: [(f64, f64); 2],
@@ -23,7 +23,7 @@ pub(super) struct SplineForm {
     size: f64,
     /// Knots of low continuity, in `u` and in `v`; the seam of a closed direction is one.
     pub creases: [Vec<f64>; 2],
-    /// Evaluations since they were last asked for.
+    /// Evaluations since the last call of `take_work`.
     work: Cell<u64>,
     /// The patch that was evaluated last.
     near: Cell<usize>,
@@ -38,7 +38,7 @@ struct PatchPlace {
     seeds: OnceCell<Vec<DVec3>>,
 }
 
-/// Boxes that take as long to look at and to put in order as one evaluation.
+/// Boxes that take as long to test and to sort as one evaluation.
 const BOXES: u64 = 4;
 
 impl SplineForm {
@@ -176,7 +176,7 @@ impl SplineForm {
         self.grid.patches.len()
     }
 
-    /// Evaluations that inversion took since this was asked last.
+    /// Evaluations that inversion took since the last call.
     pub fn take_work(&self) -> u64 {
         self.work.take()
     }
@@ -255,8 +255,8 @@ impl SplineForm {
             if det <= 0.0 || !step.is_finite() {
                 break;
             }
-            // a quadratic iteration leaves less behind this step than what shrinking by the same factor once
-            // more would; the step is so short that the tangent plane is the surface
+            // convergence is quadratic, so the remaining error is below this step shrunk by the last factor again; the
+            // step is so short that the tangent plane is the surface
             let length = (step * DVec2::new(jet.du.length(), jet.dv.length())).length();
             if length <= fine || (length <= 1e5 * fine && length * length <= fine * before) {
                 let last = clamp(at + step);

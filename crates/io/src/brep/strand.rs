@@ -15,7 +15,7 @@ pub(super) enum Path {
     Line,
     /// Exact rational curves (planes only).
     Exact(Vec<Bezier<DVec3>>),
-    /// Whatever the trace says.
+    /// Along the trace.
     Traced,
 }
 
@@ -28,7 +28,7 @@ pub(super) struct Part {
     pub from: f64,
     /// Fraction of the edge at the strand's end.
     pub to: f64,
-    /// The pre-image at both, native: asked for with every point between.
+    /// The pre-image at both ends, native; every point between needs it.
     ends: [DVec2; 2],
 }
 
@@ -50,8 +50,7 @@ impl Part {
     }
 }
 
-/// A directed piece of a loop. Its ends are where the loop puts them; the path between follows,
-/// shifted by whatever that takes at each end and linearly in between.
+/// A directed piece of a loop. The loop sets its ends; the path between them is shifted with the ends, linearly.
 #[derive(Clone, Debug)]
 pub(super) struct Strand {
     /// First point, native.
@@ -64,14 +63,14 @@ pub(super) struct Strand {
     pub part: Option<Part>,
     /// Coordinates that are constant along it.
     pub locked: [bool; 2],
-    /// Poles that its ends are.
+    /// The poles at its ends.
     pub poles: [Option<usize>; 2],
     /// Its ends in space.
     pub vertices: [DVec3; 2],
 }
 
 impl Strand {
-    /// A straight strand that no edge asked for.
+    /// A straight strand that belongs to no edge.
     pub fn inserted(start: DVec2, end: DVec2) -> Self {
         Self {
             start,
@@ -109,8 +108,8 @@ impl Strand {
 
     /// Where the strand is at `s` in `[0, 1]` of its part, in native parameters.
     ///
-    /// For [`Path::Traced`] this is the path. For straight and exact paths it is the edge's own
-    /// pre-image, carried along with the ends: what the path is compared with.
+    /// For [`Path::Traced`] this is the path. For straight and exact paths it is the edge's own pre-image, shifted with
+    /// the ends: the path is compared with it.
     pub fn at(&self, support: &Support, s: f64) -> DVec2 {
         let Some(part) = &self.part else { return self.start.lerp(self.end, s) };
         if s == 0.0 {
@@ -122,7 +121,7 @@ impl Strand {
         self.pulled(part, s, part.at(support, s))
     }
 
-    /// The pre-image at `s`, carried along with the ends.
+    /// The pre-image at `s`, shifted with the ends.
     fn pulled(&self, part: &Part, s: f64, raw: DVec2) -> DVec2 {
         raw + (self.start - part.ends[0]) * (1.0 - s) + (self.end - part.ends[1]) * s
     }

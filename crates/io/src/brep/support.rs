@@ -86,22 +86,22 @@ pub(super) struct Support {
     allowed: Cell<u64>,
 }
 
-/// Evaluations that inversion may take for any face; real faces take some thousands, 31 426 at most so far.
+/// Evaluations that inversion may take for any face; real faces take some thousands.
 const FREE_WORK: u64 = 1 << 18;
 
 /// Evaluations that inversion may take beyond that for each patch of the surface and each node of an edge; real faces
-/// take some tens in all, 248 at most so far. Edges that have nothing to do with their surface would take as many as
-/// the fits may halve: a hundred for each sample, where Newton's method creeps.
+/// take some tens in all. An edge far from its surface, on which Newton's method creeps, would take a hundred for each
+/// sample, and fits would halve to the end.
 const WORK: u64 = 256;
 
-/// Steps of Newton's method once that is spent: enough where the edge is near its surface.
+/// Steps of Newton's method after that: enough where the edge is near its surface.
 const LOOSE_STEPS: usize = 8;
 
 impl Support {
     /// `eps`: distance in mm below which two points are the same; trim curves aim at a hundredth.
     ///
     /// # Errors
-    /// What is wrong with the surface's numbers.
+    /// Why its numbers define no surface.
     pub fn new(geometry: &SurfaceGeometry, eps: f64) -> Result<Self, &'static str> {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         let full = Some((0.0, TURN));
@@ -227,8 +227,8 @@ impl Support {
         self.spent.set(self.spent.get().saturating_add(evaluations));
     }
 
-    /// All that is allowed is spent: from now on inversion takes the first answer and few steps to it, traces are
-    /// straight between their samples where a crease is looked for, and fits are not refined.
+    /// The allowed evaluations are spent. From now on inversion takes the first foot in few steps, traces are straight
+    /// between their samples where a crease is looked for, and fits are not refined.
     pub fn exhausted(&self) -> bool {
         self.spent.get() >= self.allowed.get()
     }
@@ -281,7 +281,7 @@ impl Support {
         near.map(pole).filter(|tip| self.pole_at(tip.point, distance).is_none()).collect()
     }
 
-    /// What the surface is called in the face.
+    /// The face's kind of surface.
     pub fn kind(&self) -> SurfaceKind {
         match self.form {
             Form::Plane => SurfaceKind::Plane,
@@ -352,7 +352,7 @@ impl Support {
     }
 
     /// By how much a trim curve may leave the pre-image of an edge that lies `gap` mm off the surface: a hundredth of
-    /// that, for no more is known about where it is.
+    /// `gap`, since the place of the edge is not known better.
     pub fn target_of(&self, gap: f64) -> f64 {
         self.target.max((1e-2 * gap).min(self.noise))
     }
@@ -390,7 +390,7 @@ impl Support {
         DVec2::new(one(0), one(1))
     }
 
-    /// The pole that `p` is.
+    /// The pole at `p`.
     pub fn pole_of(&self, p: DVec3) -> Option<usize> {
         self.poles.iter().position(|pole| pole.point.distance(p) <= pole.reach)
     }

@@ -47,7 +47,7 @@ impl Motion {
         }
     }
 
-    /// What a point draws; `None` where it stays.
+    /// The edge that a point draws; `None` where the point stays.
     fn rail(self, id: u32, p: DVec3, still: f64) -> Option<Edge> {
         match self {
             Self::Along(way) => {
@@ -82,7 +82,7 @@ impl Motion {
         Some(SurfaceGeometry::Plane { frame })
     }
 
-    /// What a curve draws.
+    /// The surface that a curve draws.
     fn side(self, profile: CurveGeometry) -> SurfaceGeometry {
         let profile = Box::new(profile);
         match self {
@@ -146,8 +146,8 @@ pub fn sweep(
         let surface = SurfaceGeometry::Plane { frame: plane };
         let (moved, _) = Similarity::new(end).surface(surface.clone()).ok_or(far)?;
         let first = bounds.into_iter().map(Boundary::Edges).collect();
-        faces.push(FaceGeometry { id, surface, bounds: first, same_sense: !ahead, doubtful: false });
-        faces.push(FaceGeometry { id, surface: moved, bounds: last, same_sense: ahead, doubtful: false });
+        faces.push(FaceGeometry { id, surface, bounds: first, same_sense: !ahead, ambiguous: false });
+        faces.push(FaceGeometry { id, surface: moved, bounds: last, same_sense: ahead, ambiguous: false });
     }
     Ok(faces)
 }
@@ -202,7 +202,8 @@ impl Sweep<'_> {
         Some(last)
     }
 
-    /// What turns: of a closed curve the part from point to point, since the rest draws the same surface inside out.
+    /// The curve that turns. A closed curve is cut to the part from point to point: the rest draws the same surface
+    /// inside out.
     fn profile(&self, curve: &CurveGeometry, from: DVec3, to: DVec3) -> CurveGeometry {
         let basis = if let CurveGeometry::Trimmed { basis, .. } = curve { basis } else { curve };
         let closed = matches!(basis, CurveGeometry::Circle { .. } | CurveGeometry::Ellipse { .. });
@@ -261,7 +262,7 @@ impl Sweep<'_> {
         };
         // u and v change places between the two surfaces
         let outward = (ahead == same_sense) != around;
-        Some(Some(FaceGeometry { id: self.id, surface, bounds, same_sense: outward, doubtful: false }))
+        Some(Some(FaceGeometry { id: self.id, surface, bounds, same_sense: outward, ambiguous: false }))
     }
 }
 

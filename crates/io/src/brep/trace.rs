@@ -1,5 +1,5 @@
-//! The pre-image of an edge on its support: points of the curve inverted in order, unwrapped, and
-//! able to answer for any parameter in between.
+//! The pre-image of an edge on its support. Points of the curve are inverted in order and unwrapped; the trace is then
+//! evaluated at any parameter between them.
 
 use super::border::Border;
 use super::edge::EdgeCurve;
@@ -18,8 +18,8 @@ pub(super) struct Trace {
     pub at_pole: [bool; 2],
     /// Largest distance in mm of a sampled point of the curve from the support.
     pub gap: f64,
-    /// Distance in mm from the support up to which the neighbour's parameters are a safe start: no
-    /// farther than where a search of the whole surface found nothing nearer.
+    /// Distance in mm from the support up to which a foot found from the neighbour's parameters is taken: no farther
+    /// than where a search of the whole surface found nothing nearer.
     accept: f64,
 }
 
@@ -36,7 +36,7 @@ impl Trace {
         poles: [Option<usize>; 2],
         hint: Option<DVec2>,
     ) -> Self {
-        // a sample beside a pole that the edge passes tells no angle, and one at it none at all
+        // the angle of a sample beside a pole that the edge passes is inexact, and a sample at the pole has none
         let beside = |end: f64| if end > 0.0 && end < 1.0 { BESIDE * (to - from) } else { 0.0 };
         let inside = [from + beside(from), to - beside(to)];
         let mut nodes: Vec<f64> = edge.nodes().into_iter().filter(|s| *s > inside[0] && *s < inside[1]).collect();
@@ -83,7 +83,7 @@ impl Trace {
         const STEPS: u32 = 8;
         let steps = (0..=STEPS).map(|i| f64::from(i) / f64::from(STEPS));
         let samples = steps.map(|s| (s, border.at(edge.parameter(s)))).collect();
-        // the distance to the border bounds that to the surface: twice it is no reason to look elsewhere
+        // the distance to the border bounds the distance to the surface; within twice that no search is needed
         let accept = (1e-2 * support.eps).max(2.0 * border.gap);
         Self { accept, ..Self::of_samples(edge, samples, border.gap) }
     }
@@ -91,7 +91,7 @@ impl Trace {
     /// Inverts the point at `s`, which becomes a sample; learns how far from the support the edge may be.
     fn look(&mut self, support: &Support, s: f64, hint: Option<DVec2>) -> DVec2 {
         let point = self.edge.point(s);
-        // a residual above `accept` means that the search was made, and is the truth
+        // a residual above `accept` comes from a search of the whole surface
         let (p, distance) = support.nearest(point, hint, self.accept);
         self.accept = self.accept.max(1.5 * distance);
         self.gap = self.gap.max(distance);

@@ -1,4 +1,4 @@
-//! Boolean expressions without complements: what a file of unions, intersections and differences can say.
+//! Boolean expressions without complements, for files that have unions, intersections and differences.
 //!
 //! ```text
 //!   each node as a term, or as everything but a term     a + !b = !(b - a)      !a * !b = !(a + b)
@@ -8,7 +8,7 @@
 
 use crate::csg::{Node, Op, Tree};
 
-/// One term; others are named by their places, which come before.
+/// One term; it names earlier terms by their places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Term {
     /// A primitive, by its index.
@@ -17,12 +17,12 @@ pub(super) enum Term {
     Pair(Op, usize, usize),
 }
 
-/// An expression: the last term, or everything but that.
+/// An expression: the last term, or its complement.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Expression {
     /// At least one.
     pub terms: Vec<Term>,
-    /// The solid is what the last term is not.
+    /// The solid is the complement of the last term.
     pub all_but: bool,
 }
 
@@ -63,7 +63,7 @@ pub(super) fn expression(tree: &Tree) -> Expression {
     Expression { terms, all_but }
 }
 
-/// The intersection of two terms, or of everything but them; `turned`: everything but that.
+/// The intersection of two terms or of their complements; `turned`: the complement of that.
 fn joined(
     push: &mut impl FnMut(Term) -> usize,
     (a, not_a): (usize, bool),

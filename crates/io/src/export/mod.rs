@@ -20,7 +20,7 @@ use crate::model::{Face, Part};
 use glam::DAffine3;
 use std::fmt;
 
-/// A thing of a model that a file has, or has not.
+/// A part or a solid of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Item {
     /// Index into [`Model::parts`](crate::model::Model::parts).
@@ -41,7 +41,7 @@ impl fmt::Display for Item {
 /// Something of a model that is not in the file as it was in the model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExportWarning {
-    /// What it happened to.
+    /// The part or solid.
     pub item: Item,
     /// What was wrong and what was done.
     pub message: String,
@@ -54,10 +54,10 @@ pub enum ExportError {
     /// The operating system refused.
     #[error("{0}")]
     Write(#[from] std::io::Error),
-    /// An instance names a part that is not there.
+    /// An instance names a part that does not exist.
     #[error("instance {instance} names part {part} of {parts}")]
     Part { instance: usize, part: usize, parts: usize },
-    /// The model holds a number that is not one.
+    /// An instance's transform is not finite.
     #[error("instance {instance} has a transform that is not finite or has no inverse")]
     Transform { instance: usize },
     /// A loop that cannot be a curve.

@@ -51,14 +51,14 @@ pub(super) enum Operand {
         major: f64,
         minor: f64,
     },
-    /// What lies behind a plane; the unit normal points out.
+    /// The half-space behind a plane; the unit normal points out.
     HalfSpace {
         point: DVec3,
         normal: DVec3,
     },
-    /// What lies inside the faces of a part.
+    /// The volume within the faces of a part.
     Faces(Part),
-    /// What lies inside meshes, placed by a transform.
+    /// The volume within meshes, placed by a transform.
     Meshes(Vec<Mesh>, DAffine3),
 }
 
@@ -135,7 +135,7 @@ pub(super) fn faces(shape: &Shape) -> Result<Part, String> {
     body.map(|body| body.part).map_err(|e| e.to_string())
 }
 
-/// A transform, and what it keeps.
+/// A transform, and the lengths and angles that it keeps.
 struct Frame {
     transform: DAffine3,
     /// Unit columns.

@@ -56,7 +56,7 @@ pub struct NamedCamera {
     pub lens: Lens,
 }
 
-/// What a file asks of its picture.
+/// The picture settings of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PictureSettings {
     /// Width and height in pixels.

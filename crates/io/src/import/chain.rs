@@ -9,7 +9,7 @@ pub(super) const ROUNDING: f64 = 1e-9;
 
 /// The loop of `curves`, counter-clockwise or (`hole`) clockwise.
 ///
-/// Ends that differ by rounding become one point; a wider gap is closed by a line, which `notes` tells, when
+/// Ends that differ by rounding become one point; a wider gap is closed by a line, with a note in `notes`, when
 /// `may_close(end, start, size)` allows it for the size of the loop.
 ///
 /// # Errors

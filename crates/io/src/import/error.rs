@@ -37,7 +37,7 @@ pub enum ImportError {
     /// More than half of the records are not records.
     #[error("{file}:{line}: gave up: {bad} of the first {seen} records cannot be read")]
     Nonsense { file: String, line: usize, bad: usize, seen: usize },
-    /// Text or bytes without anything that the format knows.
+    /// Text or bytes in which the format's reader finds nothing.
     #[error("{file}: holds nothing that is {format}")]
     Nothing { file: String, format: &'static str },
     /// Rhino's form, damaged or not built in.
@@ -46,7 +46,7 @@ pub enum ImportError {
     /// The engine's own form, of another version or damaged.
     #[error("{file}: {source}")]
     Native { file: String, source: crate::native::NativeError },
-    /// A scene that is not one.
+    /// An invalid scene.
     #[error("{file}:{line}:{column}: {message}")]
     Scene { file: String, line: usize, column: usize, message: String },
     /// Polygons that are no control mesh of a smooth surface.

@@ -1,4 +1,4 @@
-//! Models in several files: parts that stand in files of their own.
+//! Models in several files: parts that stand in other files.
 //!
 //! ```text
 //!   assembly.stp ──mentions──▶ "bolt.stp", places ──Files::find──▶ the file's own name ──Files::read──▶ bytes
@@ -6,8 +6,8 @@
 //!        └── parts, instances ◀── each place of each file ◀── read once ┘  mentions of its own, and so on
 //! ```
 //!
-//! The library looks for no file by itself: the caller's [`Files`] find and read them, [`Folders`] on a disk. What is not found,
-//! cannot be read or contains itself is left out with a warning that names it.
+//! The library opens no file by itself: the caller's [`Files`] find and read them, [`Folders`] on a disk. A file that
+//! is not found, cannot be read or contains itself is left out with a warning that names it.
 
 use super::{Import, ImportError, Options, Place, Warnings};
 use crate::model::{Colour, Instance, Model, Primitive, Solid, SolidError};
@@ -42,7 +42,7 @@ pub(super) struct Mention {
     pub stands: Vec<(DAffine3, Option<Colour>, String)>,
 }
 
-/// What a file holds, and what it leaves to others.
+/// A file's own content, and its mentions of other files.
 pub(super) type Read = (Import, Vec<Mention>);
 
 /// Largest number of instances of all files together.

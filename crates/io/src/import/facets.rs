@@ -15,8 +15,8 @@ pub(super) const MAX_CORNERS: usize = 10_000;
 
 /// Triangles of a polygon, as places in `corners`; they run the way the polygon does.
 ///
-/// Every side of the polygon is a side of one triangle. A polygon without area, or one that crosses
-/// itself so that it cannot be told where it is, becomes a fan. Cost: linear for convex polygons.
+/// Every side of the polygon is a side of one triangle. A polygon without area, or one that crosses itself so that its
+/// inside is undefined, becomes a fan. Cost: linear for convex polygons.
 pub(super) fn triangulate(corners: &[DVec3]) -> Vec<[u32; 3]> {
     let count = corners.len();
     let fan = || (1..count as u32 - 1).map(|i| [0, i, i + 1]).collect::<Vec<_>>();
@@ -102,8 +102,8 @@ fn with_dropped(triangles: Vec<[u32; 3]>, following: &[u32]) -> Vec<[u32; 3]> {
 
 /// The meshes together bound a volume: every side of a triangle has exactly one opposite.
 ///
-/// Vertices are the same when their coordinates are; nothing is said of self-intersection. A mesh
-/// without triangles bounds nothing.
+/// Vertices are the same when their coordinates are; self-intersection is not tested. A mesh without triangles bounds
+/// nothing.
 pub(super) fn closed<'m>(meshes: impl IntoIterator<Item = &'m Mesh> + Clone) -> bool {
     let mut numbers = HashMap::new();
     let mut number = |p: DVec3| {

@@ -1,4 +1,4 @@
-//! Points of curves and parameters of points: what trimming by points needs.
+//! Points at parameters and parameters of points on curves, for trimming.
 
 use crate::brep::{CurveGeometry, Frame};
 use crate::math::golden::section;

@@ -10,10 +10,9 @@
 //!                                                    └▶ native ──────┘
 //! ```
 //!
-//! A file that is not what it claims to be is an [`ImportError`]. Everything smaller (a bad record, a
-//! face that cannot be built) is left out, and a [`Warning`] names the file and the line or entity;
-//! [`Import::summary`] counts what is there and what is not.
-//! Time and memory are bounded by a multiple of the file's size, whatever its content.
+//! A file of another format than it claims is an [`ImportError`]. Anything smaller (a bad record, a face that cannot be
+//! built) is left out, and a [`Warning`] names the file and the line or entity; [`Import::summary`] counts the model's
+//! contents and the losses. Time and memory are bounded by a multiple of the file's size, whatever its content.
 
 mod brlcad;
 mod bv;
@@ -65,18 +64,18 @@ use crate::model::Model;
 use std::io::Read;
 use std::path::Path;
 
-/// What a file held.
+/// A model, and the report of reading it.
 #[derive(Clone, Debug, Default)]
 pub struct Import {
     /// Parts and instances, in millimetres.
     pub model: Model,
-    /// What was left out or healed, in the order in which it was found.
+    /// What was left out or repaired, in the order in which it was found.
     pub warnings: Vec<Warning>,
     /// Counts for people.
     pub report: ImportReport,
     /// Cameras that the file names; only scenes have any.
     pub cameras: Vec<NamedCamera>,
-    /// What the file asks of its picture; only scenes ask.
+    /// The file's picture settings; only scenes have any.
     pub picture: PictureSettings,
 }
 
@@ -91,8 +90,8 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
     open_with(path, &Options::default())
 }
 
-/// As [`open`], and tells how far it has come; parts that stand in other files are looked for where
-/// [`Options::files`] says, and left out without it.
+/// As [`open`], with progress and limits. Parts that stand in other files are looked for where [`Options::files`] says,
+/// and left out without it.
 ///
 /// # Errors
 /// As [`open`].
@@ -109,7 +108,7 @@ fn found_file(bytes: Vec<u8>, found: &str, options: &Options<'_>) -> Result<exte
     read(&bytes, found, Path::new(found).parent(), options)
 }
 
-/// Reads a stream to its end, as [`open_with`]; `name` stands for it in messages, and its ending tells the format where
+/// Reads a stream to its end, as [`open_with`]; `name` is its name in messages, and its ending gives the format where
 /// the content does not. Other files that it names are not found.
 ///
 /// # Errors
@@ -121,7 +120,7 @@ pub fn read_from(stream: &mut dyn Read, name: &str, options: &Options<'_>) -> Re
     Ok(external::follow(first, name, &Options { files: None, ..*options }, &|_, _| unreachable!("no file is found")))
 }
 
-/// What is read here.
+/// The formats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
     Native,
@@ -133,7 +132,7 @@ enum Format {
     Bv,
     Scene,
     Obj,
-    /// By the ending that says so.
+    /// A file of triangles, with its ending.
     Mesh(&'static str),
 }
 
@@ -198,12 +197,12 @@ impl Format {
     }
 }
 
-/// Reads what has been loaded, and what it leaves to other files; data and materials are looked for in `folder`, if there
-/// is one.
+/// Reads loaded bytes, with the files that they mention. Data and materials are looked for in `folder`, if there is
+/// one.
 fn read(bytes: &[u8], name: &str, folder: Option<&Path>, options: &Options<'_>) -> Result<external::Read, ImportError> {
     options.tell(Stage::Parse { bytes: bytes.len() as u64 });
     let mut mentions = Vec::new();
-    // what is no text, or counts its bytes, is not decoded
+    // formats that are not text, or count bytes, are not decoded
     let lower = name.to_ascii_lowercase();
     let mesh_by_name = Format::named_mesh(lower.strip_suffix(".gz").unwrap_or(&lower));
     let text =
@@ -382,7 +381,7 @@ pub fn iges(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
 /// Reads OpenSCAD's flattened solids (`openscad -o x.csg`); `name` is the file's name in messages.
 ///
 /// # Errors
-/// [`ImportError::Solid`] names the line of what is no such text. A node that cannot be made is left out with a warning.
+/// [`ImportError::Solid`] names the line of the fault. A node that cannot be made is left out with a warning.
 pub fn scad(bytes: &[u8], name: &str, facets: Facets) -> Result<Import, ImportError> {
     decoded(bytes, name, |text| scad::read(text, name, facets, Path::new(name).parent()))
 }
@@ -390,8 +389,8 @@ pub fn scad(bytes: &[u8], name: &str, facets: Facets) -> Result<Import, ImportEr
 /// Reads BRL-CAD's text of solids (`g2asc`, version 5 and the older 4); `name` is the file's name in messages.
 ///
 /// # Errors
-/// [`ImportError::Solid`] names the line of what is no such text, or of the first object that is not read where nothing
-/// else is left.
+/// [`ImportError::Solid`] names the line of the fault, or of the first object that is not read where nothing else is
+/// left.
 pub fn brlcad(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     decoded(bytes, name, |text| brlcad::read(text, name))
 }

@@ -1,4 +1,4 @@
-//! Faces and meshes of formats that know names but no assembly, as a model.
+//! Faces and meshes of formats that have names but no assembly, as a model.
 //!
 //! ```text
 //!   (name, face) … ─┬─▶ a part a name ─▶ an instance each
@@ -12,13 +12,13 @@ use glam::DAffine3;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// A face whose curves in `(u, v)` are those of the file, with what was healed; or its number and why it is lost.
+/// A face whose curves in `(u, v)` are the file's, with notes on repairs; or its number and why it is lost.
 pub(super) type Stated = Result<(Face, Vec<String>), (u32, String)>;
 
 /// One part for the faces of each name and one for its meshes, in the order given, each placed once.
 ///
-/// Parts of meshes are closed where [`facets::closed`] says so, parts of faces never. The report gets the
-/// record of every face: nothing is fitted, so its deviation is zero.
+/// Parts of meshes are closed where [`facets::closed`] says so, parts of faces never. The report gets a record of every
+/// face: nothing is fitted, so the deviation is zero.
 pub(super) fn assemble(
     file: &str,
     faces: Vec<(String, Stated)>,

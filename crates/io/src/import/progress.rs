@@ -9,7 +9,7 @@ use super::{Facets, Files};
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// What an import is busy with.
+/// The stage of an import.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// The file is read, and decompressed if need be.
@@ -51,9 +51,10 @@ pub struct Options<'a> {
     /// Called at the beginning of each stage, before every body, after every face and some bytes of text, from several
     /// threads: it should return at once.
     pub progress: Option<&'a (dyn Fn(Stage) + Sync)>,
-    /// Most bytes of a file, before and after gzip is undone. Offsets are 32 bits wide: it is 4 GiB at most, and without it.
+    /// Most bytes of a file, before and after gzip is undone. Offsets are 32 bits wide: the limit is 4 GiB at most, and
+    /// by default.
     pub most_bytes: Option<u64>,
-    /// Where to look for files that others name, parts of an assembly; without it they are left out and named.
+    /// Finds parts of an assembly in other files; without it they are left out, each with a warning.
     /// [`Folders`](super::Folders) looks on a disk.
     pub files: Option<&'a dyn Files>,
     /// Whether round solids of OpenSCAD's files are round.
@@ -78,7 +79,7 @@ impl Options<'_> {
         self.most_bytes.unwrap_or(u64::MAX).min(u32::MAX.into())
     }
 
-    /// Tells the stage, if anybody listens.
+    /// Reports the stage, if there is a callback.
     pub(crate) fn tell(&self, stage: Stage) {
         if let Some(progress) = self.progress {
             progress(stage);
@@ -100,7 +101,7 @@ impl<'a> FaceCount<'a> {
         Self { options: *options, built: AtomicUsize::new(0), total }
     }
 
-    /// One more is done.
+    /// Counts a face.
     pub fn one(&self) {
         let built = self.built.fetch_add(1, Ordering::Relaxed) + 1;
         self.options.tell(Stage::Faces { built, total: self.total });
@@ -115,7 +116,7 @@ mod tests {
     use std::sync::Mutex;
 
     #[test]
-    fn every_stage_and_every_face_is_told_once() {
+    fn every_stage_and_every_face_is_reported_once() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/bracket.step");
         let stages = Mutex::new(Vec::new());
         let tell = |stage| stages.lock().unwrap().push(stage);

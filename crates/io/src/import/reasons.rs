@@ -10,10 +10,10 @@
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 
-/// What stands for numbers that differ.
+/// Replaces numbers that differ.
 const OTHERS: &str = "…";
 
-/// How often each thing was said.
+/// How often each message was given.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Reasons {
     /// By the words with [`OTHERS`] in place of every number: the words that all such messages share, and how many
@@ -22,7 +22,7 @@ pub struct Reasons {
 }
 
 impl Reasons {
-    /// Counts a message. What it is about, which ends in a number and a colon as in `face #3: `, does not tell it from others.
+    /// Counts a message. Its subject, which ends in a number and a colon as in `face #3: `, is ignored.
     pub fn add(&mut self, message: &str) {
         self.add_words(words(message), 1);
     }
@@ -40,7 +40,7 @@ impl Reasons {
         differ.for_each(|(shared, _)| OTHERS.clone_into(shared));
     }
 
-    /// Each thing that was said, with the numbers that are the same wherever it was said, and how often.
+    /// Each message, with the numbers that are the same in all of its kind, and how often it was given.
     pub fn iter(&self) -> impl Iterator<Item = (String, usize)> + '_ {
         self.said.values().map(|(words, count)| {
             let text = words.join(" ");
@@ -67,7 +67,7 @@ impl Serialize for Reasons {
     }
 }
 
-/// The words behind what the message is about.
+/// The words after the subject of a message.
 fn words(message: &str) -> Vec<String> {
     let mut words = Vec::new();
     for word in message.split_whitespace() {

@@ -24,20 +24,20 @@ pub enum Place {
     },
 }
 
-/// Something in a file that was left out, healed or guessed.
+/// Something in a file that was left out, repaired or guessed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Warning {
     /// The file.
     pub file: String,
     /// Where.
     pub place: Place,
-    /// What was wrong and what was done.
+    /// The fault, and what was done about it.
     pub message: String,
     /// How many occurrences this warning stands for; above 1 for the last one kept of its kind.
     pub count: usize,
 }
 
-/// Counts for people, not needed to draw.
+/// Counts for readers of the report; drawing does not use them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ImportReport {
     /// File format and schema, as the file names it.
@@ -52,11 +52,11 @@ pub struct ImportReport {
     pub edges: usize,
     /// Faces in the bodies before any was left out.
     pub faces: usize,
-    /// Triangle meshes, one a tessellated face that stands for no exact one.
+    /// Triangle meshes: one for each tessellated face that has no exact face.
     pub meshes: usize,
-    /// (u, v) curves in the file, of the faces that are read. STEP: none is used, for both faces of an edge are
-    /// trimmed from the one edge in space, so that neighbours agree. IGES: used where there is no curve in
-    /// space, or none that fits. OBJ and 3dm: they are the trims.
+    /// (u, v) curves in the file, of the faces that are read. STEP: none is used, since both faces of an edge are
+    /// trimmed from the one edge in space, so that neighbours agree. IGES: used where there is no curve in space, or
+    /// none that fits. OBJ and 3dm: they are the trims.
     pub pcurves: usize,
     /// Names of the assembly occurrences, by their path from the root.
     pub occurrences: Vec<String>,
@@ -64,7 +64,7 @@ pub struct ImportReport {
     pub external_files: Vec<String>,
     /// Files that were read beside the one that was opened: models, data and materials that it names.
     pub files_read: Vec<PathBuf>,
-    /// Those of them that were not read; what they hold is missing.
+    /// The files among them that were not read; their content is missing.
     pub missing_files: Vec<String>,
     /// Nodes of a Boolean solid by name, as the file has them, and of modifiers (`%`, `#`, `!`, `*`).
     pub nodes: BTreeMap<String, usize>,
@@ -72,14 +72,14 @@ pub struct ImportReport {
     pub warnings: BTreeMap<String, usize>,
     /// Faces left out, by reason.
     pub dropped: Reasons,
-    /// What else is left out, by kind and reason: bodies, occurrences, polygons, statements that cannot be read, ...
+    /// Everything else left out, by kind and reason: bodies, occurrences, polygons, unreadable statements, ...
     pub left_out: BTreeMap<String, Reasons>,
-    /// Healed faces, by what was healed.
-    pub healed: Reasons,
+    /// Repaired faces, by what was repaired.
+    pub repaired: Reasons,
     /// Largest [`FaceRecord::deviation`] of trim curves: the engine's own part of the error.
     pub deviation: f64,
-    /// Largest distance in millimetres of a surface that was made, not read, from what it stands for: an equation, data,
-    /// an offset, the limit of a subdivision.
+    /// Largest distance in millimetres of a generated surface from its definition: an equation, data, an offset, the
+    /// limit of a subdivision.
     pub made: f64,
     /// Vertices of subdivided meshes around which no polynomial patch is exact.
     pub irregular: usize,
@@ -87,7 +87,7 @@ pub struct ImportReport {
     pub gap: f64,
     /// Faces whose edges lie farther off their surface than the file's tolerance.
     pub sloppy: usize,
-    /// What the file holds beside bodies and is not drawn, by kind: hidden items, curves, annotations.
+    /// Content of the file beside bodies that is not drawn, by kind: hidden items, curves, annotations.
     pub ignored: BTreeMap<String, usize>,
     /// Layers by name, with the number of items that the file puts on each.
     pub layers: BTreeMap<String, usize>,
@@ -97,7 +97,7 @@ pub struct ImportReport {
     pub face_records: Vec<FaceRecord>,
 }
 
-/// What became of one face of the file. Lengths in millimetres.
+/// The result for one face of the file. Lengths in millimetres.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FaceRecord {
     /// Number in the source, as in [`Face::id`](crate::model::Face::id).
@@ -105,7 +105,7 @@ pub struct FaceRecord {
     /// Index of its part in the model; the number of parts for a face left out whose part has no other, and for a face
     /// of an operand of a Boolean solid.
     pub part: usize,
-    /// What its surface is; `None` when the face was left out, and `notes` says why.
+    /// The kind of its surface; `None` when the face was left out, and `notes` says why.
     pub kind: Option<SurfaceKind>,
     /// Degrees of the drawn surface in u and v.
     pub degree: [usize; 2],
@@ -115,14 +115,14 @@ pub struct FaceRecord {
     pub loops: usize,
     /// Trim curves in all loops.
     pub curves: usize,
-    /// Largest distance on the surface of a trim curve from the points nearest to its edge; of a surface that was made,
-    /// its distance from what it stands for.
+    /// Largest distance on the surface of a trim curve from the pre-image of its edge; of a generated surface, its
+    /// distance from its definition.
     pub deviation: f64,
     /// Largest distance of an edge from the surface: how well the file agrees with itself.
     pub gap: f64,
     /// The tolerance that the file states for this face.
     pub tolerance: f64,
-    /// What was healed or is doubtful; for a face that was left out, why.
+    /// What was repaired or is ambiguous; for a face that was left out, why.
     pub notes: Vec<String>,
 }
 
@@ -160,19 +160,19 @@ const KEPT_PER_KIND: usize = 10;
 /// The kind of warning that costs a face, which [`ImportReport::dropped`] counts.
 pub(crate) const FACE_LOST: &str = "face left out";
 
-/// What a kind of warning says of the model.
+/// What a kind of warning means for the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Loss {
     /// The model lacks something that the file states.
     LeftOut,
-    /// The file says itself that something is not to be seen, or it is nothing that could be.
+    /// The file hides it, or it is nothing that can be drawn.
     Beside,
     /// Nothing is lost.
     None,
 }
 
 impl Loss {
-    /// By how the kind ends: `... left out` and `... not drawn` say what they mean. Others that are losses are listed.
+    /// By the end of the kind: `... left out` and `... not drawn` are losses by their names. Other losses are listed.
     fn of(kind: &str) -> Self {
         const OTHERS: [&str; 16] = [
             "card skipped",
@@ -211,7 +211,7 @@ pub(crate) struct Warnings {
     list: Vec<Warning>,
     /// Kind: occurrences so far, index of the last kept warning.
     kinds: BTreeMap<&'static str, (usize, usize)>,
-    /// Of the kinds that say that something is not in the model, all of them.
+    /// All warnings of the kinds that mean a loss.
     missing: BTreeMap<&'static str, Reasons>,
 }
 
@@ -244,7 +244,7 @@ impl Warnings {
         self.list.push(Warning { file: self.file.clone(), place: place(), message, count: 1 });
     }
 
-    /// The warnings; their counts are added to the report's, by kind, and what they say of things that are not in the model.
+    /// The warnings; adds their counts to the report, by kind, and the losses by reason.
     pub fn finish(self, report: &mut ImportReport) -> Vec<Warning> {
         for (kind, (count, _)) in self.kinds {
             *report.warnings.entry(kind.to_owned()).or_default() += count;
@@ -264,7 +264,7 @@ impl Warnings {
 }
 
 impl ImportReport {
-    /// Keeps what is known about a face that was built, and returns the face.
+    /// Records a face that was built, and returns the face.
     pub(crate) fn record(&mut self, record: FaceRecord, built: BuiltFace) -> Face {
         let BuiltFace { face, mut notes, deviation, gap, lost } = built;
         notes.extend(lost);
@@ -286,7 +286,7 @@ impl ImportReport {
         face
     }
 
-    /// The same for a face whose surface was made: its deviation is that from what it stands for.
+    /// The same for a generated surface, whose deviation is the distance from its definition.
     #[cfg(feature = "scene")]
     pub(crate) fn record_made(
         &mut self,
@@ -301,8 +301,8 @@ impl ImportReport {
         face
     }
 
-    /// Adds what is known about a file that holds parts of this one; its parts begin at `part`. What concerns the whole
-    /// model, its format, writer and occurrences, stays.
+    /// Adds the report of a file that holds parts of this one; its parts begin at `part`. Format, writer and
+    /// occurrences of the whole model stay.
     pub(crate) fn absorb(&mut self, other: Self, part: usize) {
         let Self {
             format: _, written_by: _, occurrences: _, units, external_files, missing_files, face_records, ..
@@ -332,7 +332,7 @@ impl ImportReport {
             more.into_iter().for_each(|(name, count)| *counts.entry(name).or_default() += count);
         }
         self.dropped.extend(&other.dropped);
-        self.healed.extend(&other.healed);
+        self.repaired.extend(&other.repaired);
         other.left_out.iter().for_each(|(kind, why)| self.left_out.entry(kind.clone()).or_default().extend(why));
         self.files_read.extend(other.files_read);
         self.units.extend(units);
@@ -365,7 +365,7 @@ mod tests {
         assert!(list[KEPT_PER_KIND - 1].to_string().ends_with("(and 990 more of this kind)"));
     }
 
-    /// All of them, not only those that are kept; faces are counted by their own reasons.
+    /// All of them, not only the warnings that are kept; faces are counted by their own reasons.
     #[test]
     fn what_is_not_in_the_model_is_counted_by_reason() {
         let mut warnings = Warnings::new("a.stp");
@@ -374,7 +374,7 @@ mod tests {
         }
         warnings.push("blanked entity not drawn", || Place::File, || "type 144".into());
         warnings.push("hidden object not placed", || Place::File, || "lid".into());
-        warnings.push("face healed", || Place::File, || "turned".into());
+        warnings.push("face repaired", || Place::File, || "turned".into());
         warnings.push(FACE_LOST, || Place::File, || "no loop".into());
         let mut report = ImportReport::default();
         warnings.finish(&mut report);

@@ -1,4 +1,4 @@
-//! A solid under construction: what the readers of Boolean solids share.
+//! A solid under construction, for the readers of Boolean solids.
 //!
 //! ```text
 //!   add(shape, placed) ──▶ leaf ─┐

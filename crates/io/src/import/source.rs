@@ -13,7 +13,7 @@ const MAX_EXPANSION: u64 = 100;
 /// Expansion that is always allowed, whatever the factor.
 const FREE_EXPANSION: u64 = 1 << 20;
 
-/// How much of a stream is looked at before the rest is read: no format begins later.
+/// How much of a stream is read before its format must be recognised: no format begins later.
 const BEGINNING: u64 = 1 << 20;
 
 /// The bytes of a file, gzip undone.
@@ -31,11 +31,12 @@ pub(super) fn load(path: &Path, name: &str, options: &Options<'_>) -> Result<Vec
     if found.is_file() && size > 0 {
         return inflated(read_apart(path, size as usize).map_err(unreadable)?, name, limit);
     }
-    // a pipe that the shell has opened, or a file of a system that does not tell its size
+    // a pipe that the shell has opened, or a file of a system that states no size
     drain(&mut File::open(path).map_err(unreadable)?, name, limit, |_| true)
 }
 
-/// The bytes of a stream, gzip undone. `known` tells from the beginning, gzip undone, whether the rest is worth reading.
+/// The bytes of a stream, gzip undone. `known` decides from the beginning, gzip undone, whether the rest is worth
+/// reading.
 pub(super) fn drain(
     stream: &mut dyn Read,
     name: &str,
@@ -61,7 +62,7 @@ pub(super) fn drain(
 /// The bytes of a file beside the model, at most so many.
 ///
 /// # Errors
-/// In words.
+/// The reason in words.
 pub(super) fn beside(path: &Path, most: u64) -> Result<Vec<u8>, String> {
     let found = fs::metadata(path).map_err(|e| e.to_string())?;
     if let Some(what) = no_file(path, &found) {
@@ -72,7 +73,7 @@ pub(super) fn beside(path: &Path, most: u64) -> Result<Vec<u8>, String> {
     if bytes.len() as u64 > most { Err(format!("larger than {most} bytes, the most that is read")) } else { Ok(bytes) }
 }
 
-/// What cannot be read as a file, or might never end or begin.
+/// Why a path is no file to read: a folder, a device, a socket, or a named pipe that may have no writer.
 fn no_file(path: &Path, found: &Metadata) -> Option<&'static str> {
     if found.is_dir() {
         return Some("a folder, not a file");
@@ -87,7 +88,7 @@ fn no_file(path: &Path, found: &Metadata) -> Option<&'static str> {
         if kind.is_socket() {
             return Some("a socket, not a file");
         }
-        // a link is what shells make of pipes that somebody writes to
+        // shells make links of pipes that are being written to
         if kind.is_fifo() && fs::symlink_metadata(path).is_ok_and(|named| named.file_type().is_fifo()) {
             return Some("a named pipe, to which nobody may be writing");
         }
@@ -95,7 +96,8 @@ fn no_file(path: &Path, found: &Metadata) -> Option<&'static str> {
     None
 }
 
-/// A file's first `size` bytes: to give memory to what is read takes about as long as to copy it, so several threads do.
+/// A file's first `size` bytes, by several threads: the system takes about as long to map the memory as to copy the
+/// bytes.
 fn read_apart(path: &Path, size: usize) -> io::Result<Vec<u8>> {
     const SHARE: usize = 1 << 20;
     let mut bytes = vec![0; size];
@@ -111,7 +113,7 @@ fn is_gzip(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }
 
-/// Undoes gzip, if it is; output is bounded by [`MAX_EXPANSION`] and by `limit`.
+/// Undoes gzip, if the bytes are compressed; output is bounded by [`MAX_EXPANSION`] and by `limit`.
 pub(super) fn inflated(bytes: Vec<u8>, name: &str, limit: u64) -> Result<Vec<u8>, ImportError> {
     if !is_gzip(&bytes) {
         return Ok(bytes);
@@ -151,7 +153,7 @@ mod tests {
     fn gzip_bomb_is_an_error() {
         let bomb = gzip(&vec![b' '; 1 << 24]);
         assert!(matches!(inflated(bomb, "bomb.gz", ALL), Err(ImportError::Expansion { .. })));
-        // what is less than a bomb, but more than is to be read
+        // less than a bomb, but more than the limit
         assert!(matches!(inflated(gzip(&[b' '; 5000]), "b.gz", 4000), Err(ImportError::Expansion { limit: 4000, .. })));
     }
 
@@ -173,7 +175,7 @@ mod tests {
         fs::remove_file(&path).unwrap();
     }
 
-    /// A stream without an end: nothing of it is a format, or it is more than is read.
+    /// A stream without an end: no format is recognised in it, or it exceeds the limit.
     #[test]
     fn endless_streams_end() {
         let endless = || io::repeat(b' ');

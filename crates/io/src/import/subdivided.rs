@@ -5,7 +5,7 @@ use crate::construct::subdivide::{ControlMesh, Scheme, subdivide};
 use crate::model::{Bounds, Instance, Model};
 use std::path::Path;
 
-/// Share of a mesh's size within which surfaces are, where nothing else is asked for.
+/// Default distance from the limit surface, as a share of a mesh's size.
 const WITHIN: f64 = 1e-5;
 
 /// Reads the polygons of a Wavefront OBJ file as control meshes, and makes their smooth surfaces; one part an object, one

@@ -1,4 +1,4 @@
-//! The summary of an import: what the file states, how much of it the model has, and why the rest is missing.
+//! The summary of an import: the file's items, how many of them the model has, and why the rest is missing.
 
 use super::{Import, ImportReport, Reasons};
 use crate::model::{Model, Part, Shape};
@@ -16,30 +16,30 @@ pub struct Tally {
     pub drawn: usize,
 }
 
-/// What became of a file as a whole.
+/// The result of reading a file, in counts.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Summary {
     /// Faces with a surface.
     pub faces: Tally,
     /// Triangle meshes.
     pub meshes: Tally,
-    /// Boolean solids. One without any volume is not drawn; it is no loss, but counted among what is [`beside`](Self::beside).
+    /// Boolean solids. One without any volume is not drawn; it is no loss, but counted in [`beside`](Self::beside).
     pub solids: Tally,
     /// Faces left out, by reason.
     pub lost_faces: Reasons,
-    /// What else is left out, by kind and reason: bodies, occurrences, polygons, statements that cannot be read, ...
+    /// Everything else left out, by kind and reason: bodies, occurrences, polygons, unreadable statements, ...
     pub left_out: BTreeMap<String, Reasons>,
     /// Other files that the file names and that are not read: they may hold parts of the model.
     pub elsewhere: Vec<String>,
-    /// What the file holds beside, and is not there to be drawn, by kind: curves, hidden items, annotation.
+    /// Content of the file beside them that is not to be drawn, by kind: curves, hidden items, annotation.
     pub beside: BTreeMap<String, usize>,
 }
 
 /// Reasons and names that one sentence has of a kind; the rest is counted.
-const MOST_TOLD: usize = 8;
+const MOST_LISTED: usize = 8;
 
 impl Import {
-    /// Counts what the model has of the file. The model counts as it is now: ask before it is changed.
+    /// Counts what the model has of the file. The model counts as it is now: call this before changing it.
     #[must_use]
     pub fn summary(&self) -> Summary {
         Summary::of(&self.model, &self.report)
@@ -95,13 +95,13 @@ impl Summary {
         self.faces.drawn + self.meshes.drawn + self.solids.drawn == 0
     }
 
-    /// All that the file states is there.
+    /// Nothing that the file states is missing.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.lost_faces.is_empty() && self.left_out.is_empty() && self.elsewhere.is_empty()
     }
 
-    /// What is not there and why, in the words of one sentence.
+    /// The losses and their reasons, as the phrases of one sentence.
     fn losses(&self) -> Vec<String> {
         let mut all = Vec::new();
         if !self.lost_faces.is_empty() {
@@ -117,8 +117,8 @@ impl Summary {
     }
 }
 
-/// One sentence without its full stop: `drawn 82 of 94 faces; 12 left out: …`, or what the file holds in place of
-/// anything that could be drawn.
+/// One sentence without its full stop: `drawn 82 of 94 faces; 12 left out: …`, or the file's content where nothing of
+/// it can be drawn.
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let tallies = [
@@ -162,7 +162,7 @@ fn told(counts: impl Iterator<Item = (String, usize)>) -> String {
 
 /// The first few, and how many there are beside.
 fn listed(all: impl Iterator<Item = String>, count: usize) -> String {
-    let mut list: Vec<String> = all.take(MOST_TOLD).collect();
+    let mut list: Vec<String> = all.take(MOST_LISTED).collect();
     if count > list.len() {
         list.push(format!("and {} others", count - list.len()));
     }
@@ -211,7 +211,7 @@ mod tests {
         assert!(told(&some).starts_with("drawn 1 mesh; 1 x polygon left out: 1 x "), "{}", told(&some));
     }
 
-    /// Solids without volume are no loss, but nothing is there.
+    /// Solids without volume are no loss, but nothing is drawn.
     #[test]
     fn empty_solids_are_not_drawn() {
         let apart = scad(
@@ -227,9 +227,9 @@ mod tests {
         assert!(brlcad(b"title {t}\n", "t.asc").unwrap().summary().draws_nothing());
     }
 
-    /// Files of lines, of hidden things, of parts in other files.
+    /// Files of lines, of hidden items, of parts in other files.
     #[test]
-    fn what_a_file_holds_in_place_of_surfaces_is_told() {
+    fn contents_other_than_surfaces_are_reported() {
         let around = |data: &str| {
             format!("ISO-10303-21;HEADER;FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));ENDSEC;DATA;{data}ENDSEC;END-ISO-10303-21;")
         };

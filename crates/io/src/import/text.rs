@@ -1,16 +1,16 @@
-//! Text of any encoding: the one place where bytes become characters.
+//! Text of any encoding: the only place where bytes become characters.
 //!
 //! ```text
 //!   mark of byte order, or every second byte 0 ─▶ UTF-16
-//!   all bytes are UTF-8                        ─▶ as they are
+//!   all bytes are UTF-8                        ─▶ unchanged
 //!   else ─▶ a guess (GB18030, Shift-JIS, Big5, EUC-KR, windows-125x, …) from the lines that are not, for these lines
 //! ```
 //!
-//! STEP, IGES and OBJ know no encoding; programs write what their screen shows. A line that is UTF-8 stays so, since files are
-//! put together from several. A warning tells of a guess, and of bytes that have no character in it.
+//! STEP, IGES and OBJ state no encoding; programs write that of their screen. A line that is UTF-8 stays so, since
+//! files are put together from several. A warning reports a guess, and bytes that have no character in it.
 //!
-//! Formats without columns are decoded whole, by [`utf8`]. Where columns and lengths count bytes, as in IGES, single strings
-//! are, by [`Encoding::decode`].
+//! Formats without columns are decoded whole, by [`utf8`]. Where columns and lengths count bytes, as in IGES, strings
+//! are decoded one by one, by [`Encoding::decode`].
 
 use super::{Import, Place, Warnings};
 use chardetng::EncodingDetector;
@@ -20,15 +20,15 @@ use std::borrow::Cow;
 /// Bytes of lines that a guess is made from, at most.
 const SEEN: usize = 1 << 20;
 
-/// How the lines that are not UTF-8 are meant.
+/// The encoding of the lines that are not UTF-8.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Encoding(Option<&'static encoding_rs::Encoding>);
 
-/// A text, and what was found about its encoding.
+/// A text, and a note on its encoding.
 #[derive(Debug, Default)]
 pub(super) struct Text<'a> {
     pub text: Cow<'a, str>,
-    /// What was guessed or lost.
+    /// The guess or the loss.
     told: Option<String>,
 }
 
@@ -64,7 +64,7 @@ impl Encoding {
         }
     }
 
-    /// What to tell about it, if anything.
+    /// The warning about it, if any.
     pub fn told(self) -> Option<String> {
         self.0.map(|encoding| format!("it is not UTF-8: read as {}", encoding.name()))
     }
@@ -74,7 +74,7 @@ impl Encoding {
 pub(super) const KIND: &str = "text";
 
 impl Text<'_> {
-    /// Puts what was found in front of the other warnings.
+    /// Puts the warning before the others.
     pub fn tell(self, name: &str, import: &mut Import) {
         let Some(message) = self.told else { return };
         let mut warnings = Warnings::new(name);
@@ -171,12 +171,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_character_is_told() {
+    fn invalid_characters_are_reported() {
         let cut = [&b"\xff\xfe#\0a\0"[..], b"\x00\xd8", b"b\0"].concat();
         assert_eq!(read(&cut), ("#a\u{fffd}b".into(), "it is UTF-16 with units that are no characters".into()));
     }
 
-    /// A line break within a character is a line break; the character is lost, and told.
+    /// A line break within a character is a line break; the character is lost, with a warning.
     #[test]
     fn lines_stay_lines() {
         let words = "齿轮箱外壳零件总成，右侧支架";

@@ -1,4 +1,4 @@
-//! Round trips bit for bit, and files that nobody should have written.
+//! Round trips bit for bit, and files that no writer makes.
 
 use super::*;
 use crate::import::step;
@@ -120,7 +120,7 @@ fn the_form_is_that_of_the_version() {
 
 /// A trim curve of an edge that its part does not have.
 #[test]
-fn an_edge_that_is_not_there_is_told() {
+fn an_absent_edge_is_reported() {
     let mut model = model(&[0.5; 12], 1.0, "part");
     model.parts[1].stated_edges.pop();
     let error = read(&write(&model)).unwrap_err();

@@ -1,4 +1,4 @@
-//! Boxes of faces with equations of their own: where they reach is known.
+//! Boxes of faces with closed-form equations: their extent is known.
 
 #[path = "../../../geometry/tests/trim/bounds/support.rs"]
 mod support;
@@ -37,7 +37,7 @@ impl Edges {
     fn face(&self, surface: SurfaceGeometry, bounds: Vec<Vec<(usize, bool)>>) -> (Face, f64) {
         let bounds = bounds.into_iter().map(Boundary::Edges).collect();
         let built =
-            build_face(&FaceGeometry { id: 7, surface, bounds, same_sense: true, doubtful: false }, &self.0, 1e-6)
+            build_face(&FaceGeometry { id: 7, surface, bounds, same_sense: true, ambiguous: false }, &self.0, 1e-6)
                 .unwrap();
         (built.face, built.deviation)
     }

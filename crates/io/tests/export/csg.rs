@@ -10,8 +10,8 @@ use selvedge_io::import;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Of the size: points nearer to a boundary than this may fall on either side. What a rigid placement may be off by
-/// (1e-12), the angle of a cone and the transform of a stretched part stay far below it.
+/// Share of the size: points nearer to a boundary than this may fall on either side. The errors of a rigid placement
+/// (1e-12), of the angle of a cone and of the transform of a stretched part are far smaller.
 const NEAR: f64 = 1e-9;
 
 fn write(solids: Vec<Solid>) -> (String, Vec<ExportWarning>) {
@@ -23,7 +23,7 @@ fn write(solids: Vec<Solid>) -> (String, Vec<ExportWarning>) {
 
 fn read(text: &str) -> Model {
     let read = import::step(text.as_bytes(), "solids.step").unwrap();
-    // transparency is kept, and told
+    // transparency is kept, with a warning
     let told = read.warnings.iter().filter(|w| !w.message.starts_with("transparent colour"));
     assert_eq!(told.count(), 0, "{:?}", read.warnings);
     read.model
@@ -43,8 +43,8 @@ fn points(count: u32) -> impl Iterator<Item = DVec3> {
     (1..=count).map(move |k| (step * f64::from(k)).fract())
 }
 
-/// Of the volume that lines through a solid measure: the sum of their lengths inside. A line that grazes a ball which is
-/// off by 1e-12 of the size is longer by the root of that at most, and few lines do.
+/// Share of the volume that lines through a solid measure: the sum of their lengths inside. A line that grazes a ball
+/// which is off by 1e-12 of the size is longer by the root of that at most, and few lines do.
 const VOLUME: f64 = 1e-9;
 
 /// Classifies points by lines through them, and compares, also the lines' lengths inside; returns the points inside and those
@@ -160,7 +160,7 @@ fn apples_come_back() {
     }
 }
 
-/// All operations, with complements anywhere; and what has no end at all.
+/// All operations, with complements anywhere, and unbounded solids.
 #[test]
 fn every_expression_comes_back() {
     let ball = |x: f64, y: f64, id| {
@@ -246,7 +246,7 @@ fn depth_does_not_matter() {
     }
 }
 
-/// What the form does not have is named, and nothing of it is left in the file.
+/// A warning names a solid that the form does not have, and the file holds no part of it.
 #[test]
 fn what_is_left_out_is_named() {
     let ball = || primitive(Shape::Sphere { radius: 2.0 }, DAffine3::IDENTITY, 1);
@@ -323,7 +323,7 @@ fn files_of_a_folder_come_back() {
     };
     let mut compared = 0;
     for path in files.map(|f| f.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e == "csg")) {
-        // what is refused is the business of the reader's own tests
+        // refused files are tested with the readers
         let Ok(import) = import::open(&path) else { continue };
         let made = import.model;
         let (text, warnings) = write(made.solids.clone());

@@ -144,7 +144,7 @@ fn a_hollow_solid_has_a_void() {
     assert_eq!((count(&text, "BREP_WITH_VOIDS"), count(&text, "MANIFOLD_SOLID_BREP")), (1, 1));
 }
 
-/// STEP places rigidly: what scales, shears or mirrors is carried out, and normals still point outwards.
+/// STEP's placements are rigid: others are carried out, and normals still point outwards.
 #[test]
 fn instances_that_scale_or_mirror_are_parts_of_their_own() {
     let blank = GearBlank { radius: 5.0, width: 1.0, hub_radius: 2.0, hub_width: 2.0, bore: 1.0, keyway: None };
@@ -181,7 +181,7 @@ fn instances_that_scale_or_mirror_are_parts_of_their_own() {
     }
 }
 
-/// What cannot be written of a part is told with the part's own number, carried out or not.
+/// A warning about a part has the part's own number, carried out or not.
 #[test]
 fn warnings_name_the_part() {
     let mut part = shapes::cone(2.0, 1.0, 3.0).unwrap().part;
@@ -250,8 +250,8 @@ fn shapes_are_written_as_solids() {
     compare(&made.part, &text);
 }
 
-/// A solid that is one primitive is written as its faces where it stands, and its colour with them; nothing else of
-/// the solids is lost without a word.
+/// A solid that is one primitive is written as its faces where it stands, with its colour; every other solid is named
+/// in a warning.
 #[test]
 fn primitives_are_written_and_expressions_named() {
     use selvedge_geometry::csg::{Builder, Tree};

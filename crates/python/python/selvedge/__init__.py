@@ -96,6 +96,7 @@ class Renderer:
         *,
         camera: Camera | None = None,
         style: str = "shaded",
+        curvature_range: float | None = None,
         background: str = "gradient",
         edges: str | None = None,
         silhouettes: bool = False,
@@ -122,7 +123,10 @@ class Renderer:
             thickness  float32 (H, W)     length of the ray within solids and closed parts, millimetres
             edge       uint32  (H, W)     Edge.number of the line that covers the pixel; 0 is none. Draws the lines, too
             colour     uint8   (H, W, 4)  sRGB and opacity; there in any case
-        style: shaded, clay, normals or zebra. background: a CSS colour, gradient, or none (transparent).
+        style: shaded, clay, technical, normals, zebra, isophotes, mean-curvature or gaussian-curvature. background: a CSS
+            colour, gradient, or none (transparent).
+        curvature_range: the mean curvature at the end of the scale, 1/mm, whose square is that of Gaussian curvature;
+            without it a round number at which most of the model's curvatures are told apart.
         edges: lines along "all" edges, the "sharp" ones, or "none". silhouettes: outlines of curved faces, too.
         hidden_lines: lines behind faces, dashed. line_width: pixels; without it 1 or more, and more in high pictures.
         samples: 1, 4 or 8 of each pixel's colour. smooth: at samples=1, borders that are smooth: "borders" of all faces (the

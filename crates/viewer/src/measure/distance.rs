@@ -5,22 +5,22 @@
 //!   of each pair of pieces: samples ─▶ the nearest few ─▶ Newton on |A(x) - B(y)|² in a box ─▶ the least of all
 //! ```
 //!
-//! A minimum inside a face counts when its (u, v) is inside the loops; every other minimum lies on a trim curve. Newton's
-//! method ends where the gradient is rounding: the distance of the pair of points that it finds is then right within
-//! [`Distance::error`]. That no other pair is nearer rests on the samples: pieces are passed over only where their samples,
-//! less the gaps between them, are farther apart than a distance that was found.
+//! A minimum inside a face counts when its (u, v) is inside the loops; every other minimum lies on a trim curve.
+//! Newton's method ends where the gradient is rounding. The distance of the pair of points that it finds is then right
+//! within [`Distance::error`]. Samples decide that no other pair is nearer: pieces are skipped only where their
+//! samples, less the gaps between them, are farther apart than a distance already found.
 
 use glam::{DAffine3, DVec2, DVec3, DVec4};
 use selvedge::model::Face;
 use selvedge::spline::{Bezier, Surface};
 use selvedge::trim::LoopIndex;
 
-/// The nearest pair of points of two things.
+/// The nearest pair of points of two items.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distance {
     /// Model units.
     pub distance: f64,
-    /// On the first and on the second thing.
+    /// On the first and on the second item.
     pub points: [DVec3; 2],
     /// How much the last step changed it, and the rounding of the coordinates.
     pub error: f64,
@@ -44,7 +44,7 @@ enum Piece<'a> {
     Surface(DAffine3, &'a Surface, LoopIndex, (DVec2, DVec2)),
 }
 
-/// A point of a piece, and what it is for.
+/// A point of a piece, and its parameters.
 #[derive(Clone, Copy)]
 struct Look {
     at: DVec2,
@@ -166,7 +166,7 @@ impl<'a> Sampled<'a> {
     }
 }
 
-/// The smallest distance between two things; `None` where one of them has no points.
+/// The smallest distance between two items; `None` where one of them has no points.
 pub fn smallest(a: &[Sampled<'_>], b: &[Sampled<'_>]) -> Option<Distance> {
     let all = a.iter().flat_map(|x| b.iter().map(move |y| (x, y)));
     let mut pairs: Vec<_> = all
@@ -287,8 +287,8 @@ fn newton(a: &Piece<'_>, b: &Piece<'_>, at_a: DVec2, at_b: DVec2) -> Option<Dist
     })
 }
 
-/// `(H + damping diag |H|) s = g` over the parameters that are not held, by Cholesky's method; `None` where that is not
-/// positive definite.
+/// `(H + damping diag |H|) s = g` over the parameters that are not held, by Cholesky's method; `None` where the matrix
+/// is not positive definite.
 fn solve(hessian: &[[f64; 4]; 4], gradient: &[f64; 4], held: &[bool; 4], damping: f64) -> Option<[f64; 4]> {
     let free: Vec<usize> = (0..4).filter(|i| !held[*i]).collect();
     let n = free.len();

@@ -12,7 +12,7 @@ use selvedge::model::{Face, Instance, Part, TrimLoop};
 use selvedge::spline::{Bezier, Surface};
 use selvedge_geometry::math::gauss::{integrate, rule};
 
-/// Of the integrals along the loops.
+/// Tolerance of the integrals along the loops.
 const TOLERANCE: f64 = 1e-12;
 
 /// An area with the estimate of its error.
@@ -103,7 +103,7 @@ pub fn area(face: &Face, transform: DAffine3) -> Area {
     Area { area: sum[0], error: error[0] }
 }
 
-/// Area, volume and centre of a placed part; the volume means something where the part is closed.
+/// Area, volume and centre of a placed part; the volume is meaningful where the part is closed.
 pub fn mass(part: &Part, placed: &Instance) -> Mass {
     let bounds = part.control_bounds();
     let origin = placed.transform.transform_point3(if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() });

@@ -4,11 +4,11 @@
 //! |---|---|
 //! | vertex | coordinates |
 //! | edge | length; radius, diameter and centre of a circle |
-//! | face | area; radius, diameter, axis, angle of what it lies on |
+//! | face | area; radius, diameter, axis, angle of its surface |
 //! | part | area, volume, centre of mass |
 //! | two of them | smallest distance and where; angle; distance of centres or axes |
 //!
-//! Values carry an estimate of their own error; what limits them is what the file states.
+//! Values carry an estimate of their own error; the accuracy of the file is the limit.
 
 pub mod distance;
 pub mod mass;
@@ -25,7 +25,7 @@ use surface::SurfaceShape;
 /// One measured number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Value {
-    /// What it is.
+    /// Its name.
     pub what: &'static str,
     /// The number.
     pub value: f64,
@@ -35,16 +35,16 @@ pub struct Value {
     pub unit: &'static str,
 }
 
-/// What was measured of a selection.
+/// The measurement of a selection.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measurement {
-    /// The things.
+    /// The selected items.
     pub title: String,
     /// The numbers.
     pub values: Vec<Value>,
-    /// Points that are told, by name.
+    /// Named points.
     pub points: Vec<(&'static str, DVec3)>,
-    /// Lines that are drawn as dimensions, with what stands at them.
+    /// Lines that are drawn as dimensions, with their texts.
     pub dimensions: Vec<([DVec3; 2], String)>,
 }
 
@@ -79,7 +79,7 @@ impl Measurement {
 /// The first line of a table of measurements.
 pub const CSV_HEADER: &str = "things,quantity,value,error,unit\n";
 
-/// Measures one or two things; `None` for other numbers of them, and where nothing can be measured.
+/// Measures one or two items; `None` for another number of items, and where nothing can be measured.
 pub fn measure(world: &World, selection: &[Picked]) -> Option<Measurement> {
     let title = selection.iter().map(|picked| describe::short(world, picked)).collect::<Vec<_>>().join(" and ");
     let mut all = Measurement { title, ..Measurement::default() };
@@ -91,7 +91,7 @@ pub fn measure(world: &World, selection: &[Picked]) -> Option<Measurement> {
     Some(all)
 }
 
-/// Where a thing is, and itself.
+/// An item in its place.
 enum Thing<'a> {
     Point(DVec3),
     Edge(&'a selvedge::model::Edge, DAffine3),

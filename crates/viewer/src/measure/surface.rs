@@ -1,4 +1,4 @@
-//! The plane, cylinder, cone, sphere or torus that a face lies on, found from its surface in `f64`.
+//! The plane, cylinder, cone, sphere or torus of a face, found from its surface in `f64`.
 //!
 //! ```text
 //!   plane      all normals agree          cylinder   normals ⟂ axis, normal lines meet it at one distance
@@ -6,8 +6,8 @@
 //!   torus      points at one distance along the normals lie on a circle
 //! ```
 //!
-//! A shape counts when every point looked at is on it within [`SAME`] of its size, so a B-spline that is a cylinder is
-//! called one. Radii are as exact as the surface's control points.
+//! A shape counts when every sampled point is on it within [`SAME`] of its size, so a B-spline in the form of a
+//! cylinder counts as one. Radii are as exact as the surface's control points.
 
 use glam::{DAffine3, DMat3, DVec3};
 use selvedge::model::Face;
@@ -16,7 +16,7 @@ use selvedge_geometry::edges::curve::{SAME, circle_through};
 /// Points along each side of the face's part of the domain.
 const LOOKS: usize = 5;
 
-/// What a face lies on, model coordinates.
+/// The shape of a face's surface, model coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub enum SurfaceShape {
@@ -91,7 +91,7 @@ fn looks(face: &Face, transform: DAffine3) -> Vec<(DVec3, DVec3)> {
     all
 }
 
-/// What a placed face lies on.
+/// The shape of a placed face's surface.
 pub fn shape(face: &Face, transform: DAffine3) -> SurfaceShape {
     let looks = looks(face, transform);
     let Some(&(p0, n0)) = looks.first().filter(|_| looks.len() >= LOOKS) else { return SurfaceShape::Other };
@@ -105,7 +105,7 @@ pub fn shape(face: &Face, transform: DAffine3) -> SurfaceShape {
 
 type Look = (DVec3, DVec3);
 
-/// The look whose normal differs most from another's.
+/// The sample whose normal differs most from another's.
 fn most_turned(looks: &[Look], from: DVec3) -> Look {
     let turned = |look: &&Look| look.1.cross(from).length_squared();
     *looks.iter().max_by(|a, b| turned(a).total_cmp(&turned(b))).unwrap_or(&looks[0])
@@ -157,8 +157,8 @@ fn cone(looks: &[Look]) -> Option<SurfaceShape> {
 
 /// By the radius of curvature that all points share.
 fn torus(looks: &[Look]) -> Option<SurfaceShape> {
-    // the tube's circle through points along the normals: its radius solves one equation, found from three looks by the
-    // condition that all middles lie in one plane
+    // the tube's circle through points along the normals: its radius solves one equation, which follows from three
+    // samples and the condition that all middles lie in one plane
     let (p, n) = looks[0];
     let axis = torus_axis(looks)?;
     let height = |x: DVec3| x.dot(axis);

@@ -6,9 +6,9 @@ use selvedge::construct::shapes;
 use selvedge::model::{Instance, Part};
 use std::f64::consts::PI;
 
-/// Of numbers that are roundings of their true values: some hundred operations of 2⁻⁵² each.
+/// Tolerance of numbers that are roundings of their true values: some hundred operations of 2⁻⁵² each.
 const ROUNDING: f64 = 1e-13;
-/// Of integrals, as their tolerance says.
+/// Tolerance of integrals.
 const INTEGRAL: f64 = 1e-11;
 
 fn askew() -> DAffine3 {

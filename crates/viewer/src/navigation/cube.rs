@@ -57,7 +57,7 @@ pub fn sides(camera: &Camera) -> Vec<Side> {
     .collect()
 }
 
-/// What lies under a point of the widget: the direction to look from, with coordinates -1, 0 and 1; `None` beside the cube.
+/// The direction to look from, under a point of the widget, with coordinates -1, 0 and 1; `None` beside the cube.
 pub fn direction_at(camera: &Camera, at: DVec2) -> Option<DVec3> {
     let (right, up, forward) = camera.axes();
     let at = at * REACH;
@@ -104,7 +104,7 @@ mod tests {
         let all = coordinates.iter().flat_map(|x| coordinates.map(|y| coordinates.map(|z| DVec3::new(*x, y, z))));
         let mut count = 0;
         for direction in all.flatten().filter(|d| *d != DVec3::ZERO) {
-            // seen from a little beside, as hands click
+            // seen from a little beside, as in practice
             let camera = camera(direction + DVec3::new(0.11, 0.07, 0.05));
             let found = direction_at(&camera, place(&camera, direction));
             assert_eq!(found, Some(direction));

@@ -1,4 +1,4 @@
-//! Mouse buttons and keys to moves, in the manner of other programs.
+//! Mouse buttons and keys to moves, in the styles of other programs.
 //!
 //! | style | rotate | pan | zoom |
 //! |---|---|---|---|
@@ -13,7 +13,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Whose manner.
+/// A program's style.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[allow(missing_docs)]
@@ -29,7 +29,7 @@ pub enum Preset {
     Trackpad,
 }
 
-/// What a drag does.
+/// The effect of a drag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// Turn about the point under the cursor.
@@ -49,7 +49,7 @@ pub enum Button {
     Right,
 }
 
-/// What is held down.
+/// The buttons and keys that are held.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {
     /// Left, middle and right button.
@@ -89,7 +89,7 @@ impl Preset {
         }
     }
 
-    /// How one rotates, pans and zooms, for the help.
+    /// How a user rotates, pans and zooms, for the help.
     pub fn hints(self) -> [&'static str; 3] {
         match self {
             Self::SolidWorks => ["middle", "Ctrl + middle", "wheel, Shift + middle"],
@@ -102,7 +102,7 @@ impl Preset {
         }
     }
 
-    /// What a drag does while these are held.
+    /// The effect of a drag while these are held.
     pub fn action(self, held: Held) -> Option<Action> {
         use Action::{Orbit, Pan, Zoom};
         let [left, middle, right] = held.buttons;
@@ -169,7 +169,7 @@ mod tests {
         held
     }
 
-    /// The table above, and what it does not have.
+    /// The table above, and combinations outside of it.
     #[test]
     fn each_style_moves_as_its_users_know() {
         use Action::{Orbit, Pan, Zoom};

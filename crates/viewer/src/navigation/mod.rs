@@ -1,4 +1,4 @@
-//! How a camera moves: pure functions from a camera and a hand's movement to the next camera.
+//! Camera moves: pure functions from a camera and a movement of the mouse to the next camera.
 //!
 //! ```text
 //!   orbit   eye, axis and up turn about a pivot      the pivot's pixel stays where it is
@@ -7,7 +7,7 @@
 //!   settle  near and far plane around what is drawn  up to 10^6 times closer than the whole model
 //! ```
 //!
-//! Pixels are those of the camera's picture, y down. All is in `f64`; what stays stays within its rounding.
+//! Pixels are those of the camera's picture, y down. All is in `f64`; fixed points stay fixed within its rounding.
 
 pub mod cube;
 pub mod gesture;
@@ -22,7 +22,8 @@ use serde::{Deserialize, Serialize};
 pub const FOV: f64 = 35.0 * std::f64::consts::PI / 180.0;
 /// Room around what fits the picture.
 const MARGIN: f64 = 1.06;
-/// The near plane is no farther than this share of the distance to the target: what the hand holds is not cut away.
+/// The near plane is no farther than this share of the distance to the target: the point that the mouse holds is not
+/// cut away.
 const NEAR: f64 = 0.05;
 /// An up direction that sinks below the horizon by less is that of a view from the pole, rounded.
 const LEVEL: f64 = 1e-9;
@@ -105,7 +106,7 @@ pub fn at_depth(camera: &Camera, pixel: DVec2, depth: f64) -> DVec3 {
     origin + direction * (depth / direction.dot(forward))
 }
 
-/// The first camera where the moved one shows nothing.
+/// The first camera, where the moved one shows nothing.
 fn kept(camera: &Camera, moved: Camera) -> Camera {
     // near and far are set anew by `settle`
     let checked = Camera { depth_range: (1.0, 2.0), ..moved };
@@ -171,7 +172,7 @@ pub fn looking(camera: &Camera, from: DVec3, up: DVec3) -> Camera {
     kept(camera, Camera { eye: camera.target + from.normalize() * distance, up, ..*camera })
 }
 
-/// Parallel instead of perspective or the other way round; what lies at the target keeps its size.
+/// Parallel instead of perspective or the other way round; objects at the target keep their size.
 pub fn other_projection(camera: &Camera) -> Camera {
     let distance = camera.eye.distance(camera.target);
     match in_the_middle(camera) {

@@ -1,4 +1,4 @@
-//! What a move must leave where it is.
+//! The fixed points and directions of moves.
 
 use super::*;
 

@@ -1,7 +1,7 @@
 //! Handles of section planes: an arrow along the normal, dragged along itself.
 //!
 //! ```text
-//!      plane │     the hand moves by d on the screen; the arrow of length L in the model is a on the screen:
+//!      plane │     the mouse moves by d on the screen; the arrow of length L in the model is a on the screen:
 //!            ●──▶     offset += L (d · a) / |a|²
 //! ```
 
@@ -25,7 +25,7 @@ fn arrow(section: &Section, bounds: Bounds) -> (DVec3, DVec3) {
     (foot, foot + section.normal * (ARROW * bounds.diagonal()))
 }
 
-/// How far a plane moves, model units, when the hand moves by `drag`, points.
+/// How far a plane moves, model units, when the mouse moves by `drag`, points.
 fn moved(drag: Vec2, arrow: Vec2, length: f64) -> f64 {
     length * f64::from(drag.dot(arrow) / arrow.length_sq())
 }

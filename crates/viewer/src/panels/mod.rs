@@ -1,4 +1,4 @@
-//! What surrounds the picture: tree, properties, toolbar, status, help; and what is drawn over it.
+//! The panels around the picture: tree, properties, toolbar, status, help; and the drawings over it.
 //!
 //! ```text
 //!   ┌ toolbar: file, views, styles, lines, sections ───────────────┐
@@ -33,22 +33,22 @@ use std::time::Instant;
 /// Messages that are kept.
 const MOST_MESSAGES: usize = 50;
 
-/// What the panels remember from frame to frame.
+/// The state of the panels from frame to frame.
 #[derive(Debug)]
 pub struct Ui {
-    /// What a click takes.
+    /// The kinds of items that a click selects.
     pub filter: PickFilter,
     /// How surfaces are shown.
     pub style: Style,
-    /// What is looked for in the tree.
+    /// The text to search in the tree.
     pub search: String,
     /// The help is open.
     pub help: bool,
     /// The list of warnings is open.
     pub warnings: bool,
-    /// What a person should know, the last one last.
+    /// Messages for the user, the last one last.
     pub messages: Vec<String>,
-    /// Wishes that the window has to fulfil.
+    /// Commands for the window.
     pub commands: Vec<Command>,
     /// The pointer is over a panel, or held by one.
     pub pointer_taken: bool,
@@ -60,49 +60,49 @@ pub struct Ui {
     pub show_selection: bool,
     /// The point of the last click.
     pub clicked: Option<DVec3>,
-    /// The selection is to be measured.
+    /// The selection needs a measurement.
     pub wants_measure: bool,
-    /// What was measured of it.
+    /// The measurement of the selection.
     pub measurement: Option<Measurement>,
-    /// It is kept once it is there.
+    /// The measurement is kept when it arrives.
     keeps: bool,
     /// Measurements that are kept.
     pub kept: Vec<Measurement>,
     /// Where pictures go.
     pub shot: Shot,
-    /// What the judge said last.
+    /// The last verdict of the judge.
     pub verdict: Option<Verdict>,
     /// Trim loops of the selected face can be dragged.
     pub trims: bool,
-    /// What is to be known of the selected face.
+    /// A notice on the selected face.
     pub notice: Option<String>,
-    /// Where the model is saved, while that is asked for.
+    /// The file to save the model to, while its dialog is open.
     pub save: Option<PathBuf>,
 }
 
-/// A picture to be written.
+/// The dialog for writing a picture.
 #[derive(Clone, Debug)]
 pub struct Shot {
-    /// The window that asks for it is open.
+    /// The dialog is open.
     pub open: bool,
     /// The file.
     pub path: PathBuf,
     /// Width and height.
     pub size: (u32, u32),
-    /// Nothing behind the model.
+    /// A transparent background.
     pub transparent: bool,
 }
 
-/// What the judge says of a view.
+/// The judge's verdict on a view.
 #[derive(Clone, Debug)]
 pub struct Verdict {
     /// The view.
     pub camera: Camera,
-    /// Pixels that it looked at.
+    /// Pixels judged.
     pub sampled: u64,
     /// Those that break the promise.
     pub wrong: u64,
-    /// Pixels that do not simply agree, the worst first, a thousand at most.
+    /// Pixels that do not agree at their centre, the worst first, a thousand at most.
     pub pixels: Vec<[u32; 2]>,
 }
 
@@ -134,15 +134,15 @@ impl Default for Ui {
     }
 }
 
-/// What the panels are told of the rest.
+/// The window's state, for the panels.
 pub struct Facts<'a> {
     /// Files that are being read: stage, and share of it.
     pub loading: Vec<(&'a Path, &'a str, Option<f32>)>,
-    /// Of the picture that was drawn last.
+    /// Statistics of the last picture.
     pub stats: Option<&'a FrameStats>,
-    /// What of the settings does not apply to this model.
+    /// A setting that does not apply to this model.
     pub notice: Option<&'a str>,
-    /// The engine is being given another model.
+    /// The engine is uploading another model.
     pub busy: bool,
     /// Size of the picture that is shown.
     pub picture: Option<(u32, u32)>,
@@ -153,7 +153,7 @@ pub struct Facts<'a> {
 }
 
 impl Ui {
-    /// Tells something.
+    /// Adds a message.
     pub fn tell(&mut self, message: String) {
         if self.messages.len() == MOST_MESSAGES {
             self.messages.remove(0);
@@ -178,7 +178,7 @@ impl Ui {
         self.measurement = measurement;
     }
 
-    /// The judge has looked.
+    /// Takes the judge's verdict.
     pub fn judged(&mut self, verdict: Verdict) {
         self.tell(match verdict.wrong {
             0 => format!("Checked {} pixels: all as promised.", verdict.sampled),
@@ -187,7 +187,7 @@ impl Ui {
         self.verdict = Some(verdict);
     }
 
-    /// The selection is another one: faces, edges and corners are measured at once, parts when somebody asks.
+    /// The selection has changed: faces, edges and corners are measured at once, parts on demand.
     fn remeasure(&mut self, session: &Session) {
         self.measurement = None;
         let quick = session.selection.iter().all(|picked| !matches!(picked, Picked::Instance(_)));
@@ -207,7 +207,7 @@ impl Ui {
         }
     }
 
-    /// Fulfils a wish that concerns the session alone.
+    /// Carries out a command that concerns the session alone.
     pub fn obey(&mut self, command: Command, session: &mut Session) {
         let (chosen, world) = (session.selected_instances(), session.world.clone());
         match command {
@@ -249,7 +249,7 @@ impl Ui {
     }
 }
 
-/// What the panels are drawn with: once a frame, since a key or a drag counts once.
+/// The context of the panels: one pass a frame, since a key or a drag counts once.
 pub fn context() -> egui::Context {
     let ctx = egui::Context::default();
     ctx.options_mut(|options| options.max_passes = std::num::NonZeroUsize::MIN);

@@ -1,4 +1,4 @@
-//! What is drawn over the picture: view cube, marked edges and corners.
+//! Drawings over the picture: view cube, marked edges and corners.
 
 use super::{Facts, Ui};
 use crate::commands::Command;
@@ -39,7 +39,7 @@ pub fn show(ctx: &egui::Context, rect: Rect, ui: &mut Ui, session: &mut Session,
     view_cube(ctx, rect, ui, facts.view.camera());
 }
 
-/// A line between two points with what is measured there.
+/// A line between two points with its measurement.
 fn dimension(painter: &egui::Painter, place: &Place<'_>, ends: [DVec3; 2], text: &str) {
     let (Some(a), Some(b)) = (place.of(ends[0]), place.of(ends[1])) else { return };
     painter.line_segment([a, b], Stroke::new(1.5, SELECTED));
@@ -52,7 +52,7 @@ fn dimension(painter: &egui::Painter, place: &Place<'_>, ends: [DVec3; 2], text:
     painter.galley(at, galley, Color32::WHITE);
 }
 
-/// Pixels that the judge named, while the view is the one that it looked at.
+/// Wrong pixels of the verdict, while the view is the judged one.
 fn wrong_pixels(painter: &egui::Painter, place: &Place<'_>, ui: &Ui) {
     let Some(verdict) = ui.verdict.as_ref().filter(|v| v.camera == *place.camera && v.wrong > 0) else { return };
     for [x, y] in &verdict.pixels {

@@ -1,4 +1,4 @@
-//! What the selected things are.
+//! The properties of the selected items.
 
 use super::Ui;
 use crate::commands::Command;
@@ -6,7 +6,7 @@ use crate::describe;
 use crate::measure::{CSV_HEADER, Measurement};
 use crate::session::Session;
 
-/// Things that are described at length; others are named.
+/// Items that are described in full; further ones are only named.
 const MOST: usize = 6;
 
 /// Shows it.
@@ -18,7 +18,7 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
     if let Some(notice) = &ui.notice {
         panel.colored_label(panel.visuals().warn_fg_color, notice);
     }
-    // what is wider than the panel scrolls: the picture keeps its size
+    // content wider than the panel scrolls: the picture keeps its size
     egui::ScrollArea::both().auto_shrink(false).show(panel, |area| {
         let world = session.world.clone();
         measured(area, ui);
@@ -35,7 +35,7 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
     });
 }
 
-/// What is measured of the selection, and what is kept.
+/// The measurement of the selection, and the list of kept ones.
 fn measured(area: &mut egui::Ui, ui: &mut Ui) {
     if let Some(measurement) = ui.measurement.clone() {
         area.strong("Measured");

@@ -5,6 +5,11 @@ use crate::commands::{Command, shortcuts};
 use crate::describe;
 use crate::session::Session;
 use crate::settings::Settings;
+use selvedge::picture::Style;
+use selvedge_check::light;
+
+/// Steps of the strip that shows a scale.
+const STRIP_STEPS: usize = 32;
 
 /// Shows the line.
 pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &Session, facts: &Facts<'_>) {
@@ -26,6 +31,7 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &Session, facts: &Facts<
             Some(hover.hit.point.map_or(name.clone(), |p| format!("{name}   {}", point(p))))
         });
         row.label(under.unwrap_or_default());
+        curvature_scale(row, ui.style, session);
         row.with_layout(egui::Layout::right_to_left(egui::Align::Center), |right| {
             let (width, height) = facts.view.camera().size;
             let size = match facts.picture {
@@ -47,7 +53,31 @@ fn point(p: glam::DVec3) -> String {
     p.to_array().map(|x| format!("{x:.4}")).join("  ")
 }
 
-/// What the picture promises.
+/// The legend of a style of curvature: a strip from hollow to bulging between the ends of the scale.
+fn curvature_scale(row: &mut egui::Ui, style: Style, session: &Session) {
+    if !style.is_curvature() || session.world.is_empty() {
+        return;
+    }
+    let range = session.world.curvature_range();
+    let (name, end, unit) = match style {
+        Style::GaussianCurvature => ("Gaussian curvature", range * range, "1/mm²"),
+        _ => ("mean curvature", range, "1/mm"),
+    };
+    row.separator();
+    row.label(format!("{name}: -{end}"));
+    let (strip, _) = row.allocate_exact_size(egui::vec2(96.0, 10.0), egui::Sense::hover());
+    let step = strip.width() / STRIP_STEPS as f32;
+    for k in 0..STRIP_STEPS {
+        let share = (2 * k + 1) as f64 / STRIP_STEPS as f64 - 1.0;
+        let [r, g, b] = light::curvature_scale(share).to_array().map(|c| (255.0 * c).round() as u8);
+        let left = strip.left() + k as f32 * step;
+        let bar = egui::Rect::from_min_size(egui::pos2(left, strip.top()), egui::vec2(step, strip.height()));
+        row.painter().rect_filled(bar, 0.0, egui::Color32::from_rgb(r, g, b));
+    }
+    row.label(format!("{end} {unit}"));
+}
+
+/// The accuracy promise of the picture.
 fn badge(row: &mut egui::Ui, ui: &mut Ui, session: &Session, facts: &Facts<'_>) {
     let warnings: usize = session.world.files.iter().map(|file| file.warnings.len()).sum();
     let incomplete = session.world.files.iter().any(|file| !file.complete);
@@ -116,7 +146,7 @@ pub fn windows(ctx: &egui::Context, ui: &mut Ui, session: &Session, settings: &S
     ui.help = open;
 }
 
-/// Where a picture goes, and how large it is.
+/// The file and the size of a picture to write.
 fn shot(ctx: &egui::Context, ui: &mut Ui) {
     let mut open = ui.shot.open;
     let mut wanted = false;
@@ -140,7 +170,7 @@ fn shot(ctx: &egui::Context, ui: &mut Ui) {
     }
 }
 
-/// Where the model goes, as it was edited.
+/// The file for the edited model.
 fn save(ctx: &egui::Context, ui: &mut Ui) {
     let Some(path) = &mut ui.save else { return };
     let (mut open, mut wanted) = (true, false);

@@ -1,11 +1,11 @@
-//! Panels without a window: what they say, and what a click does.
+//! Panels without a window: their texts, and the effects of clicks.
 
 use super::*;
 use crate::session::Picked;
 use crate::session::{Loaded, World};
 use std::sync::Arc;
 
-/// Texts of a frame, with where they are.
+/// Texts of a frame, with their places.
 fn texts(output: &egui::FullOutput) -> Vec<(String, egui::Rect)> {
     fn walk(shape: &egui::Shape, all: &mut Vec<(String, egui::Rect)>) {
         match shape {
@@ -125,7 +125,7 @@ fn the_tree_names_every_part_and_the_search_finds_one() {
 }
 
 #[test]
-fn progress_warnings_and_the_promise_are_told() {
+fn progress_warnings_and_the_promise_are_shown() {
     let mut bench = Bench::new();
     assert!(bench.says("big.step: faces") && bench.says("exact within 0.5 px"));
     bench.click("Cancel");
@@ -201,7 +201,7 @@ fn a_trim_point_follows_the_hand_on_its_surface() {
     bench.ui.trims = true;
     let (from, to) = (bench.place(point(before)), bench.place(point(inside)));
     bench.drag(from, to - from);
-    // of points that are seen in one place the upper one is gripped
+    // of points at one place in the picture the upper one is gripped
     let camera = *bench.view.camera();
     let corner = bench.rect.min;
     let nearest = |trim_loop: &selvedge::model::TrimLoop| {

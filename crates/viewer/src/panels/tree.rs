@@ -1,4 +1,4 @@
-//! Open files with their parts: show, hide, isolate, see through, colour, find.
+//! Open files with their parts: show, hide, isolate, make transparent, colour, find.
 
 use super::Ui;
 use crate::commands::Command;

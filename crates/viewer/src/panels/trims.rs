@@ -1,7 +1,7 @@
 //! Points of the selected face's trim loops, dragged on its surface.
 //!
 //! ```text
-//!   handle under the hand ─ray─▶ surface, from the point's own (u, v) by Newton ─▶ new (u, v) ─▶ loop with that point
+//!   handle under the cursor ─ray─▶ surface, from the point's own (u, v) by Newton ─▶ new (u, v) ─▶ loop with it
 //! ```
 
 use super::Ui;
@@ -84,7 +84,7 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, ui: &mut Ui, session: &mut S
     let (origin, direction) = place.camera.ray(DVec2::new(f64::from(pixel.x), f64::from(pixel.y)));
     let back = placed.transform.inverse();
     let ray = (back.transform_point3(origin), back.transform_vector3(direction));
-    // beyond the surface its border is followed
+    // beyond the surface the point follows its border
     let Some((uv, ..)) = towards(&of_face.surface, ray, handle.uv) else { return };
     match loops[handle.trim_loop].with_point(handle.curve, handle.point, uv) {
         Ok(moved) => session.scene.go_on(|state| _ = state.edits.insert(key(handle.trim_loop), moved)),

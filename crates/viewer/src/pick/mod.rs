@@ -56,7 +56,7 @@ pub struct Mark {
     pub face: u32,
 }
 
-/// What may be picked.
+/// The kinds of items that may be picked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum PickFilter {
@@ -84,10 +84,10 @@ impl PickFilter {
     }
 }
 
-/// What the cursor is over.
+/// The item under the cursor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// The thing; `None` over the background.
+    /// The item; `None` over the background.
     pub picked: Option<Picked>,
     /// The point under the cursor, model coordinates; exact on spline faces.
     pub point: Option<DVec3>,
@@ -108,8 +108,8 @@ impl Samples {
         })
     }
 
-    /// What lies under `cursor`, pixels of the picture of `camera`; `shown` has the session's instance of each one of the
-    /// picture's.
+    /// The item under `cursor`, pixels of the picture of `camera`. `shown` has the session's instance of each one of
+    /// the picture's.
     pub fn pick(&self, world: &World, shown: &[usize], camera: &Camera, cursor: DVec2, filter: PickFilter) -> Hit {
         let Some(sample) = self.at((cursor.x.max(0.0) as u32, cursor.y.max(0.0) as u32)) else {
             return Hit { picked: None, point: None };
@@ -174,18 +174,19 @@ impl Samples {
     }
 }
 
-/// The parameters and the point where a ray meets a surface, near `uv`. `None` where it meets none, as beside its borders.
+/// The parameters and the point where a ray meets a surface, near `uv`. `None` where it does not, as beside the
+/// borders.
 ///
 /// Accuracy: some roundings of the surface's coordinates.
 pub fn on_surface(surface: &Surface, ray: (DVec3, DVec3), uv: DVec2) -> Option<(DVec2, DVec3)> {
     let (uv, point, distance) = towards(surface, ray, uv)?;
     let (low, high) = surface.bounds();
-    // what does not reach the ray is no answer
+    // a point off the ray is no meeting
     (distance <= 1e-9 * (high - low).length()).then_some((uv, point))
 }
 
-/// The parameters within the domain from which Newton's method gets no nearer to a ray, with the point there and its
-/// distance from the ray: two planes through the ray are met, by steps that are halved until they lead nearer.
+/// The parameters within the domain at which Newton's method gets no nearer to a ray, with the point there and its
+/// distance from the ray. It solves for two planes through the ray, with steps that are halved until they lead nearer.
 pub fn towards(surface: &Surface, (origin, direction): (DVec3, DVec3), uv: DVec2) -> Option<(DVec2, DVec3, f64)> {
     const STEPS: usize = 40;
     const HALVINGS: i32 = 8;

@@ -1,4 +1,4 @@
-//! Picks from images that are written by hand.
+//! Picks from hand-made images.
 
 use super::*;
 use crate::session::{Loaded, World};
@@ -16,7 +16,7 @@ fn world() -> World {
 const NOTHING: Sample =
     Sample { depth: f32::INFINITY, face: 0, uv: [f32::NAN; 2], normal: [0.0; 3], edge: 0, part: 0, instance: 0 };
 
-/// A view of the middle of a face, its pixel, and what the engine would write there.
+/// A view of the middle of a face, its pixel, and the values that the engine would write there.
 fn over_face(world: &World, face: usize) -> (Camera, DVec2, Sample, DVec3) {
     let surface = &world.model.parts[0].faces[face].surface;
     let ((u0, u1), (v0, v1)) = surface.domain();
@@ -84,7 +84,7 @@ fn edges_go_before_faces_and_their_ends_before_them() {
 }
 
 #[test]
-fn the_background_and_numbers_without_a_part_are_told() {
+fn the_background_and_numbers_without_a_part_are_reported() {
     let world = world();
     let (camera, pixel, sample, _) = over_face(&world, 0);
     let hit = one(pixel, NOTHING).pick(&world, &[0], &camera, pixel, PickFilter::Any);
@@ -93,7 +93,7 @@ fn the_background_and_numbers_without_a_part_are_told() {
     let hit = one(pixel, solid).pick(&world, &[0], &camera, pixel, PickFilter::Any);
     assert_eq!(hit.picked, Some(Picked::Number { instance: None, id: 77 }));
     assert!(hit.point.is_some());
-    // beside what was copied
+    // beside the copied pixels
     let hit = one(pixel, sample).pick(&world, &[0], &camera, pixel + 40.0, PickFilter::Any);
     assert_eq!(hit.picked, None);
 }

@@ -1,4 +1,4 @@
-//! Files read by a thread of their own, with progress, and given up at once.
+//! Files read by a thread, with progress; reading can be stopped at once.
 
 use selvedge_io::import::{self, Folders, Import, Options, Stage};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -12,11 +12,11 @@ use std::thread::{self, JoinHandle};
 pub struct Loaded {
     /// Where it is.
     pub path: PathBuf,
-    /// What it held.
+    /// Its content.
     pub import: Import,
 }
 
-/// What the thread tells.
+/// A message of the thread.
 #[derive(Debug)]
 pub enum LoaderEvent {
     /// How far a file has come: stage, and a share of it from 0 to 1 where it is known.
@@ -30,9 +30,9 @@ pub enum LoaderEvent {
     },
     /// It is read.
     Loaded(Arc<Loaded>),
-    /// It cannot be read, or nothing of it drawn: why, naming the file.
+    /// It cannot be read, or nothing of it can be drawn: the reason, with the file's name.
     Failed(PathBuf, String),
-    /// It was given up.
+    /// Reading was stopped.
     Cancelled(PathBuf),
 }
 
@@ -45,10 +45,10 @@ pub struct Loader {
     thread: Option<JoinHandle<()>>,
 }
 
-/// What ends an import that was given up; it unwinds through the importer without a message.
+/// Ends an import that was stopped; it unwinds through the importer without a message.
 struct GivenUp;
 
-/// Share of a stage that must pass before it is told again.
+/// Share of a stage between two reports of progress.
 const STEP: f32 = 0.02;
 
 impl Loader {
@@ -92,7 +92,7 @@ impl Loader {
         Self { path, cancelled, thread: Some(thread) }
     }
 
-    /// Gives it up: the importer ends at its next sign of progress, and nothing of it is told but that.
+    /// Stops reading: the importer ends at its next report of progress, and sends only that it was stopped.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }
@@ -100,7 +100,7 @@ impl Loader {
     /// Waits until the thread has ended.
     pub fn join(&mut self) {
         if let Some(thread) = self.thread.take() {
-            // what it had to say it has told
+            // it has sent all its messages
             let _ = thread.join();
         }
     }
@@ -128,7 +128,7 @@ mod tests {
         PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../samples").join(name)
     }
 
-    /// The last event, and how many signs of progress came before.
+    /// The last event, and the number of reports of progress before it.
     fn read(path: PathBuf, cancel: bool) -> (LoaderEvent, usize) {
         let (to, from) = mpsc::channel();
         let mut loader = Loader::new(path, move |event| to.send(event).expect("the test waits"));
@@ -155,7 +155,7 @@ mod tests {
         assert!(matches!(&last, LoaderEvent::Failed(_, why) if why.contains("no_such.step")), "{last:?}");
     }
 
-    /// A fifth of a second, for files of any size; the thread may have read it before it is told.
+    /// A fifth of a second, for files of any size; the thread may have read it before it stops.
     #[test]
     fn a_file_is_given_up_at_once() {
         let start = Instant::now();

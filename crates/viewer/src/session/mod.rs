@@ -1,9 +1,9 @@
-//! What is open, and what is done with it: files, visibility, colours, sections, selection; plain data without a window.
+//! Open files and the state of the scene: visibility, colours, sections, selection; plain data without a window.
 //!
 //! ```text
-//!   files ─merge─▶ World: one model, where each file's parts are, edges of each part
+//!   files ─merge─▶ World: one model, the parts of each file, edges of each part
 //!                     │
-//!   SceneState ───────┴─show─▶ Shown: the model that is drawn, and which instance of the world each of its is
+//!   SceneState ───────┴─show─▶ Shown: the model that is drawn, and the world's instance of each of its own  
 //!   (hidden, see-through, colours, sections, explosion; undone and redone)
 //! ```
 
@@ -21,20 +21,20 @@ pub use world::{FilePart, World};
 
 use std::sync::Arc;
 
-/// Everything of a session that is no window.
+/// The state of a session, without the window.
 #[derive(Debug, Default)]
 pub struct Session {
-    /// What is open.
+    /// The open files.
     pub world: Arc<World>,
-    /// How it is shown; changes are undone and redone.
+    /// How they are shown; changes can be undone and redone.
     pub scene: History<SceneState>,
-    /// What is selected, in the order of clicks.
+    /// The selection, in the order of clicks.
     pub selection: Vec<Picked>,
 }
 
 impl Session {
-    /// Replaces what is open. What is hidden, coloured and cut stays where the placed parts are as many as before and
-    /// have the same names; the selection goes, since numbers may mean something else.
+    /// Replaces the open files. Hidden, coloured and cut items stay so if the number and names of placed parts are
+    /// unchanged. The selection is cleared, since its numbers may refer to other items.
     pub fn open(&mut self, world: World) {
         if !world.has_parts_of(&self.world) {
             let sections = self.scene.now().sections.clone();
@@ -44,7 +44,7 @@ impl Session {
         self.selection.clear();
     }
 
-    /// A click: replaces the selection, or adds to it and takes away from it what it holds.
+    /// A click: replaces the selection, or adds an item to it or removes it.
     pub fn select(&mut self, picked: Option<Picked>, add: bool) {
         if !add {
             self.selection.clear();
@@ -58,7 +58,7 @@ impl Session {
         }
     }
 
-    /// Things in the tree that the selection is of.
+    /// The selected items of the tree.
     pub fn selected_instances(&self) -> Vec<usize> {
         let mut all: Vec<usize> = self.selection.iter().filter_map(Picked::instance).collect();
         all.sort_unstable();

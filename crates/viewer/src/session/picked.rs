@@ -1,8 +1,8 @@
-//! Things of the model that are selected.
+//! Selected items of the model.
 
 use glam::DVec2;
 
-/// Something of the model; numbers are those of the session's model, from 0 on.
+/// An item of the model; numbers are those of the session's model, from 0 on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Picked {
     /// A face of a placed part.
@@ -30,7 +30,7 @@ pub enum Picked {
     },
     /// A placed part.
     Instance(usize),
-    /// A face that is known by its number alone: of a Boolean solid, a section or a mesh.
+    /// A face of which only the number is known: of a Boolean solid, a section or a mesh.
     Number {
         /// Its placed part, if it has one.
         instance: Option<usize>,
@@ -40,7 +40,7 @@ pub enum Picked {
 }
 
 impl Picked {
-    /// The same thing, wherever it was picked.
+    /// Whether both are the same item, wherever it was picked.
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Face { instance: a, face: f, .. }, Self::Face { instance: b, face: g, .. }) => a == b && f == g,
@@ -48,7 +48,7 @@ impl Picked {
         }
     }
 
-    /// The placed part that it is of.
+    /// Its placed part.
     pub fn instance(&self) -> Option<usize> {
         match *self {
             Self::Face { instance, .. } | Self::Edge { instance, .. } | Self::Vertex { instance, .. } => Some(instance),

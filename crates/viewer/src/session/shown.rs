@@ -1,4 +1,4 @@
-//! The model that is drawn: what the session's state leaves of the world.
+//! The model that is drawn: the world in the session's state.
 
 use super::World;
 use glam::{DAffine3, DVec3};
@@ -6,7 +6,7 @@ use selvedge::model::{Bounds, Colour, Instance, Model, SolidError, TrimLoop};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A plane that cuts the model open: `normal · p <= offset` stays.
+/// A plane that cuts the model open: the side `normal · p <= offset` stays.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Section {
     /// Unit length.
@@ -43,7 +43,7 @@ impl Section {
 pub struct SceneState {
     /// Items that are not shown.
     pub hidden: BTreeSet<usize>,
-    /// Instances that are seen through.
+    /// Transparent instances.
     pub clear: BTreeSet<usize>,
     /// Instances that have another colour.
     pub colours: BTreeMap<usize, Colour>,
@@ -60,10 +60,10 @@ pub type LoopKey = (usize, usize, usize);
 
 /// Most sections at a time.
 pub const MOST_SECTIONS: usize = 3;
-/// Opacity of what is seen through.
+/// Opacity of transparent instances.
 const CLEAR: f32 = 0.25;
 
-/// What is drawn.
+/// The model that is drawn.
 #[derive(Clone, Debug, Default)]
 pub struct Shown {
     /// For the engine.
@@ -125,7 +125,7 @@ impl SceneState {
                 Err(error) => failed = Some(error),
             }
         }
-        // a section leaves out what it cuts away or makes solid: the rest is in order
+        // a section omits the instances that it cuts away or makes solid; the others keep their order
         let mut left = visible.iter().peekable();
         let mut instances = Vec::with_capacity(model.instances.len());
         for placed in &model.instances {

@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
-/// Where a file's things are in the model.
+/// The place of a file's items in the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilePart {
     /// The file.
@@ -19,11 +19,11 @@ pub struct FilePart {
     pub solids: Range<usize>,
     /// Its format, as it names it.
     pub format: String,
-    /// One line: what is there, and what is missing.
+    /// One line: the drawn and the missing items.
     pub summary: String,
     /// Everything of the file is drawn.
     pub complete: bool,
-    /// What was left out or mended, a line each.
+    /// Items that were left out or repaired, a line each.
     pub warnings: Vec<String>,
 }
 
@@ -34,11 +34,12 @@ pub struct World {
     pub model: Model,
     /// The files in the order in which they were opened.
     pub files: Vec<FilePart>,
-    /// Box of all that is drawn.
+    /// Box of everything drawn.
     pub bounds: Bounds,
-    /// What was lost when files were put together.
+    /// Losses when files were put together.
     pub notices: Vec<String>,
     edges: OnceLock<PartEdges>,
+    curvature_range: OnceLock<f64>,
 }
 
 impl Default for World {
@@ -49,19 +50,25 @@ impl Default for World {
             bounds: Bounds::EMPTY,
             notices: Vec::new(),
             edges: OnceLock::new(),
+            curvature_range: OnceLock::new(),
         }
     }
 }
 
-/// Edges of each part; of a part without curves, none, and why.
+/// Edges of each part; for a part without curves none, and the reason.
 #[derive(Debug, Default)]
 struct PartEdges {
     parts: Vec<Edges>,
-    /// The number of each part's first edge, from 1 on, as the engine counts; and one more at the end.
+    /// The number of each part's first edge, from 1 on, as in the engine; and one more at the end.
     first: Vec<u32>,
 }
 
 impl World {
+    /// The end of the scale of curvature, found once.
+    pub fn curvature_range(&self) -> f64 {
+        *self.curvature_range.get_or_init(|| self.model.curvature_range())
+    }
+
     /// Puts files together.
     pub fn new(files: &[Arc<Loaded>]) -> Self {
         let mut world = Self::default();
@@ -109,7 +116,7 @@ impl World {
         });
     }
 
-    /// Every placed part has its name and place in the other's list, too.
+    /// Whether every placed part has its name and place in the other's list, too.
     pub fn has_parts_of(&self, other: &Self) -> bool {
         let named = |i: &Instance, world: &Self| (i.name.clone(), world.model.parts[i.part].name.clone());
         self.model.instances.len() == other.model.instances.len()
@@ -117,7 +124,7 @@ impl World {
             && self.model.instances.iter().zip(&other.model.instances).all(|(a, b)| named(a, self) == named(b, other))
     }
 
-    /// Nothing is open, or nothing of it can be drawn.
+    /// Nothing is open, or nothing can be drawn.
     pub fn is_empty(&self) -> bool {
         self.model.instances.is_empty() && self.model.solids.is_empty()
     }

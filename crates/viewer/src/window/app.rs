@@ -18,14 +18,14 @@ use crate::watch::Watcher;
 use glam::DVec2;
 use selvedge::ash::vk;
 use selvedge::model::Camera;
-use selvedge::picture::{FrameSettings, FrameStats};
+use selvedge::picture::{FrameSettings, FrameStats, Style};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::Window;
 
-/// What other threads tell the window.
+/// Messages of other threads to the window.
 pub enum Event {
     /// The frame that was submitted has finished.
     FrameDone(Result<(), vk::Result>),
@@ -39,11 +39,11 @@ pub enum Event {
     Chosen(Vec<PathBuf>),
     /// An open file has changed.
     Changed(PathBuf),
-    /// What was selected has been measured.
+    /// The measurement of a selection.
     Measured(Vec<Picked>, Option<Measurement>),
-    /// A picture was judged: which pixels are wrong, or why it was not.
+    /// The verdict on a picture, or why there is none.
     Judged(Result<Verdict, String>),
-    /// The panels want to be drawn again.
+    /// The panels need to be drawn again.
     Repaint,
 }
 
@@ -54,11 +54,11 @@ pub struct Loading {
     pub share: Option<f32>,
 }
 
-/// A frame on its way.
+/// A frame in flight.
 struct Flight {
-    /// The engine's picture in it, and when it was begun.
+    /// The engine's picture in it, and its start.
     picture: Option<(Due, FrameSettings, u64, Instant)>,
-    /// Where it looks for what lies there: pixels of the view.
+    /// Where it picks: pixels of the view.
     pick: Option<DVec2>,
     /// The picture that the pick reads.
     camera: Option<Camera>,
@@ -73,17 +73,17 @@ pub struct ShownPicture {
     generation: u64,
 }
 
-/// What lives as long as the window.
+/// Objects that live as long as the window.
 pub struct Opened {
     pub window: Arc<Window>,
     pub input: egui_winit::State,
-    // in the order in which they go
+    // in the order in which they are dropped
     pub waiter: Waiter,
     pub engine: Engine,
     pub screen: Screen,
 }
 
-/// Everything.
+/// The state of the program.
 pub struct App {
     pub options: ViewOptions,
     pub proxy: EventLoopProxy<Event>,
@@ -93,7 +93,7 @@ pub struct App {
     pub view: View,
     pub ui: Ui,
     pub settings: Settings,
-    /// As they are in the file.
+    /// The settings in the file.
     kept: Settings,
     pub files: Vec<Arc<Loaded>>,
     pub loading: Vec<Loading>,
@@ -101,7 +101,7 @@ pub struct App {
     flight: Option<Flight>,
     /// Drawn again once the frame in flight is done.
     pub again: bool,
-    /// Drawn again then, whatever happens.
+    /// The time of the next frame, if no event comes before.
     pub wake: Option<Instant>,
     pub picture: Option<ShownPicture>,
     pub stats: Option<FrameStats>,
@@ -109,14 +109,14 @@ pub struct App {
     /// Pixels of the window.
     pub cursor: Option<DVec2>,
     pub held: Held,
-    /// What lies there is wanted: pixels of the view.
+    /// A pick to make: pixels of the view.
     pub pick: Option<DVec2>,
-    /// A click waits for what lies under it: whether it adds to the selection, and where it is, pixels of the view.
+    /// A click that waits for its pick: whether it adds to the selection, and where it is, pixels of the view.
     pub click: Option<(bool, DVec2)>,
     pub failed: Option<ViewError>,
     clipboard: Option<arboard::Clipboard>,
     messages: Vec<String>,
-    /// The first picture is there.
+    /// The first picture was shown.
     seen: bool,
     begun: Instant,
 }
@@ -204,7 +204,7 @@ impl App {
         Ok((Waiter::new(screen.context.device.clone(), done), engine, screen))
     }
 
-    /// Everything of the device anew: it was lost.
+    /// Makes all objects of the device again, after it was lost.
     pub fn reopen_device(&mut self) -> Result<(), ViewError> {
         let Some(Opened { window, input, waiter, mut engine, screen }) = self.opened.take() else { return Ok(()) };
         engine.wait();
@@ -212,7 +212,7 @@ impl App {
         drop((waiter, engine));
         self.messages.extend(screen.shutdown());
         let (waiter, engine, screen) = self.open_device(&window)?;
-        // textures of the panels are gone: the context sends them again
+        // the textures of the panels are gone: a new context sends them again
         self.context = crate::panels::context();
         let input = egui_winit::State::new(
             self.context.clone(),
@@ -267,7 +267,7 @@ impl App {
             state: self.session.scene.now().clone(),
             settings: self.scene_settings(),
         };
-        let (due, settings, marks) = (self.view.due(now), self.frame_settings(), self.marks());
+        let (due, mut settings, marks) = (self.view.due(now), self.frame_settings(), self.marks());
         let under = self.over_view();
         let Some(Opened { window, waiter, engine, screen, .. }) = &mut self.opened else { return Ok(()) };
         let uploaded = |proxy: &EventLoopProxy<Event>| {
@@ -275,6 +275,9 @@ impl App {
             move |uploaded| drop(proxy.send_event(Event::Uploaded(uploaded)))
         };
         engine.want(&request, uploaded(&self.proxy));
+        if settings.style.is_curvature() && !engine.has_curvature() {
+            settings.style = Style::Clay; // until the upload that was just asked for is there
+        }
         if self.session.world.is_empty() {
             screen.blank();
             self.picture = None;
@@ -286,7 +289,7 @@ impl App {
         let picture = picture.map(|renderer| Picture { renderer, camera: &due.camera, settings });
         let in_picture = picture.is_some().then_some((due, settings, generation, now));
         let seen_by = in_picture.map(|_| due.camera).or(self.picture.map(|p| p.camera));
-        // what lies under a resting cursor changes with the picture
+        // the item under a resting cursor changes with the picture
         let rests = in_picture.is_some() && !self.view.is_dragging();
         // without a picture there is nothing to click
         self.click = self.click.filter(|_| seen_by.is_some());
@@ -306,7 +309,7 @@ impl App {
             Ok(drawn) => drawn,
             Err(Failure::Picture(error)) => {
                 self.ui.tell(format!("This view cannot be drawn: {error}"));
-                // shown as it is until the view changes
+                // shown until the view changes
                 self.picture = Some(wanted);
                 true
             }
@@ -431,7 +434,7 @@ impl App {
                 self.view.hold(hit.point);
                 self.catch_up();
             }
-            // an answer about an earlier place is none to a click
+            // a pick at an earlier place does not serve a click
             if let Some((add, _)) = self.click.take_if(|(_, place)| place.distance(at) < 0.5) {
                 self.session.select(hit.picked, add);
                 self.ui.selected(&self.session, hit.point);
@@ -445,7 +448,7 @@ impl App {
         Ok(())
     }
 
-    /// The engine's thread is done.
+    /// The engine's thread has finished.
     pub fn uploaded(&mut self, uploaded: Uploaded) {
         let Some(opened) = &mut self.opened else { return };
         match opened.engine.take(uploaded) {
@@ -464,7 +467,7 @@ impl App {
             loading.loader.cancel();
         }
         if let Some(Opened { window, input, waiter, mut engine, screen }) = self.opened.take() {
-            // a renderer that a thread holds comes back by the queue of events, which goes with the loop
+            // a renderer in a thread comes back through the queue of events, which ends with the loop
             engine.wait();
             screen.context.wait();
             drop((waiter, engine, input));

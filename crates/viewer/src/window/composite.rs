@@ -1,6 +1,6 @@
-//! The engine's picture and the marks of what is hovered and selected, into the window's image: one triangle.
+//! Draws the engine's picture, with hovered and selected items marked, into the window's image: one triangle.
 //!
-//! Marks are looked up in the images of faces and instances: nothing of the model is drawn again for them.
+//! The images of faces and instances give the marked pixels: nothing of the model is drawn again.
 
 use super::ViewError;
 use super::context::Context;
@@ -14,7 +14,7 @@ use selvedge::{ash, gpu_allocator};
 /// `shaders/composite.*`, compiled by `tools/shaders`.
 const VERTEX: &[u8] = include_bytes!("../../shaders/composite.vert.spv");
 const FRAGMENT: &[u8] = include_bytes!("../../shaders/composite.frag.spv");
-/// Most marks; more selected things are listed, and not tinted.
+/// Most marks; further selected items are listed, and not tinted.
 pub const MOST_MARKS: usize = 1024;
 
 /// As the shader has it.
@@ -100,7 +100,7 @@ impl Composite {
         }
     }
 
-    /// What is marked from now on; no frame is in flight.
+    /// Sets the marks; no frame is in flight.
     pub fn mark(&mut self, hovered: Option<Mark>, selected: &[Mark]) {
         let all: Vec<Mark> = hovered.into_iter().chain(selected.iter().copied()).take(MOST_MARKS).collect();
         let bytes: &[u8] = bytemuck::cast_slice(&all);

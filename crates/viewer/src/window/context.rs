@@ -1,7 +1,7 @@
 //! Vulkan of a window: instance, surface, device, queue, allocator, one command buffer.
 //!
-//! The viewer is a host as any other: `docs/embedding.md` of the engine is the contract. One frame is in flight; the next is
-//! recorded when its fence is signalled.
+//! The viewer uses the engine as any host does: `docs/embedding.md` of the engine is the contract. One frame is in
+//! flight; the next is recorded when its fence is signalled.
 
 use super::ViewError;
 use ash::vk;
@@ -40,7 +40,7 @@ pub struct Context {
     pub name: String,
 }
 
-/// What is asked of the device.
+/// The requested device.
 #[derive(Clone, Debug, Default)]
 pub struct DeviceOptions {
     /// A part of the wanted device's name.
@@ -127,7 +127,7 @@ impl Context {
         }
     }
 
-    /// What the engine borrows.
+    /// The device, lent to the engine.
     pub fn lend(&self) -> HostDevice<'_> {
         HostDevice {
             instance: &self.instance,
@@ -157,12 +157,12 @@ impl Context {
         Ok(())
     }
 
-    /// What the validation layer said so far.
+    /// The validation layer's messages so far.
     pub fn messages(&self) -> Vec<String> {
         self.messages.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Waits until the device does nothing. A lost device has nothing left to do.
+    /// Waits until the device is idle. A lost device is idle.
     pub fn wait(&self) {
         // SAFETY: the device is alive; nothing is submitted meanwhile by another thread.
         if let Err(error) = unsafe { self.device.device_wait_idle() } {
@@ -170,9 +170,9 @@ impl Context {
         }
     }
 
-    /// Destroys everything; returns what the validation layer said to the end.
+    /// Destroys everything; returns all messages of the validation layer.
     ///
-    /// What was made from the device is gone.
+    /// Objects made from the device were destroyed before.
     pub fn shutdown(mut self) -> Vec<String> {
         self.wait();
         // SAFETY: nothing is in flight; in the order of their dependence, each once.

@@ -1,4 +1,4 @@
-//! The engine's renderer, which a thread takes while it uploads: the window goes on meanwhile.
+//! The engine's renderer. A thread takes it for uploads, so that the window stays responsive.
 //!
 //! ```text
 //!   Ready ──request──▶ Uploading (thread: model of the state, upload) ──Uploaded──▶ Ready, or the renderer before
@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
-/// What is to be drawn.
+/// A model to draw.
 #[derive(Clone, Debug)]
 pub struct Request {
     pub world: Arc<World>,
@@ -26,37 +26,37 @@ impl PartialEq for Request {
     }
 }
 
-/// What a thread brings back.
+/// The result of a thread.
 pub struct Uploaded {
     renderer: Renderer,
     /// `None`: another part of the same model.
     request: Option<(Request, Arc<Shown>)>,
     result: Result<(), RenderError>,
-    /// What had to be left out.
+    /// A setting that had to be ignored.
     notice: Option<String>,
 }
 
-/// What became of an upload.
+/// The result of an upload.
 pub enum Outcome {
     /// Another model, or the same in another state, is drawn from now on.
     Model,
     /// Another part of it.
     Cut,
-    /// Why not; what was there before is drawn on.
+    /// The reason of a failure; the model before stays.
     Failed(RenderError),
 }
 
-/// The renderer and what it holds.
+/// The renderer and its model.
 pub struct Engine {
     renderer: Option<Renderer>,
     thread: Option<JoinHandle<()>>,
-    /// Held by the renderer.
+    /// The renderer's model.
     current: Option<(Request, Arc<Shown>)>,
-    /// Asked for last.
+    /// The last request.
     asked: Option<Request>,
-    /// What of the model is not drawn as the settings say.
+    /// A setting that does not apply to the model.
     pub notice: Option<String>,
-    /// Counts what was uploaded: pictures of another count are old.
+    /// Counts uploads: pictures of another count are old.
     pub generation: u64,
 }
 
@@ -65,14 +65,19 @@ impl Engine {
         Self { renderer: Some(renderer), thread: None, current: None, asked: None, notice: None, generation: 0 }
     }
 
-    /// A thread uploads.
+    /// Whether a thread uploads.
     pub fn is_busy(&self) -> bool {
         self.renderer.is_none()
     }
 
-    /// What is drawn.
+    /// The model that is drawn.
     pub fn shown(&self) -> Option<&Arc<Shown>> {
         self.current.as_ref().map(|(_, shown)| shown)
+    }
+
+    /// What is drawn may be drawn in a style of curvature.
+    pub fn has_curvature(&self) -> bool {
+        self.current.as_ref().is_some_and(|(request, _)| request.settings.curvature)
     }
 
     /// The renderer, when it holds a model.
@@ -80,8 +85,8 @@ impl Engine {
         self.renderer.as_mut().filter(|_| self.current.is_some())
     }
 
-    /// Begins to upload what is asked for, unless it is there or on its way; no frame is in flight. `done` is called by
-    /// the thread.
+    /// Begins to upload the requested model, unless it is there or on its way; no frame is in flight. The thread calls
+    /// `done`.
     pub fn want(&mut self, request: &Request, done: impl FnOnce(Box<Uploaded>) + Send + 'static) {
         if self.is_busy() || self.asked.as_ref() == Some(request) || request.world.is_empty() || self.edits(request) {
             return;
@@ -104,7 +109,7 @@ impl Engine {
         }));
     }
 
-    /// Changes trim loops in place, where nothing else differs from what was asked for last.
+    /// Changes trim loops in place, if nothing else differs from the last request.
     fn edits(&mut self, request: &Request) -> bool {
         let (Some(asked), Some((current, shown)), Some(renderer)) =
             (&self.asked, &mut self.current, &mut self.renderer)
@@ -139,11 +144,11 @@ impl Engine {
         true
     }
 
-    /// Takes back what the thread has.
+    /// Takes the renderer back from the thread.
     pub fn take(&mut self, uploaded: Uploaded) -> Outcome {
         let Uploaded { renderer, request, result, notice } = uploaded;
         if let Some(thread) = self.thread.take() {
-            // it has nothing left to do
+            // the thread has ended
             let _ = thread.join();
         }
         self.renderer = Some(renderer);
@@ -159,7 +164,7 @@ impl Engine {
         if is_model { Outcome::Model } else { Outcome::Cut }
     }
 
-    /// Waits for the thread; what it brings is in the queue of events then, and must be taken or dropped.
+    /// Waits for the thread; its result is then in the queue of events, and must be taken or dropped.
     pub fn wait(&mut self) {
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();

@@ -1,4 +1,4 @@
-//! Events of the window and of other threads, and wishes fulfilled.
+//! Events of the window and of other threads, and the commands.
 
 use super::app::{App, Event, Loading, Opened};
 use crate::commands::Command;
@@ -14,7 +14,7 @@ use winit::event::{ElementState, MouseButton, MouseScrollDelta, StartCause, Wind
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::window::WindowId;
 
-/// A file that was written is read again when it has rested so long.
+/// A file that was written is read again when it has been unchanged so long.
 const REST: Duration = Duration::from_millis(300);
 /// Pixels of a trackpad for one notch of a wheel.
 const NOTCH_PX: f64 = 40.0;
@@ -141,7 +141,7 @@ impl App {
         }
     }
 
-    /// Tells the view where the cursor is by now.
+    /// Passes the current cursor to the view.
     pub fn catch_up(&mut self) {
         let Some(cursor) = self.cursor else { return };
         let at = cursor - DVec2::new(f64::from(self.rect.x), f64::from(self.rect.y));
@@ -174,7 +174,7 @@ impl App {
             self.pick = self.view.wants_point();
         } else if self.held.any() {
             if self.view.wants_point().is_some() {
-                // it is over before the point was known
+                // the drag ended before its point was found
                 self.view.hold(None);
                 self.catch_up();
             }
@@ -267,7 +267,7 @@ impl App {
         });
     }
 
-    /// Reads again what has changed on the disk and rests.
+    /// Reads files again that have changed on the disk and rest.
     fn read_changed(&mut self, now: Instant) {
         let rested: Vec<PathBuf> =
             self.ui.changed.iter().filter(|(_, at)| **at + REST <= now).map(|(path, _)| path.clone()).collect();
@@ -278,7 +278,7 @@ impl App {
         }
     }
 
-    /// Fulfils what panels and keys have asked for.
+    /// Carries out the commands of panels and keys.
     pub fn obey(&mut self, now: Instant) {
         let smooth = !self.settings.reduced_motion;
         for command in std::mem::take(&mut self.ui.commands) {
@@ -332,7 +332,7 @@ impl App {
         }
     }
 
-    /// The dialog of the desktop, which a thread waits for.
+    /// The desktop's dialog, in a thread that waits for it.
     fn open_dialog(&mut self) {
         let proxy = self.proxy.clone();
         std::thread::spawn(move || {

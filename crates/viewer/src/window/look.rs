@@ -1,4 +1,4 @@
-//! What the window shows, as the engine and the composite pass have it.
+//! The scene's and the frame's settings for the engine, and marks for the composite pass.
 
 use super::app::App;
 use crate::pick::Mark;
@@ -18,19 +18,21 @@ impl App {
         let edges = EdgeSettings { which, silhouettes, hidden: hidden_lines, ..EdgeSettings::default() };
         let edges = (which != EdgeChoice::None || silhouettes).then_some(edges);
         let smooth = if smooth { Smooth::Borders } else { Smooth::None };
-        SceneSettings { edges, smooth, editable: self.ui.trims, ..SceneSettings::default() }
+        let curvature = self.ui.style.is_curvature();
+        SceneSettings { edges, smooth, curvature, editable: self.ui.trims, ..SceneSettings::default() }
     }
 
     /// Settings of the pictures in the window.
     pub fn frame_settings(&self) -> FrameSettings {
         FrameSettings {
             style: self.ui.style,
+            curvature_range: if self.ui.style.is_curvature() { self.session.world.curvature_range() } else { 1.0 },
             background: Some(background(self.context.style().visuals.dark_mode)),
             ..FrameSettings::default()
         }
     }
 
-    /// What is hovered and selected, by the numbers of the picture that is shown.
+    /// Hovered and selected items, by the numbers of the shown picture.
     pub fn marks(&self) -> (Option<Mark>, Vec<Mark>) {
         let Some(shown) = self.opened.as_ref().and_then(|o| o.engine.shown()) else { return (None, Vec::new()) };
         let number = |instance: usize| shown.instances.iter().position(|i| *i == instance).map(|i| i as u32 + 1);
@@ -43,7 +45,7 @@ impl App {
             Picked::Instance(instance) => Some(Mark { instance: number(instance)?, face: 0 }),
             Picked::Number { instance: None, id } => Some(Mark { instance: 0, face: id }),
             Picked::Number { instance: Some(instance), id } => Some(Mark { instance: number(instance)?, face: id }),
-            // the panels draw them
+            // the panels draw these
             Picked::Edge { .. } | Picked::Vertex { .. } => None,
         };
         let dragging = self.view.is_dragging();

@@ -1,4 +1,4 @@
-//! The window: events in, frames out. What Vulkan needs of `unsafe` lives here.
+//! The window: events in, frames out. The viewer's `unsafe` Vulkan calls are in this module.
 //!
 //! ```text
 //!   winit ─events─▶ App ─▶ View (camera), Session (what is shown), panels (egui)
@@ -33,22 +33,22 @@ pub struct ViewOptions {
     pub files: Vec<PathBuf>,
     /// A part of the name of the Vulkan device to use.
     pub device: Option<String>,
-    /// The validation layer is on; [`Closed::messages`] has what it says.
+    /// Turns on the validation layer; [`Closed::messages`] has its messages.
     pub validation: bool,
-    /// Where settings are kept; `None` keeps none.
+    /// The file of settings; `None` stores none.
     pub settings: Option<PathBuf>,
     /// Width and height of the window, points; `None` leaves them to the system.
     pub size: Option<(u32, u32)>,
 }
 
-/// What is left when the window is closed.
+/// The state after the window is closed.
 #[derive(Clone, Debug, Default)]
 pub struct Closed {
-    /// What the validation layer said.
+    /// Messages of the validation layer.
     pub messages: Vec<String>,
 }
 
-/// Why there is no window, or none any more.
+/// Why there is no window, or no longer one.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewError {
     /// The system's windows.
@@ -83,7 +83,7 @@ pub enum ViewError {
     Panels(#[from] egui_ash_renderer::RendererError),
 }
 
-/// Why a frame is not as it should be.
+/// Why a frame is incomplete.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// The window is shown without a new picture.
@@ -104,7 +104,7 @@ impl ViewError {
         !matches!(self, Self::Window(_) | Self::Loop(_) | Self::NoValidation)
     }
 
-    /// The device is gone; everything can be made anew from what the host holds.
+    /// The device is lost; the host's data suffice to make everything again.
     pub(crate) fn is_device_lost(&self) -> bool {
         match self {
             Self::Vulkan(result) => *result == vk::Result::ERROR_DEVICE_LOST,

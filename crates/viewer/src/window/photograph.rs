@@ -7,7 +7,7 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use selvedge::{ash, gpu_allocator};
 
-/// What the engine drew; row 0 on top.
+/// The engine's images; row 0 on top.
 #[derive(Clone, Debug, Default)]
 pub struct Photograph {
     pub size: (u32, u32),
@@ -19,7 +19,7 @@ pub struct Photograph {
     pub normal: Vec<[f32; 3]>,
 }
 
-/// A frame is recorded again where a buffer was too small; it then has room.
+/// A frame is recorded again where a buffer was too small; the buffer then has room.
 const MOST_TRIES: usize = 8;
 
 impl Screen {

@@ -1,4 +1,4 @@
-//! The window's device with all that draws in it, one frame at a time.
+//! The window's device and everything that draws on it, one frame at a time.
 //!
 //! ```text
 //!   begin ─▶ engine's picture, if one is due ─▶ composite ─▶ panels ─▶ present      a thread waits for the fence
@@ -20,13 +20,13 @@ use selvedge::renderer::{FrameInput, RenderError, Renderer};
 use std::sync::Arc;
 use winit::window::Window;
 
-/// What a frame shows.
+/// The content of a frame.
 pub struct Frame<'a> {
     /// Where the picture is in the window.
     pub view: ViewRect,
     /// The pixel of the picture whose surroundings are read.
     pub pick: Option<(u32, u32)>,
-    /// What is hovered, and what is selected.
+    /// Marks of the hovered and of the selected items.
     pub marks: (Option<Mark>, &'a [Mark]),
     /// Shapes of the panels, and pixels a point.
     pub panels: (&'a [egui::ClippedPrimitive], f32),
@@ -123,7 +123,7 @@ impl Screen {
                 self.context.swapchains.acquire_next_image(swapchain.handle, u64::MAX, self.context.acquired, fence)
             };
             match next {
-                // one that is only outdated is shown all the same: its semaphore is signalled
+                // an image that is only outdated is shown all the same: its semaphore is signalled
                 Ok((image, outdated)) => {
                     self.outdated = outdated;
                     return Ok(Some(image));
@@ -151,7 +151,7 @@ impl Screen {
         Ok(self.panels.set_textures(self.context.queue, self.context.pool, &delta.set)?)
     }
 
-    /// Textures that the frame before was the last to show; it has finished.
+    /// Frees textures that no later frame shows; the frame before has finished.
     pub fn free_textures(&mut self, ids: &[egui::TextureId]) -> Result<(), ViewError> {
         Ok(self.panels.free_textures(ids)?)
     }
@@ -170,7 +170,7 @@ impl Screen {
             match self.record_into(picture, &self.targets[target]) {
                 Ok(()) => self.shown = Some(target),
                 Err(error) => {
-                    // what was recorded is thrown away
+                    // the recorded commands are discarded
                     self.begin()?;
                     failed = Some(error);
                 }
@@ -194,7 +194,7 @@ impl Screen {
             return Ok(found);
         }
         if self.targets.len() == MOST_TARGETS {
-            // nothing is in flight: the oldest that is not shown goes
+            // nothing is in flight: the oldest one that is not shown is freed
             let oldest = usize::from(self.shown == Some(0));
             self.targets.remove(oldest).destroy(&self.context);
             self.shown = self.shown.map(|shown| if shown > oldest { shown - 1 } else { shown });
@@ -260,7 +260,7 @@ impl Screen {
         Ok(drawn?)
     }
 
-    /// Submits what is recorded, without a window, and waits.
+    /// Submits the recorded commands, without a window, and waits.
     pub(super) fn submit_and_wait(&self) -> Result<(), ViewError> {
         let Context { device, queue, cmd, fence, .. } = &self.context;
         let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(*cmd)];
@@ -298,7 +298,7 @@ impl Screen {
         }
     }
 
-    /// What was read around the cursor by the frame that has finished.
+    /// The pixels around the cursor, copied by the frame that has finished.
     pub fn picked(&self) -> Option<Samples> {
         self.picked.map(|area| self.pick.samples(area))
     }
@@ -313,7 +313,7 @@ impl Screen {
         self.shown = None;
     }
 
-    /// Frees all; what the validation layer said to the end. The engine's renderer is gone.
+    /// Frees everything; returns all messages of the validation layer. The engine's renderer was freed before.
     pub fn shutdown(self) -> Vec<String> {
         let Self { context, swapchain, composite, panels, targets, pick, .. } = self;
         context.wait();

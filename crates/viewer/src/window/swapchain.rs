@@ -1,4 +1,4 @@
-//! The window's images, made anew when it changes.
+//! The window's images, made again when the window changes.
 
 use super::ViewError;
 use super::context::Context;
@@ -13,7 +13,7 @@ pub struct Swapchain {
     pub drawn: Vec<vk::Semaphore>,
 }
 
-/// What became of an image that was asked for, or given back.
+/// The result of acquiring or presenting an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presented {
     /// It is shown.
@@ -25,7 +25,7 @@ pub enum Presented {
 }
 
 impl Presented {
-    /// Of Vulkan's answer; other failures are errors.
+    /// From Vulkan's result; other failures are errors.
     pub fn of(answer: Result<bool, vk::Result>) -> Result<Self, ViewError> {
         match answer {
             Ok(false) => Ok(Self::Shown),

@@ -2,10 +2,10 @@
 //!
 //! ```text
 //!   engine ──▶ colour, depth, face, (u, v), normal, edge, part, instance ──▶ composite: the window
-//!                                   └── pixels around the cursor ──▶ PickBuffer ──▶ what lies under it
+//!                                   └── pixels around the cursor ──▶ PickBuffer ──▶ the item under it
 //! ```
 //!
-//! The images of the picture that is shown stay, so that a pick draws nothing: it costs the same for every model.
+//! The images of the shown picture are kept, so a pick draws nothing: it costs the same for every model.
 
 use super::ViewError;
 use super::context::Context;
@@ -106,7 +106,7 @@ impl Targets {
         EngineTargets { aovs, ..EngineTargets::new(colour) }
     }
 
-    /// The engine may draw: what they held goes.
+    /// Makes them attachments for the engine; their old contents are discarded.
     pub fn begin(&self, context: &Context) {
         self.barriers(context, (READ.0, A::NONE, L::UNDEFINED), DRAWN);
     }
@@ -173,7 +173,7 @@ pub struct Area {
     pub height: u32,
 }
 
-/// Pixels beside the cursor that are looked at for edges.
+/// Pixels beside the cursor that are searched for edges.
 pub const REACH: u32 = 4;
 const SIDE: u32 = 2 * REACH + 1;
 /// Of a pixel: depth, face, (u, v), normal, edge, part, instance.
@@ -188,7 +188,7 @@ impl Area {
     }
 }
 
-/// Where pixels around the cursor are copied to.
+/// The buffer for pixels around the cursor.
 pub struct PickBuffer {
     buffer: vk::Buffer,
     memory: Allocation,
@@ -202,7 +202,7 @@ impl PickBuffer {
         Ok(Self { buffer, memory })
     }
 
-    /// What was copied of `around`, after the fence.
+    /// The copied pixels of `around`, after the fence.
     pub fn samples(&self, around: Area) -> Samples {
         let bytes = self.memory.mapped_slice().unwrap_or_default();
         let count = (around.width * around.height) as usize;

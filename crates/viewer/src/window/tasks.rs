@@ -16,7 +16,7 @@ use std::io::BufWriter;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Pixels that the judge looks at, beside those at which the face changes.
+/// Pixels that are judged, beside those at which the face changes.
 const JUDGED: usize = 20_000;
 
 impl App {
@@ -30,7 +30,7 @@ impl App {
         });
     }
 
-    /// The engine's picture of a view, waited for. `None`, and told, where there is none.
+    /// Draws a view and waits for its picture. `None`, with a message, where it fails.
     fn photograph(&mut self, camera: &Camera, settings: FrameSettings) -> Option<Photograph> {
         let Opened { engine, screen, .. } = self.opened.as_mut()?;
         let Some(renderer) = engine.renderer() else {
@@ -50,7 +50,7 @@ impl App {
         }
     }
 
-    /// Writes the picture that the panel asks for.
+    /// Writes the picture of the dialog.
     pub fn write_picture(&mut self) {
         let Shot { path, size, transparent, .. } = self.ui.shot.clone();
         let usual = self.frame_settings();
@@ -80,7 +80,7 @@ impl App {
         self.ui.tell(told);
     }
 
-    /// Draws the view once more and lets the judge look at it, in a thread.
+    /// Draws the view again, and judges it in a thread.
     pub fn check(&mut self) {
         let (camera, settings) = (*self.view.camera(), self.frame_settings());
         let Some(shown) = self.opened.as_ref().and_then(|o| o.engine.shown()).map(Arc::clone) else { return };
@@ -101,7 +101,7 @@ impl App {
     }
 }
 
-/// A model in the form that the file's name says, there as a whole or as it was; what of it is not written.
+/// Writes a model in the form of the file's ending; returns the omissions. If writing fails, the old file is unchanged.
 fn save(path: &Path, model: &Model) -> Result<Vec<String>, Box<dyn Error>> {
     let mut bytes = Vec::new();
     let mut warnings = Vec::new();
@@ -119,7 +119,7 @@ fn save(path: &Path, model: &Model) -> Result<Vec<String>, Box<dyn Error>> {
     Ok(warnings)
 }
 
-/// A PNG file, there as a whole or as it was.
+/// Writes a PNG file. If writing fails, the old file is unchanged.
 fn write(path: &Path, photograph: &Photograph) -> Result<(), png::EncodingError> {
     let beside = path.with_extension("png.new");
     let mut encoder = png::Encoder::new(BufWriter::new(File::create(&beside)?), photograph.size.0, photograph.size.1);

@@ -1,4 +1,4 @@
-//! A thread that waits for frames, so that the window never does.
+//! A thread that waits for frames, so that the window does not.
 
 use selvedge::ash::{self, vk};
 use std::sync::mpsc::{self, Sender};
@@ -11,7 +11,7 @@ pub struct Waiter {
 }
 
 impl Waiter {
-    /// `done` is called by the thread when a fence is signalled, with Vulkan's answer.
+    /// The thread calls `done` when a fence is signalled, with Vulkan's result.
     pub fn new(device: ash::Device, done: impl Fn(Result<(), vk::Result>) + Send + 'static) -> Self {
         let (fences, submitted) = mpsc::channel();
         let thread = thread::spawn(move || {

@@ -1,6 +1,6 @@
-"""Programs that run in processes of their own, by the packages of others. Each takes a file with its job, and prints
-results as lines that begin with `RESULT`, one as soon as it is known, so that a limit of time keeps what came before
-it.
+"""Programs that run in separate processes and use the peers' packages. Each takes a file with its job, and prints
+results as lines that begin with `RESULT`, each as soon as it is known, so that the results before a limit of time are
+kept.
 """
 
 import json
@@ -8,7 +8,7 @@ import sys
 
 
 def job():
-    """What the caller wants, as it wrote it."""
+    """The job that the caller wrote."""
     with open(sys.argv[1]) as text:
         return json.load(text)
 

@@ -1,11 +1,11 @@
-"""How wrong pictures of a Boolean solid are: rays through the primitives' own equations, in double precision, with
-code of its own.
+"""How wrong pictures of a Boolean solid are: rays through the primitives' own equations, in double precision, by
+separate code.
 
     job      scene: {primitives, tree} (scenes.py), camera, seconds,
              pictures: {name: path of a PNG, or of an image of faces as .npy}
     results  {boundary, sampled, pictures: {name: {worst_px, p999_px, off, searched, beyond}}}
 
-Judged is where the solid ends: whether a pixel shows it at all. A PNG shows the background where it has the colour of
+Only the outline is judged: whether a pixel shows the solid. A PNG shows the background where it has the colour of
 its upper left corner; in an image of faces that is 0.
 """
 
@@ -17,7 +17,7 @@ from PIL import Image
 from . import job, tell
 from .kernel import boundary, judged, unit
 
-# the colour of a pixel within so many steps of 255 of the corner's is the background: pictures are not dithered
+# a pixel whose colour differs from the corner's by no more steps of 255 is background: pictures are not dithered
 ALIKE = 2
 
 
@@ -59,7 +59,7 @@ def member(tree, inside):
 
 
 def spans(part, eye, ray):
-    """Where a ray is within a primitive: pairs of distances."""
+    """Parts of a ray within a primitive: pairs of distances."""
     cos, sin = math.cos(math.radians(part["turn"])), math.sin(math.radians(part["turn"]))
     turned = lambda v: (v[0], cos * v[1] + sin * v[2], -sin * v[1] + cos * v[2])
     o, d = turned(eye - numpy.array(part["at"], float)), turned(ray)
@@ -91,7 +91,7 @@ def quadratic(a, b, c):
 
 
 def slab(o, d, low, high):
-    """Where low < o + t d < high; empty as a pair that is the wrong way round."""
+    """Where low < o + t d < high; a reversed pair is empty."""
     if d == 0:
         return (-math.inf, math.inf) if low < o < high else (1, -1)
     a, b = (low - o) / d, (high - o) / d

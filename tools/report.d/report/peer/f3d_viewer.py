@@ -1,8 +1,9 @@
 """F3D, the viewer of many formats: it meshes by Open CASCADE, within a length and an angle that are options of its
 readers.
 
-job      model, camera, turn (cameras), deflections (lengths) results  {deflection, first_s, turning_ms, standing_ms}
-for each: from the file, which it reads anew, to the first picture
+    job      model, camera, turn (cameras), deflections (lengths)
+    results  {deflection, first_s, turning_ms, standing_ms} for each; first_s runs from reading the file anew to the
+             first picture
 """
 
 import time

@@ -1,4 +1,4 @@
-"""How wrong pictures are, by the surfaces and trims themselves: Open CASCADE's ray against each face, no mesh.
+"""Errors of pictures against the surfaces and trims themselves: Open CASCADE's ray against each face, no mesh.
 
     job      model, seconds (for the rays of the truth, and for the searches of each picture),
              views: {name: {camera, pictures: {name: {path, own}}}}
@@ -12,7 +12,7 @@ below, rounded up; beyond the last one, a pixel counts as `beyond`, and as twice
 
 Pictures that are `own` number faces in another way: each of the kernel's faces is the number that most rays through
 the inside of the picture's faces find. A pixel at which the last picture and the last `own` one are both wrong is
-left out, and counted as `alone`: two that share nothing say that the kernel's ray is at fault there. Their order is
+left out, and counted as `alone`: where two independent pictures agree, the kernel's ray is at fault. Their order is
 from coarse to fine.
 """
 
@@ -33,7 +33,7 @@ DIRECTIONS = 16
 CELL, TILE = 16, 32
 # of a picture, pixels that are searched around
 SEARCHES = 200
-# of the diagonal: faces as near to each other are one to a ray
+# share of the diagonal: a ray does not separate faces that are nearer to each other
 TIE = 1e-6
 # the kernel's own tolerance, millimetres
 TOLERANCE = 1e-7
@@ -73,7 +73,7 @@ class Rays:
         depth = apart @ self.forward
         across, upwards = apart @ self.right / (self.tan * self.width / self.height), apart @ self.up / self.tan
         if depth.max() <= 0 or any((side > depth).all() for side in (across, -across, upwards, -upwards)):
-            return  # beyond one side of what the camera sees
+            return  # beyond one side of the view
         low, high = (0, 0), (self.width, self.height)
         if depth.min() > 0:
             x, y = (1 + across / depth) * self.width / 2, (1 - upwards / depth) * self.height / 2
@@ -82,7 +82,7 @@ class Rays:
         yield from ((i, j) for i in span(0, self.width) for j in span(1, self.height))
 
     def at(self, x, y):
-        """Numbers of the faces that the ray through a point sees first: more than one where they meet."""
+        """Numbers of the faces that the ray through a point meets first: several where faces meet."""
         faces = self.tiles.get((int(x) // TILE, int(y) // TILE), [])
         if not faces:
             return [-1]
@@ -113,7 +113,7 @@ class Rays:
 
 
 def boundary(rays, seconds):
-    """What the rays through pixels at changes of face see, by pixel; and through all pixels that were asked for."""
+    """Faces that rays meet, by pixel: rays through pixels at changes of face, and through all requested pixels."""
     seen, changes = {}, set()
 
     def face(x, y):
@@ -174,14 +174,14 @@ def judged(rays, image, names, wrong, count, seconds):
     result = {"off": len(wrong), "searched": len(found), "beyond": sum(math.isinf(s) for s in found)}
     found = sorted(min(s, 2 * DISTANCES[-1]) for s in found)
     result["worst_px"] = found[-1] if found else 0.0
-    # each that was searched stands for as many
+    # each searched pixel represents this many
     rank = int(0.001 * count * len(found) / len(wrong)) if wrong and found else 0
     result["p999_px"] = found[-1 - rank] if rank < len(found) else 0.0
     return result
 
 
 def shift(rays, pixel, right):
-    """The least of the distances at which a ray sees what is right; infinite beyond them."""
+    """The least of the distances at which a ray meets the right face; infinite beyond them."""
     for distance in DISTANCES:
         for k in range(DIRECTIONS):
             turn = 2 * math.pi * k / DIRECTIONS

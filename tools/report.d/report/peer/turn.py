@@ -1,4 +1,4 @@
-"""A turn of a viewer, measured."""
+"""Times of a viewer's turn."""
 
 import time
 

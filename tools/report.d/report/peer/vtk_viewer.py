@@ -1,4 +1,4 @@
-"""VTK: triangles shaded, or each face in a colour that is its number."""
+"""VTK: triangles shaded, or each face in a colour that encodes its number."""
 
 import time
 

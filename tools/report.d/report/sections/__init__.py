@@ -1,1 +1,1 @@
-"""One section of the report a file; each has `measure(context)`, which gives a `rows.Section`."""
+"""One section of the report a file; each has `measure(context)`, which returns a `rows.Section`."""

@@ -1,4 +1,4 @@
-"""8. First use: seconds and megabytes from a cold clone to the first picture, and what a host carries."""
+"""8. First use: seconds and megabytes from a cold clone to the first picture, and the size of a host's files."""
 
 import os
 import subprocess
@@ -48,13 +48,13 @@ def measure(context):
 
 
 def megabytes(path):
-    """Of a file, or of all in a folder."""
+    """Size of a file, or of all files in a folder."""
     files = [path] if path.is_file() else [f for f in path.rglob("*") if f.is_file() and not f.is_symlink()]
     return sum(f.stat().st_size for f in files) / 1e6
 
 
 def source_megabytes():
-    """Of the files of the commit."""
+    """Size of the files of the commit."""
     done = subprocess.run(["git", "archive", "HEAD"], cwd=ROOT, capture_output=True)
     return len(done.stdout) / 1e6 if done.returncode == 0 else Missing("not a git repository")
 

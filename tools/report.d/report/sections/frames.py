@@ -1,4 +1,4 @@
-"""9. Frames of the samples: still and turning, with the driver's pipelines, and what is judged of them."""
+"""9. Frames of the samples: still and turning, with the driver's pipelines, and their judged errors."""
 
 from pathlib import Path
 

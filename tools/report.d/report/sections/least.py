@@ -6,7 +6,7 @@ from .. import hard
 from ..rows import Promise, Section, Table
 from ..turns import Unmeasurable
 
-# what names of objects hold, by what they are for
+# parts of the names of objects, by feature
 FEATURES = {
     "trims": ("trim", "gap "),
     "meshes": ("mesh",),
@@ -77,6 +77,6 @@ def measure(context):
 
 
 def foreign(name, features):
-    """The features that an object is for and that a scene has not. A pipeline's name has in brackets what it leaves out."""
+    """Features that an object serves and a scene lacks. A pipeline's name has the omitted ones in brackets."""
     name = re.sub(r"\(no [^)]*\)", "", name.lower())
     return [of for of, words in FEATURES.items() if of not in features and any(word in name for word in words)]

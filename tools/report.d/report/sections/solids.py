@@ -12,9 +12,9 @@ SCENES_QUICK = ["widget", "complex", "gear"]
 SCENES = [*SCENES_QUICK, "plate100", "plate1000"]
 # facets around a round primitive
 SEGMENTS_QUICK, SEGMENTS = [64], [32, 128]
-# degrees from top to bottom: OpenSCAD's, which no option changes
+# degrees from top to bottom: OpenSCAD's fixed field of view
 FOV_DEG = 22.5
-# beside the solid's own box, so that no way draws it beyond the picture
+# factor on the eye's distance: every way draws the whole solid within the picture
 AWAY = 1.02
 TEXT = """\
 The scenes have the numbers of primitives of the models of J. Hable and J. Rossignac, *Blister*, SIGGRAPH 2005, which
@@ -80,7 +80,7 @@ class Case:
         return camera
 
     def ours(self):
-        """Of each way: seconds to the first picture, the report of a turn."""
+        """For each way: seconds to the first picture, and the report of a turn."""
         found = {}
         for way in WAYS:
             first = self.context.program.render(self.file, self.camera, "--solids", way, images=["face"], stats=False)
@@ -262,7 +262,7 @@ def way_rows(name, primitives, benches):
 
 
 def bunnies(context):
-    """The same of meshes as operands, which no peer gets: the paper's numbers of triangles, and one round."""
+    """The same with meshes as operands, without peers: the paper's numbers of triangles, and one round."""
     if context.quick:
         return [["bunny", 4, "", *[Missing("574,000 triangles take minutes: only without --quick")] * 2, *[""] * 5]]
     rows = []

@@ -50,9 +50,12 @@ def measure(context):
 
 
 def promises(known):
-    """What hard cases must keep, and where a document excepts them."""
-    known = known and f"docs/accuracy.md: {known}"
-    return Promise(f"{PIXEL} in hard cases", known=known), Promise("no clamp in a view of a hard case", known=known)
+    """The promises for hard cases, with the documents' exceptions."""
+    pixels, clamps = f"{PIXEL} in hard cases", "no clamp in a view of a hard case"
+    if known is None:
+        return Promise(pixels), Promise(clamps)
+    reason = f"docs/accuracy.md: {known.reason}"
+    return Promise(pixels, known=reason, most=known.pixels), Promise(clamps, known=reason, most=known.clamps)
 
 
 class Found:
@@ -74,7 +77,7 @@ class Judge:
         self.context, self.options = context, options
 
     def judged(self, scene, views, device=None):
-        """What was found, or why nothing was."""
+        """The counts, or the reason why there are none."""
         path = self.context.program.folder() / "case.toml"
         path.write_text(scene)
         on = ["--device", device] if device and not self.context.program.on else []

@@ -9,16 +9,16 @@ from ..turns import Unmeasurable, rounds
 
 FILES_QUICK = ["samples/bracket.step", "first/occt_screw.step", "nist_pmi_2.stp"]
 FILES = [*FILES_QUICK, "framework_printable_case_full.stp", "impeller.igs"]
-# of these all sizes, of the others the middle one
+# all sizes for these, the middle one for the others
 ALL_SIZES = ["samples/bracket.step", "nist_pmi_2.stp"]
 SIZES_QUICK, SIZES = [(960, 540)], [(960, 540), (1920, 1080), (3840, 2160)]
-# an error of at most so much, pixels
+# bounds on the error, pixels
 ERRORS = [0.125, 0.25, 0.5, 1.0, 2.0]
 # what the project claims: a picture within half a pixel sooner from the file, where the file is large
 CLAIMED_PX, CLAIMED_BYTES = 0.5, 1_000_000
-# where triangles are right, an error is drawn as so much: less is not told apart
+# smallest error that a plot shows, pixels: the searches do not separate smaller ones
 LEAST_PX = 1 / 16
-# what is measured of each setting, in this order
+# the measurements of each setting, in this order
 QUANTITIES = [("first picture", "s"), ("turning frame", "ms"), ("standing frame", "ms")]
 # the tolerance at which standing frames are drawn
 STANDING_PX = 0.5
@@ -94,7 +94,7 @@ class Case:
         }
 
     def meshed(self):
-        """By viewer and deflection, the same; where the mesher was stopped, why."""
+        """The same by viewer and deflection; the reason if the mesher was stopped."""
         self.context.peers.needed("Open CASCADE")
         self.context.peers.needed("VTK")
         job = self.job(deflections=self.deflections, ids=None, wants=list(VIEWERS))
@@ -138,7 +138,7 @@ class Case:
         return head, head["pictures"]
 
     def into(self, section):
-        """Measures, and adds what was found."""
+        """Measures, and adds the results."""
         seconds = self.context.pick(45, 180)
         results = rounds(
             {"ours": self.ours, "meshed": self.meshed, "F3D": self.f3d}, seconds, most=self.context.pick(3, 5)
@@ -166,7 +166,7 @@ class Case:
                 section.promises[0].cases += head["boundary"]
 
     def settings(self, found):
-        """Those that every round has."""
+        """Settings that every round has."""
         return [s for s in found[0] if all(s in one for one in found)] if found else []
 
     def table(self, section, competitors, head, errors):
@@ -251,7 +251,7 @@ class Case:
                     before = sides
 
     def contest(self, what, name, unit, kind, ours, found, errors, k, error):
-        """None where even we have no setting as right."""
+        """None if our own settings do not reach the error."""
         best = lambda kind, one: noise.quickest_within(self.curve(kind, [one], errors, k), error)
         mine, theirs = [best("ours", one) for one in ours], [best(kind, one) for one in found]
         if None in mine:

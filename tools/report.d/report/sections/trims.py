@@ -54,7 +54,7 @@ def unique(rows):
 
 
 def values(found, at, column):
-    """Of each round; empty where the device had no room."""
+    """Figures of each round; empty if the device lacked memory."""
     texts = [one[at][column] for one in found if at in one]
     return [float(text) for text in texts] if all(texts) else []
 
@@ -134,7 +134,7 @@ def contests(section, model, found, size):
         what = f"{model}, {int(at[2])} times"
         ours, theirs = ([cost(one, ats) for one in found] for ats in ([other(way) for way in OURS], [at]))
         section.contests.append(contest(f"trims, {what}", "bisection", "ms", ours, theirs, "ahead"))
-        # a texture that is as right as it is at the closest view needs a texel a pixel
+        # for the accuracy of the closest view a texture needs a texel a pixel
         claim = "ahead" if at[2] >= 10 else "open"
         least = min(filter(None, (values(found[:1], other(way), "trim_bytes") for way in OURS)), default=[])
         texture = values(found[:1], other("texture"), "trim_bytes")

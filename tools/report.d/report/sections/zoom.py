@@ -12,7 +12,7 @@ ZOOMS_QUICK, ZOOMS = [1, 10, 1_000, 1_000_000], [1, 10, 100, 1_000, 10_000, 100_
 FIXED = 1e-3
 # a mesh for a view is within so many of its pixels
 WITHIN_PX = 0.5
-# the kernel's tolerance, millimetres, and how many of it a pixel must have for its rays to tell an error of a sixteenth
+# the kernel's tolerance, millimetres; the least pixel size, in tolerances, whose sixteenth the kernel's rays resolve
 KERNEL_MM, KERNEL_PIXEL = 1e-7, 32
 TEXT = """\
 Views so many times closer to the detail nearest to the eye. The *fixed* viewer draws one mesh within a thousandth of
@@ -68,9 +68,9 @@ def measure(context):
         }
         late = [name for name in reached if ("remeshed", name) not in found]
         if late and not context.peers.late:
-            raise Unmeasurable(f"a mesh a zoom: {context.peers.problem}")  # a failure is no lost race
+            raise Unmeasurable(f"a mesh a zoom: {context.peers.problem}")  # a failure is not a loss
         reached[:] = [name for name in reached if name not in late]
-        # told once, for all rounds
+        # reported once, for all rounds
         stopped.update({name: f"{int(late[0]):,} times was not meshed within {limit_s} s" for name in late})
         return found
 

@@ -37,12 +37,12 @@ fn coincident_cylinders() {
         let union = tracer("A+B", two()).trace(o, d).boundaries;
         let outer = tracer("B", two()).trace(o, d).boundaries;
         assert_eq!(union.len(), outer.len());
-        // said in another frame: the last digits differ
+        // in another frame: the last digits differ
         assert!(union.iter().zip(&outer).all(|(a, b)| (a.t - b.t).abs() < 1e-14 && a.entering == b.entering));
     }
 }
 
-/// One cylinder said in two ways, turned about its axis and stretched.
+/// One cylinder in two forms, turned about its axis and stretched.
 #[test]
 fn the_same_cylinder_turned() {
     let turned = DAffine3::from_rotation_z(0.3) * DAffine3::from_scale(DVec3::new(2.0, 2.0, 3.0));
@@ -204,7 +204,7 @@ fn camera_inside() {
     assert!(!t.inside(0.0) && t.inside(2.0) && !t.inside(3.5));
     assert!((t.first(0.0).unwrap().t - 1.0).abs() < 1e-15);
     assert!(t.first(1.5).is_none());
-    // seen from within the solid the section is capped at the eye, and leaving is all that is left
+    // seen from within the solid the section is capped at the eye, and only the leaving crossing remains
     assert!((t.thickness(2.0, 9.0) - 1.0).abs() < 1e-14);
     // on a face
     assert_eq!(trace("A", vec![block([0.0; 3], [1.0; 3])], [0.5, 0.5, 0.0], UP).first(0.0).unwrap().t, 0.0);

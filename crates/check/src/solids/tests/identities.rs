@@ -1,4 +1,4 @@
-//! What must not change: de Morgan and its kin, repetition, rigid motion.
+//! Invariants: de Morgan's laws, repetition, rigid motion.
 
 use super::shapes::*;
 use crate::model::{Primitive, Shape};
@@ -45,7 +45,7 @@ fn traces_repeat() {
     }
 }
 
-/// Points between boundaries are where the primitives say.
+/// Points between boundaries are inside where the primitives' values make them.
 #[test]
 fn membership_between_faces() {
     let inside = |p: DVec3| {

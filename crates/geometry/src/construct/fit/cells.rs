@@ -20,7 +20,7 @@ static COSINES: LazyLock<[[f64; POINTS]; POINTS]> = LazyLock::new(|| {
     std::array::from_fn(|k| std::array::from_fn(|i| (PI * (k * (2 * i + 1)) as f64 / (2 * POINTS) as f64).cos()))
 });
 
-/// What is known about one cell.
+/// The error of one cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {
     /// Upper bound of the error.
@@ -50,7 +50,7 @@ fn stations(lines: &[f64], degree: usize, knots: &[f64], count: usize) -> Vec<[(
     lines.windows(2).map(|w| std::array::from_fn(|i| station(w[0], w[1], i))).collect()
 }
 
-/// Compares the surface with what it was made from. `rounding` is added to every bound.
+/// Compares the surface with its definition. `rounding` is added to every bound.
 ///
 /// # Errors
 /// [`ConstructError::NotFiniteAt`].

@@ -20,7 +20,7 @@ const LONGEST: usize = 2048;
 const DEEPEST: usize = 32;
 /// A function of one number.
 type Unary = fn(f64) -> f64;
-/// Functions of one argument; without a body those that the crate has itself.
+/// Functions of one argument; those without a body are the crate's own.
 const FUNCTIONS: &[(&str, Option<Unary>)] = &[
     ("abs", None),
     ("sin", None),
@@ -49,7 +49,7 @@ const FUNCTIONS: &[(&str, Option<Unary>)] = &[
 ];
 /// Functions of two arguments.
 const PAIRS: &[&str] = &["atan2", "min", "max"];
-/// Constants that every expression knows.
+/// Constants of every expression.
 const NUMBERS: &[(&str, f64)] =
     &[("pi", std::f64::consts::PI), ("tau", std::f64::consts::TAU), ("e", std::f64::consts::E)];
 
@@ -74,7 +74,7 @@ impl Equation {
     /// Parses the expressions of `x`, `y` and `z`; `constants` may not be called `u` or `v`.
     ///
     /// # Errors
-    /// [`ConstructError::Expression`] with the expression, the column (from 1) and what is wrong there.
+    /// [`ConstructError::Expression`] with the expression, the column (from 1) and the fault.
     pub fn parse(texts: [&str; 3], constants: &[(&str, f64)]) -> Result<Self, ConstructError> {
         let part = |text: &str, expression: &'static str| {
             Scan::new(text, constants)
@@ -93,7 +93,7 @@ impl Equation {
 }
 
 impl Part {
-    /// `plain` is what the scan let through; it names nothing that [`Part::value`] does not know.
+    /// `plain` is the scan's output; [`Part::value`] has a value for every name in it.
     fn new(plain: &str) -> Result<Self, Failure> {
         let mut parser = Parser::new();
         // the scan has set tighter limits, on the text before signs and numbers were written out
@@ -124,8 +124,8 @@ struct Scan<'a> {
     at: usize,
     constants: &'a [(&'a str, f64)],
     out: String,
-    /// The column of each open parenthesis, the arguments its function still wants, and whether the operand before
-    /// was an exponent.
+    /// The column of each open parenthesis, the number of arguments its function still needs, and whether the operand
+    /// before was an exponent.
     open: Vec<(usize, usize, bool)>,
     /// The operand that comes or came is an exponent.
     exponent: bool,
@@ -236,7 +236,7 @@ impl<'a> Scan<'a> {
         Ok(())
     }
 
-    /// Plain decimals, which the parser reads exactly as they were.
+    /// Plain decimals, which the parser reads exactly.
     fn value(&mut self, x: f64) {
         self.out += &if x < 0.0 { format!("(0-{})", -x) } else { format!("{x}") };
     }

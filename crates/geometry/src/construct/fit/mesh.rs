@@ -1,8 +1,8 @@
-//! Where the lines of a fit are split.
+//! The placement of a fit's new lines.
 
 use super::cells::Cell;
 
-/// A span is never longer than so many times a neighbour: the interpolant of a cubic spline stays tame.
+/// A span is at most so many times as long as a neighbour, so that the interpolating cubic spline does not oscillate.
 const GRADE: f64 = 4.0;
 /// Most pieces of one span in one round.
 const MOST: f64 = 4.0;
@@ -17,7 +17,7 @@ pub(super) fn refined(lines: &[Vec<f64>; 2], cells: &[Cell], tolerance: f64) -> 
     for (index, cell) in cells.iter().enumerate().filter(|(_, c)| c.bound > tolerance) {
         let ratio = cell.bound / tolerance;
         for (axis, span, share) in [(0, index % spans_u, cell.along_u), (1, index / spans_u, 1.0 - cell.along_u)] {
-            // a direction that has little to do with the error is left alone
+            // a direction with little share in the error is not split
             if share * ratio > 0.5 && share > 0.05 {
                 let pieces = (1.2 * ratio * share.max(0.5)).powf(0.25).ceil().clamp(2.0, MOST);
                 ask[axis][span] = ask[axis][span].max(pieces);
@@ -68,7 +68,7 @@ mod tests {
         assert_eq!(graded, [0.0, 4.0, 8.0, 9.0]);
     }
 
-    /// The shortest spans stay, so that a jump ends in an error and not in lines without number.
+    /// The shortest spans are not split, so that a jump ends in an error and not in lines without number.
     #[test]
     fn stops_at_rounding() {
         let lines = [0.0, 1e-14, 1.0];

@@ -1,24 +1,23 @@
 //! Surfaces from equations: `S(u, v)` as a closure, fitted by a C² bicubic spline within a bound.
 //!
 //! ```text
-//!    ┌─┬─┬──┬────┐   lines of data in u and v, split where the error asks for it
+//!    ┌─┬─┬──┬────┐   lines of data in u and v, split where the error is large
 //!    ├─┼─┼──┼────┤   each cell: 8 x 8 Chebyshev points compared with S, at equal (u, v)
 //!    ├─┼─┼──┼────┤        │
 //!    │ │ │  │    │        ▼  as a Chebyshev series  e = Σ c_kl T_k(u) T_l(v)
-//!    │ │ │  │    │   k, l <= 4: what a cubic leaves of a smooth surface      ─▶ bound 2 max |e| (Ehlich, Zeller)
+//!    │ │ │  │    │   k, l <= 4: the error of a cubic on a smooth surface      ─▶ bound 2 max |e| (Ehlich, Zeller)
 //!    └─┴─┴──┴────┘   the rest ρ = Σ |c_kl|: how far from smooth the cell is  ─▶ added four times
 //! ```
 //!
 //! **The bound.** A polynomial of degree 4 in each variable, known at the 8 x 8 Chebyshev points, is nowhere larger
-//! than `1 / cos²(4 π / 16) = 2` times its largest value there. The error splits into such a polynomial, at most
-//! `E + ρ` at the points, and a rest of at most `ρ`, seen by the points, and as much again that they do not see:
-//! `bound = 2 (E + ρ) + 2 ρ`. The one assumption is the last: that the series of the error falls, so that what lies
-//! above degree 7 weighs no more than degrees 5 to 7. A feature so narrow that it lies between all points (a spike
-//! of less than a hundredth of a cell's width at the first 8 x 8 cells) can break it; nothing that samples can do
-//! better. Both surfaces are compared at equal parameters, so the bound holds for the distance from either to the
-//! other.
+//! than `1 / cos²(4 π / 16) = 2` times its largest value there. The error is the sum of three parts: such a polynomial,
+//! at most `E + ρ` at the points; a rest of at most `ρ`, which the points see; and a part that they do not see, taken
+//! as `ρ` too. So `bound = 2 (E + ρ) + 2 ρ`. Only the last part is an assumption: the series of the error falls, so
+//! that the terms above degree 7 weigh no more than those of degrees 5 to 7. A feature that lies between all points (a
+//! spike narrower than a hundredth of a cell of the first 8 x 8) breaks it; no method by samples would find that. Both
+//! surfaces are compared at equal parameters, so the bound holds for the distance from either to the other.
 //!
-//! Seams and poles are found first ([`Side`]) and made so that both ends are the same numbers.
+//! Seams and poles are found first ([`Side`]); both ends of each then have the same numbers.
 //!
 //! Sources: H. Ehlich, K. Zeller, *Schwankung von Polynomen zwischen Gitterpunkten*, Math. Z. 86, 1964; the tail as
 //! a measure of resolution from L. N. Trefethen, *Approximation Theory and Approximation Practice*, 2013, chapter 3;
@@ -39,7 +38,7 @@ use crate::spline::Surface;
 use crate::spline::cubic::{Cubic, Ends, tensor};
 use glam::{DVec3, DVec4};
 
-/// What a fit has to reach, and what it may cost.
+/// The accuracy that a fit has to reach, and its largest size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitOptions {
     /// Largest distance from the surface described, in model units.
@@ -55,15 +54,14 @@ impl FitOptions {
     }
 }
 
-/// A fitted surface and what is known about it.
+/// A fitted surface and its error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// The C² bicubic spline; its domain is the one asked for.
+    /// The C² bicubic spline over the given domain.
     pub surface: Surface,
-    /// Upper bound of the distance at equal parameters; never above the tolerance. See the module for what it rests
-    /// on.
+    /// Upper bound of the distance at equal parameters; never above the tolerance. See the module for its assumption.
     pub bound: f64,
-    /// Largest distance that was met.
+    /// Largest distance at a sample.
     pub measured: f64,
     /// How the sides meet or end.
     pub sides: Sides,

@@ -12,7 +12,7 @@ use crate::construct::ConstructError;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// How the two sides of one parameter belong together.
+/// How the two sides of one parameter meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// They are apart.
@@ -23,7 +23,7 @@ pub enum Side {
     Periodic,
 }
 
-/// What was found on the four sides.
+/// The sides of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sides {
     /// The sides `u = u0` and `u = u1`.
@@ -130,7 +130,7 @@ pub(super) fn find(s: &Sampler<'_>, tolerance: f64) -> Result<(Sides, f64), Cons
 fn runs_on(s: &Sampler<'_>, axis: usize, others: &[f64]) -> Result<bool, ConstructError> {
     /// Step as a share of the domain: truncation `h⁴` and rounding `ε / h` both near 1e-12.
     const STEP: f64 = 1e-3;
-    /// Larger differences are creases; smaller ones cost no more than some refinement at the seam.
+    /// Larger differences are creases; smaller ones cost some refinement at the seam at most.
     const SAME: f64 = 1e-5;
     let (a, b) = s.domain[axis];
     let h = (b - a) * STEP;

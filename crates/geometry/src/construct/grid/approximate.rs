@@ -84,8 +84,8 @@ fn placed(parameters: &[f64], count: usize) -> Vec<f64> {
     edge(first).chain(inner).chain(edge(last)).collect()
 }
 
-/// The bicubic spline with `controls` control points along `u` and `v` that is nearest to the grid in the sense of
-/// least squares; the four corners are met exactly, sides by the best curve for them.
+/// The least-squares bicubic spline to the grid, with `controls` control points along `u` and `v`; the four corners are
+/// met exactly, and each side is the least-squares curve to its data.
 ///
 /// Sides that meet stay together, without a promise of smoothness there.
 ///

@@ -9,8 +9,8 @@
 //!   u_0 u_1 u_2  u_3
 //! ```
 //!
-//! Parameters are chord lengths, averaged over the rows (columns) that have a length; a row that is one point is a
-//! pole and says nothing. Sides that meet, point by point, are closed smoothly; poles and seams end up as the same
+//! Parameters are chord lengths, averaged over the rows (columns) that have a length; a row that is one point is a pole
+//! and does not count. Sides that meet, point by point, are closed smoothly; poles and seams end up as the same
 //! numbers.
 //!
 //! Cost: linear in the number of points; every row and column is a banded system that is factored once.
@@ -60,7 +60,7 @@ pub struct GridFit {
     pub parameters_u: Vec<f64>,
     /// Parameters of the rows.
     pub parameters_v: Vec<f64>,
-    /// What lies between data and surface; rounding after interpolation.
+    /// Distances of the data from the surface; rounding after interpolation.
     pub error: GridError,
 }
 

@@ -1,4 +1,4 @@
-//! Gears and what they are cut from.
+//! Gears and their blanks.
 //!
 //! ```text
 //!   blank, cut in half              bore with keyway        tooth of a spur gear
@@ -24,7 +24,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 const MOST_TEETH: u32 = 1024;
 /// Halvings of a flank's parameters.
 const HALVINGS: u32 = 40;
-/// For what lies between the samples of a flank's error, which has one hump a piece.
+/// Factor for the error between the samples; a flank's error has one hump a piece.
 const MARGIN: f64 = 1.1;
 
 /// A rectangular slot along a bore, at its side of positive x.
@@ -36,7 +36,7 @@ pub struct Keyway {
     pub depth: f64,
 }
 
-/// A stepped disc with a bore, and perhaps a keyway: what gears are cut from.
+/// A stepped disc with a bore, and perhaps a keyway: the blank of a gear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GearBlank {
     /// Of the disc.

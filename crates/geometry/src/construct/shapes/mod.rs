@@ -43,7 +43,7 @@ impl Body {
         Self { part, shape, deviation: 0.0 }
     }
 
-    /// What a leaf of a Boolean solid takes: the analytic shape, whose faces rays meet in closed form, else the part.
+    /// The leaf of a Boolean solid: the analytic shape, which rays meet in closed form, else the part.
     pub fn operand(self) -> Shape {
         self.shape.unwrap_or_else(|| Shape::Part(Arc::new(self.part)))
     }

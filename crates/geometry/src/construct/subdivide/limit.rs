@@ -1,4 +1,4 @@
-//! Where a vertex of a control mesh ends up, and the normal there, in closed form.
+//! The limit point of a vertex of a control mesh, and the normal there, in closed form.
 //!
 //! ```text
 //!             Catmull-Clark                                     Loop
@@ -23,7 +23,7 @@ use std::f64::consts::TAU;
 pub struct Limit {
     /// On the surface.
     pub point: DVec3,
-    /// Unit normal; `None` on borders, corners and creases, and where there is none.
+    /// Unit normal; `None` on borders, corners and creases, and where the tangents span no plane.
     pub normal: Option<DVec3>,
 }
 

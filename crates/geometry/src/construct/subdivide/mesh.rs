@@ -87,7 +87,7 @@ impl Topology {
         if !mesh.creases.is_empty() {
             all.cut(&mesh.creases)?;
         }
-        // a border's vertex with one face is a corner, if no crease says otherwise
+        // a border's vertex with one face is a corner, unless it lies on a crease
         let creased: std::collections::HashSet<u32> = mesh.creases.iter().flatten().copied().collect();
         for v in 0..count {
             if all.first[v] != NONE && !creased.contains(&(v as u32)) {
@@ -98,7 +98,7 @@ impl Topology {
         Ok((all, closed))
     }
 
-    /// From a refinement, which keeps a mesh valid.
+    /// The topology of a refinement, which is valid if the mesh was.
     pub fn refined(positions: Vec<DVec3>, sharp: Vec<bool>, faces: &[Vec<u32>]) -> Result<Self, ConstructError> {
         let mut all = Self::unlinked(positions, sharp, faces);
         all.link()?;
@@ -280,7 +280,7 @@ impl Topology {
         rays
     }
 
-    /// Where a border's vertex ends up; `None` inside the mesh.
+    /// The limit of a border's vertex; `None` inside the mesh.
     ///
     /// Both sides of a crease find the same numbers: sums are of two terms, in either order.
     pub fn border_point(&self, v: usize) -> Option<DVec3> {

@@ -15,11 +15,11 @@
 //! | Catmull-Clark | any polygons | one bicubic face | one bicubic face of several patches |
 //! | Loop | triangles | one biquartic face, collapsed at a corner | four faces and three more a ring |
 //!
-//! Meshes whose irregular vertices share faces, and such with polygons, are first refined by one or two steps of the
-//! scheme, which changes no surface.
+//! Meshes whose irregular vertices share faces, and meshes with polygons, are first refined by one or two steps of the
+//! scheme, which does not change the surface.
 //!
-//! **The bound.** A cap is compared with the exact rings within it, control point by control point, down to a
-//! remainder that is a thousandth of what was found; the remainder is bounded by the control points around it. So
+//! **The bound.** A cap is compared with the exact rings within it, control point by control point, down to a remainder
+//! of a thousandth of the largest distance so far; the control points around the remainder bound it. So
 //! [`Subdivided::deviation`] bounds the distance between cap and limit surface at equal parameters; all else is exact
 //! to rounding.
 //!
@@ -47,7 +47,7 @@ use mesh::Topology;
 const MOST_RINGS: usize = 32;
 /// Levels after a cap's own that it is compared with.
 const JUDGED_LEVELS: usize = 40;
-/// Share of a cap's deviation below which what is left near the vertex need not be looked at.
+/// Share of a cap's deviation below which the remainder near the vertex is not refined.
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// How a control mesh is made smooth.
@@ -74,7 +74,7 @@ pub struct Subdivided {
     pub steps: usize,
 }
 
-/// What the schemes report.
+/// The bound of a scheme's surfaces.
 #[derive(Clone, Copy, Debug, Default)]
 struct Bound {
     deviation: f64,
@@ -121,13 +121,12 @@ pub fn subdivide(mesh: &ControlMesh, scheme: Scheme, tolerance: f64) -> Result<S
     Ok(Subdivided { part, deviation, irregular, rings, steps })
 }
 
-/// Where each vertex of a mesh ends up, in closed form; `None` for one that no face uses.
-///
-/// A crease's vertices are seen from the first of its sides.
+/// The limit of each vertex of a mesh, in closed form; `None` for one that no face uses. For a crease's vertices, the
+/// limit of its first side.
 ///
 /// # Errors
-/// As [`subdivide`]; polygons that are no quadrilaterals (triangles, for Loop's scheme), for which there is no such
-/// form.
+/// As [`subdivide`]; polygons other than quadrilaterals (other than triangles, for Loop's scheme), for which there is
+/// no such form.
 pub fn limits(mesh: &ControlMesh, scheme: Scheme) -> Result<Vec<Option<Limit>>, ConstructError> {
     let (topology, _) = Topology::new(mesh)?;
     let (corners, what) = match scheme {

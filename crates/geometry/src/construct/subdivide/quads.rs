@@ -50,7 +50,7 @@ pub(super) fn surfaces(mut mesh: Topology, tolerance: f64) -> Result<(Vec<Surfac
             let corners = mesh.corners(f);
             corners.len() == 4 && corners.filter(|h| irregular[mesh.origin(*h)]).count() <= 1
         };
-        // one step makes quadrilaterals, a second one parts what it made irregular
+        // one step makes quadrilaterals, a second one separates the irregular vertices that it made
         if (0..mesh.face_count()).all(alone) {
             break;
         }
@@ -110,7 +110,7 @@ fn refine(mesh: &Topology) -> Result<Topology, ConstructError> {
     Topology::refined(positions, sharp, &faces)
 }
 
-/// Where a vertex goes; `middles` is the sum of the centres of its faces.
+/// The new place of a vertex; `middles` is the sum of the centres of its faces.
 fn vertex_rule(c: DVec3, rays: &[DVec3], middles: DVec3, closed: bool, sharp: bool) -> DVec3 {
     if closed {
         let n = rays.len() as f64;
@@ -123,7 +123,7 @@ fn vertex_rule(c: DVec3, rays: &[DVec3], middles: DVec3, closed: bool, sharp: bo
 }
 
 /// The 4 x 4 net around a face, its corner `origin(h)` at (1, 1), the next one at (2, 1); beyond a border points are
-/// mirrored. What lies diagonally across an irregular corner is not of use.
+/// mirrored. The point diagonally across an irregular corner is not used.
 fn net(mesh: &Topology, h: usize) -> Cubic {
     const AT: [(i32, i32); 4] = [(1, 1), (2, 1), (2, 2), (1, 2)];
     const OUT: [(i32, i32); 4] = [(0, -1), (1, 0), (0, 1), (-1, 0)];
@@ -197,8 +197,8 @@ fn bezier(g: &Cubic) -> Cubic {
     })
 }
 
-/// The patch of a face, `(0, 0)` at `origin(h)`; what touches a border is the border's own. What touches an irregular
-/// vertex inside is not of use.
+/// The patch of a face, `(0, 0)` at `origin(h)`; its points at a border are the border's own. Its points at an
+/// irregular vertex inside are not used.
 fn patch(mesh: &Topology, h: usize) -> Cubic {
     const CORNER: [(usize, usize); 4] = [(0, 0), (3, 0), (3, 3), (0, 3)];
     let mut b = bezier(&net(mesh, h));
@@ -260,7 +260,7 @@ struct Umbrella {
 }
 
 impl Umbrella {
-    /// Level 0; only points up to 2 are of use.
+    /// Level 0; only points up to 2 are used.
     fn new(mesh: &Topology, fan: &Fan, sharp: bool) -> Self {
         let sector = |h: &usize| {
             let g = net(mesh, *h);
@@ -357,11 +357,11 @@ impl Umbrella {
         [(1, 0), (1, 1), (0, 1)].map(|(p, q)| self.patch(i, p, q))
     }
 
-    /// The patch over `[0, 1]²`; exact but for what touches the vertex.
+    /// The patch over `[0, 1]²`, exact except at the vertex.
     fn cap(&self, i: usize, limit: &Limit) -> Cubic {
         let mut g: Cubic =
             from_fn(|y| from_fn(|x| if x + y == 0 { DVec3::ZERO } else { self.at(i, x as i32 - 1, y as i32 - 1) }));
-        // diagonally across the vertex: whatever is there, its one use is replaced below
+        // diagonally across the vertex: any value will do, since the only point that depends on it is replaced below
         g[0][0] = g[1][1];
         let mut b = bezier(&g);
         b[0][0] = limit.point;
@@ -383,7 +383,7 @@ impl Umbrella {
                 most = most.max(apart(mine, &exact));
             }
             rest = low;
-            // what is left lies, as the surface does, among these points
+            // the rest of the surface lies within the hull of these points
             let around = level.sectors.iter().flat_map(|s| s[..3].iter().flat_map(|r| &r[..3]));
             let far = |most: f64, p: &DVec3| most.max(p.distance(limit));
             remainder = around.fold(0.0, far) + rest.as_flattened().iter().fold(0.0, far);

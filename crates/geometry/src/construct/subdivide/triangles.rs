@@ -73,7 +73,7 @@ fn edge_rule(a: DVec3, b: DVec3, left: DVec3, right: DVec3) -> DVec3 {
     ((a + b) * 3.0 + (left + right)) * 0.125
 }
 
-/// Where a vertex goes.
+/// The new place of a vertex.
 fn vertex_rule(c: DVec3, rays: &[DVec3], closed: bool, sharp: bool) -> DVec3 {
     if closed {
         let (n, w) = (rays.len(), weight(rays.len()));
@@ -120,8 +120,8 @@ struct Net {
     rings: [[DVec3; 6]; 3],
 }
 
-/// The net around a face; beyond borders, points that leave the border's rules as they are. The ring of an irregular
-/// corner is not of use.
+/// The net around a face; beyond borders, points that reproduce the border's rules. The ring of an irregular corner is
+/// not used.
 fn net(mesh: &Topology, h: usize) -> Net {
     let sides = [h, mesh.next(h), mesh.prev(h)];
     let ring = |h: usize| {
@@ -198,7 +198,7 @@ fn bezier(net: &Net) -> Quartic {
     b
 }
 
-/// The patch of a face, its first corner at `origin(h)`; what touches a border is the border's own.
+/// The patch of a face, its first corner at `origin(h)`; its points at a border are the border's own.
 fn patch(mesh: &Topology, h: usize) -> Quartic {
     const CORNER: [(usize, usize); 3] = [(0, 0), (4, 0), (0, 4)];
     let mut b = bezier(&net(mesh, h));
@@ -325,13 +325,13 @@ impl Umbrella {
         [((1, 0), 1), ((0, 1), 1), ((1, 1), -1)].map(|(at, sign)| bezier(&self.net(i, at, sign)))
     }
 
-    /// The patch over the triangle at the vertex; exact but for what touches the vertex.
+    /// The patch over the triangle at the vertex, exact except at the vertex.
     fn cap(&self, i: usize, limit: &Limit) -> Quartic {
         let at = |p: i32, q: i32| self.at(i, p, q);
         let c = at(0, 0);
         let corners = [c, at(1, 0), at(0, 1)];
         let rings = [
-            // across the vertex anything will do: what it enters is replaced below
+            // across the vertex any value will do: the points that depend on it are replaced below
             [at(1, 0), at(0, 1), at(-1, 1), c, c, at(1, -1)],
             [at(0, 1), c, at(1, -1), at(2, -1), at(2, 0), at(1, 1)],
             [c, at(1, 0), at(1, 1), at(0, 2), at(-1, 2), at(-1, 1)],

@@ -120,8 +120,8 @@ impl Shape {
         }
     }
 
-    /// Points on each carrier, in order, that reach as far as its face does and determine it; of unbounded
-    /// shapes within `reach` of `about`.
+    /// Points on each carrier, in order, that reach as far as its face does and determine it; for unbounded shapes
+    /// within `reach` of `about`.
     pub(super) fn samples(&self, about: DVec3, reach: f64) -> Vec<Vec<DVec3>> {
         match self {
             Self::HalfSpace { normal, offset } => {

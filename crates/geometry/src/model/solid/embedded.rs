@@ -1,5 +1,5 @@
-//! Whether a closed mesh bounds each part of space once: no triangles cross, and shells in shells turn inwards and
-//! outwards by turns.
+//! Whether a closed mesh bounds each part of space once: it does not cross itself, and nested shells are oriented
+//! alternately inwards and outwards.
 //!
 //! ```text
 //!    ┌──────────┐       ┌─────╲ ╱─────┐      ┌───┐  ┌───┐
@@ -10,12 +10,12 @@
 //!    yes                no: crosses itself   no: inside out
 //! ```
 //!
-//! *Then a ray from outside meets a triangle that faces it first, and one that begins within none before it has left.*
-//! An edge passes through a triangle that it shares no corner with where the triangle's plane parts its ends, and its
-//! line passes the triangle's sides on the same side. Volumes of tetrahedra tell, each with the bound of its rounding;
-//! what is in doubt touches, and counts as crossing. Edges within the triangle's plane tell nothing: other edges pass
-//! the border of what they lie on. Triangles with an edge in common meet there alone, unless they lie back to back,
-//! which `super::lone` looks for.
+//! *Then the first triangle that a ray from outside meets faces it, and no ray leaves the mesh before it has entered
+//! it.* An edge passes through a triangle with which it shares no corner if the triangle's plane separates its ends,
+//! and its line passes the triangle's sides on the same side. The signs of volumes of tetrahedra decide this, each with
+//! a bound of its rounding; a sign within the bound counts as crossing. Edges in the triangle's plane need no test: if
+//! they cross it, other edges pass through. Triangles with an edge in common meet there only, unless they lie back to
+//! back, which `super::outward` tests.
 
 use super::nearby::Nearby;
 use crate::math::orientation::orientation;
@@ -23,7 +23,7 @@ use crate::model::{Bounds, Mesh};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Triangles looked at for shells in shells, for each that there is: beyond, the mesh counts as one that may not.
+/// Triangles tested for nested shells, for each triangle of the mesh; beyond, the mesh counts as badly nested.
 const WORK_EACH: usize = 64;
 /// The rounding of a volume, of the sum of its absolute products. Source: J. R. Shewchuk, *Adaptive Precision
 /// Floating-Point Arithmetic*, 1997, bound A of ORIENT3D: (7 + 56 ε) ε with ε = 2^-53.
@@ -86,7 +86,7 @@ fn side(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> i8 {
     if volume.abs() <= VOLUME_ROUNDING * bound { 0 } else { volume.signum() as i8 }
 }
 
-/// Every shell that lies in none turns outwards, one in such a one inwards, and so on; they do not cross.
+/// Every outermost shell is oriented outwards, each shell directly inside it inwards, and so on; shells do not cross.
 fn turns_by_turns(mesh: &Mesh) -> bool {
     let shells = shells(mesh);
     let mut work = WORK_EACH * mesh.triangles().len();
@@ -108,11 +108,11 @@ fn turns_by_turns(mesh: &Mesh) -> bool {
     })
 }
 
-/// Triangles that hang together by edges.
+/// Triangles connected by edges.
 struct Shell {
     triangles: Vec<usize>,
     bounds: Bounds,
-    /// Six times.
+    /// Six times the volume.
     volume: f64,
 }
 
@@ -145,7 +145,7 @@ fn shells(mesh: &Mesh) -> Vec<Shell> {
     shells
 }
 
-/// The first of those that hang together with `t`, and the way there made shorter.
+/// The first triangle of those connected with `t`; shortens the way there.
 fn root(parents: &mut [u32], mut t: u32) -> u32 {
     while parents[t as usize] != t {
         parents[t as usize] = parents[parents[t as usize] as usize];
@@ -155,8 +155,8 @@ fn root(parents: &mut [u32], mut t: u32) -> u32 {
 }
 
 impl Shell {
-    /// How often the shell goes around p: the line upwards leaves it that much oftener than it enters. `None` where p
-    /// may lie on it.
+    /// How often the shell goes around p: the line upwards leaves it so many times more than it enters it. `None` where
+    /// p may lie on it.
     fn winding(&self, mesh: &Mesh, p: DVec3) -> Option<i32> {
         let mut sum = 0;
         for corners in self.triangles.iter().map(|t| mesh.corners(*t)) {
@@ -262,7 +262,7 @@ mod tests {
     fn bow_ties_cross() {
         assert!(prism(&[[1.0, 0.0], [0.2, 0.3], [-1.0, 0.0], [-0.2, -0.3]]));
         assert!(!prism(&[[3.0, 1.0], [-1.0, -1.0], [-1.0, 1.0], [3.0, -1.0]]));
-        // round twice
+        // twice around
         assert!(!prism(&[[1.0, 0.0], [-0.8, 0.6], [0.3, -1.0], [0.3, 1.0], [-0.8, -0.6]]));
     }
 }

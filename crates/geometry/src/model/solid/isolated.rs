@@ -1,4 +1,4 @@
-//! Meshes that nothing touches: what the union shows of them is their triangles.
+//! Isolated meshes: operands of a union that touch no other operand. The union shows their triangles.
 //!
 //! ```text
 //!     ┌──────┐     ┌───────┐       boxes of the union's operands:
@@ -7,11 +7,12 @@
 //!                      └───────┘
 //! ```
 //!
-//! *A ray enters the union first where it enters a lone mesh first, or the union of the rest.* A surface that is closed,
-//! turned outwards and crosses itself nowhere is entered where triangles face the eye, so the nearest of those is what a
-//! list of all crossings would tell. Not so within a part that is inside out, or that lies in the mesh twice: a mesh whose
-//! triangles cross or touch, or that has one shell too many around another, does not count as lone (`embedded.rs`). Nor
-//! does one with two faces that lie back to back, which bound nothing (`outward.rs`).
+//! *A ray enters the union first where it first enters an isolated mesh, or the union of the rest.* A ray enters a
+//! closed surface that is oriented outwards and does not cross itself where a triangle faces the eye. So the nearest
+//! such triangle is the result that a list of all crossings would give. This fails within a part that is inside out, or
+//! that lies in the mesh twice. So a mesh whose triangles cross or touch, or that has a shell too many around another
+//! (`embedded.rs`), does not count as isolated, nor does a mesh with two faces back to back, which bound nothing
+//! (`outward.rs`).
 
 use super::operands::Operands;
 use super::outward::outward;
@@ -20,11 +21,11 @@ use super::{Primitive, Shape, Solid, SolidError, nearby::Nearby};
 use crate::csg::Node;
 use crate::model::{Bounds, Mesh};
 
-/// Boxes nearer to each other than this share of the model's diagonal touch: far more than numbers in full precision are
-/// rounded by, far less than a pixel of a picture of the model.
+/// Boxes nearer to each other than this share of the model's diagonal touch: far above the rounding of double
+/// precision, far below a pixel of a picture of the model.
 const TOUCHES: f64 = 1e-6;
 
-/// Solids taken apart.
+/// Solids split into isolated meshes and the rest.
 #[derive(Debug)]
 pub struct Isolated {
     /// In model coordinates, with their primitives' numbers and colours; counter-clockwise from outside.
@@ -34,7 +35,8 @@ pub struct Isolated {
 }
 
 impl Isolated {
-    /// `None` where no mesh is lone; `coincidence` is that of [`Model::coincidence`](crate::model::Model::coincidence).
+    /// `None` where no mesh is isolated; `coincidence` is that of
+    /// [`Model::coincidence`](crate::model::Model::coincidence).
     ///
     /// # Errors
     /// [`SolidError`] when an expression becomes too large.
@@ -84,7 +86,7 @@ fn apart<'a>(solids: &'a [Solid], operands: &[Operands<'_>], coincidence: f64) -
     }
     let all = boxes.iter().copied().chain(candidates.iter().map(|c| c.3)).fold(Bounds::EMPTY, Bounds::union);
     if candidates.is_empty() || !all.diagonal().is_finite() {
-        return Vec::new(); // what has no end touches everything
+        return Vec::new(); // an unbounded operand touches everything
     }
     let margin = coincidence.max(TOUCHES) * all.diagonal();
     boxes.retain(|b| !b.is_empty());
@@ -141,7 +143,7 @@ mod tests {
         Primitive { shape, transform: DAffine3::IDENTITY, colour: [0.5; 4], id: 1 }
     }
 
-    /// How many meshes are lone, and how many primitives are left.
+    /// The number of isolated meshes, and of primitives in the rest.
     fn counts(expression: &str, primitives: Vec<Primitive>) -> (usize, usize) {
         counts_within(SurfaceTable::ROUNDED, expression, primitives)
     }

@@ -51,17 +51,17 @@ impl TryFrom<SolidData> for Solid {
     }
 }
 
-/// Why primitives and a tree are not a solid.
+/// Why primitives and a tree do not make a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // the messages say what each field is
 pub enum SolidError {
-    /// A leaf names a primitive that is not there.
+    /// A leaf names a primitive that does not exist.
     #[error("a leaf names primitive {primitive} of {count}")]
     Leaf { primitive: u32, count: usize },
-    /// A primitive that is not one.
+    /// An invalid primitive.
     #[error("primitive {primitive}: {error}")]
     Shape { primitive: usize, error: ShapeError },
-    /// More primitives than a list of switches can name.
+    /// More primitives than a list of switches can hold.
     #[error("more than {} primitives", Solid::MOST_PRIMITIVES)]
     TooMany,
     /// The expression is too large.
@@ -70,7 +70,7 @@ pub enum SolidError {
 }
 
 impl Solid {
-    /// Primitives that a solid may have: what fits an entry of a [`Blist`](crate::csg::Blist).
+    /// Primitives that a solid may have: the limit of an entry of a [`Blist`](crate::csg::Blist).
     pub const MOST_PRIMITIVES: u32 = Entry::PRIMITIVE;
 
     /// Checks the primitives' dimensions and the leaves' indices.
@@ -100,7 +100,7 @@ impl Solid {
         Self::new(vec![primitive], Tree::leaf(0))
     }
 
-    /// The union of `solids`, which is what a model shows of them.
+    /// The union of `solids`, which the picture shows.
     ///
     /// # Errors
     /// [`SolidError::TooMany`] primitives, or [`SolidError::Tree`].
@@ -108,7 +108,7 @@ impl Solid {
         Self::joined(Op::Union, solids)
     }
 
-    /// What is in both.
+    /// The intersection with `other`.
     ///
     /// # Errors
     /// As [`Solid::union`].
@@ -163,9 +163,9 @@ impl Solid {
         reach::boxes(self, primitive).last().expect("a tree has a root").of
     }
 
-    /// Of each primitive, the box outside which nothing changes where it is taken for the outside, alone or with
-    /// others beyond their own: within [`Primitive::bounds`] and within what all that it is cut with leaves.
-    /// Empty where it never matters, infinite where it may matter everywhere.
+    /// For each primitive, the box outside which it may be taken as absent, alone or with other primitives beyond
+    /// theirs, without a change of the solid: within [`Primitive::bounds`], and within the boxes of everything that it
+    /// is cut with. Empty where it never matters, infinite where it may matter everywhere.
     pub fn reaches(&self) -> Vec<Bounds> {
         reach::reaches(self)
     }

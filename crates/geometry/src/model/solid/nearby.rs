@@ -1,9 +1,9 @@
-//! Which boxes of a list come near another box of it.
+//! The pairs of near boxes in a list.
 //!
 //! ```text
 //!   extent of a box ──▶ level: cells of 4 to 8 times that        ┌───────┬───────┐
 //!                                                                │ ┌─┐   │       │   so a box lies in one or two cells
-//!   a box asks of each level the cells that it touches           │ └─┘ ┌─┼┐      │   along an axis, mostly in one
+//!   on each level a box looks up the cells that it touches           │ └─┘ ┌─┼┐      │   along an axis, mostly in one
 //!                                                                └─────┴─┴┴──────┘
 //! ```
 
@@ -22,7 +22,7 @@ pub(super) struct Nearby {
 }
 
 impl Nearby {
-    /// Boxes thinner than `least` are taken for that wide.
+    /// Boxes thinner than `least` count as that wide.
     pub(super) fn new(boxes: Vec<Bounds>, least: f64) -> Self {
         let mut levels: BTreeMap<i32, Vec<u32>> = BTreeMap::new();
         let mut cells: Vec<(u64, u32)> = Vec::with_capacity(2 * boxes.len());

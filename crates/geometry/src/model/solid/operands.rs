@@ -1,4 +1,4 @@
-//! The operands whose union a solid is.
+//! A solid as a union: its operands.
 //!
 //! ```text
 //!   (A + (B - C)) + D       operands: A, B - C, D
@@ -46,13 +46,13 @@ impl<'a> Operands<'a> {
         &self.solid.tree().nodes()[self.starts[root as usize] as usize..=root as usize]
     }
 
-    /// The primitives that an operand names.
+    /// The primitives of an operand.
     pub fn primitives(&self, root: u32) -> impl Iterator<Item = &'a Primitive> {
         let leaves = self.below(root).iter().filter_map(|n| if let Node::Leaf(p) = n { Some(*p) } else { None });
         leaves.map(|p| &self.solid.primitives()[p as usize])
     }
 
-    /// The union of some of them, with the primitives that they name and no others.
+    /// The union of some operands, with their primitives alone.
     ///
     /// # Errors
     /// [`SolidError`] when the expression becomes too large.

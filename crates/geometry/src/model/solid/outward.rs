@@ -1,9 +1,9 @@
-//! Meshes that rays enter where a triangle faces them, and leave through the others.
+//! The orientation of meshes: rays enter where a triangle faces them, and leave through the others.
 //!
 //! ```text
 //!    file:  a corner for each triangle         here:  one corner for each place
 //!           ╱│ │╲                                     ╱│╲
-//!          ╱ │ │ ╲      no edge is another's         ╱ │ ╲     each edge is there once in each direction
+//!          ╱ │ │ ╲      edges are not shared         ╱ │ ╲     each edge is there once in each direction
 //! ```
 
 use super::embedded::is_embedded;
@@ -14,9 +14,9 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The primitive's triangles as one mesh, own coordinates, which bound each part of space once; `None` where they are
-/// not closed, not turned outwards, cross themselves or lie back to back, or where there are spline faces. `coincidence` is
-/// that of [`Model::coincidence`](crate::model::Model::coincidence).
+/// The primitive's triangles as one mesh, own coordinates, which bounds each part of space once. `None` where they are
+/// not closed, not oriented outwards, cross themselves or lie back to back, or where there are spline faces.
+/// `coincidence` is that of [`Model::coincidence`](crate::model::Model::coincidence).
 pub fn outward(primitive: &Primitive, coincidence: f64) -> Option<Cow<'_, Mesh>> {
     let mesh = match &primitive.shape {
         Shape::Mesh(mesh) => Cow::Borrowed(&**mesh),
@@ -51,7 +51,7 @@ pub(super) fn six_volumes(mesh: &Mesh) -> f64 {
     corners.map(|[a, b, c]| a.dot(b.cross(c))).sum()
 }
 
-/// Some plane holds triangles that look either way.
+/// Some plane holds triangles of both orientations.
 fn is_back_to_back(primitive: &Primitive, mesh: &Mesh, coincidence: f64) -> bool {
     let shape = match &primitive.shape {
         Shape::Mesh(own) if std::ptr::eq(&**own, mesh) => primitive.shape.clone(),
@@ -64,7 +64,7 @@ fn is_back_to_back(primitive: &Primitive, mesh: &Mesh, coincidence: f64) -> bool
     looks.contains(&[true, true])
 }
 
-/// Triangles of several meshes.
+/// The triangles of several meshes, as one mesh.
 fn together(meshes: &[Mesh]) -> Mesh {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for mesh in meshes {
@@ -137,7 +137,7 @@ mod tests {
         assert_eq!(of_mesh(flat(own.positions().to_vec(), own.triangles()[1..].to_vec())), None, "open");
     }
 
-    /// Meshes of a part are one: beside each other, but not into each other nor one in the other.
+    /// Meshes of a part count as one: side by side, but neither crossing nor nested.
     #[test]
     fn meshes_of_a_part_are_asked_together() {
         let one = || soup(DVec3::ZERO, 1.0);

@@ -1,8 +1,8 @@
-//! How far primitives matter: boxes of expressions, and boxes that expressions leave of their parts.
+//! How far primitives matter: boxes of expressions, and the boxes in which their operands matter.
 //!
 //! ```text
 //!            A * B                    A - B
-//!   ┌─────────────┐            ┌─────────────┐         reach of A:  what is asked of the pair, within the box of B
+//!   ┌─────────────┐            ┌─────────────┐         reach of A:  the reach of the pair, within the box of B
 //!   │ A   ┌───────┼────┐       │ A   ┏━━━━━━━┿────┐                 (of !B in A - B)
 //!   │     │ both  │    │       │     ┃ here  │    │    reach of B:  ..., within the box of A
 //!   └─────┼───────┘    │       └─────╂───────┘    │
@@ -10,10 +10,10 @@
 //!         └────────────┘             └────────────┘
 //! ```
 //!
-//! *Leaves may be taken for their outsides wherever a point is beyond their reach; the whole stays what it is.* Boxes
-//! only shrink when leaves are taken away, so a point outside the box of a node stays outside the node, and one outside
-//! the box of its complement stays inside it. A node whose reach holds the point keeps its value: either both children
-//! reach it, or the pair is decided by the child whose box does not hold it.
+//! *A leaf may be taken as absent at any point beyond its reach; the whole stays the same.* Boxes only shrink when
+//! leaves are removed, so a point outside the box of a node stays outside the node, and one outside the box of its
+//! complement stays inside it. A node whose reach holds the point keeps its value: either both children reach it, or
+//! the child whose box does not hold it decides the pair.
 
 use super::{Primitive, Solid};
 use crate::csg::Node;
@@ -24,7 +24,7 @@ use glam::DVec3;
 /// All of space.
 const ALL: Bounds = Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
 
-/// Boxes around a node, and around all that it is not; and one that is within it, or nothing.
+/// Boxes around a node and around its complement; and one that is within the node, or empty.
 #[derive(Clone, Copy)]
 pub(crate) struct Boxes {
     pub of: Bounds,
@@ -33,18 +33,18 @@ pub(crate) struct Boxes {
 }
 
 impl Boxes {
-    /// Of a primitive, which is within its [bounds](Primitive::bounds).
+    /// The boxes of a primitive, which is within its [bounds](Primitive::bounds).
     pub(super) fn of(primitive: &Primitive) -> Self {
         Self::around(primitive.bounds())
     }
 
-    /// Of what is in a box, and of which no more is known.
+    /// The boxes of a set within a box, about which no more is known.
     pub fn around(of: Bounds) -> Self {
         Self { of, not: ALL, within: Bounds::EMPTY }
     }
 }
 
-/// Of each node of the tree, over those of the primitives.
+/// The boxes of each node of the tree, from the boxes of the primitives.
 pub(super) fn boxes(solid: &Solid, primitive: impl Fn(&Primitive) -> Boxes) -> Vec<Boxes> {
     let mut boxes: Vec<Boxes> = Vec::with_capacity(solid.tree.nodes().len());
     for node in solid.tree.nodes() {
@@ -91,7 +91,7 @@ pub(super) fn reaches(solid: &Solid) -> Vec<Bounds> {
             }
             Node::Complement(a) => of_nodes[a as usize] = asked,
             Node::Pair(op, a, b) => {
-                // where the value of the one leaves the pair open
+                // where one operand leaves the pair's value open
                 let (by_a, by_b) = match op {
                     Union => (at(a).not, at(b).not),
                     Intersection => (at(a).of, at(b).of),
@@ -106,7 +106,7 @@ pub(super) fn reaches(solid: &Solid) -> Vec<Bounds> {
     of_primitives
 }
 
-/// What both boxes hold.
+/// The intersection of two boxes.
 pub(crate) fn meet(a: Bounds, b: Bounds) -> Bounds {
     let both = Bounds { min: a.min.max(b.min), max: a.max.min(b.max) };
     if both.is_empty() { Bounds::EMPTY } else { both }
@@ -117,7 +117,8 @@ fn larger(a: Bounds, b: Bounds) -> Bounds {
     if b.diagonal() > a.diagonal() { b } else { a }
 }
 
-/// A box around what a hole leaves of a box: less where the hole goes right through it and takes one of its ends.
+/// A box around the rest of a box without a hole: smaller where the hole goes right through it and takes one of its
+/// ends.
 fn without(of: Bounds, hole: Bounds) -> Bounds {
     if hole.is_empty() {
         return of;

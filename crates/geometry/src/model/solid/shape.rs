@@ -5,7 +5,7 @@
 //!     half-space  n·x <= d             block     min..max         │  ╱   ╲
 //!     sphere      about the origin     cylinder  z in 0..height   │ ╱     ╲   cone: radii at z = 0 and height
 //!     torus       about the z axis     quadric   q(x) <= 0        └───────── bottom radius
-//!     mesh, part  what lies inside their closed surfaces
+//!     mesh, part  the volume inside their closed surfaces
 //! ```
 
 use crate::model::{Bounds, Colour, Mesh, Part};
@@ -61,9 +61,9 @@ pub enum Shape {
     },
     /// Points where `q <= 0`.
     Quadric(Quadric),
-    /// What lies inside a closed triangle mesh.
+    /// The volume inside a closed triangle mesh.
     Mesh(Arc<Mesh>),
-    /// What lies inside a part that is [closed](Part::closed): its trimmed spline faces and its meshes.
+    /// The volume inside a part that is [closed](Part::closed), with trimmed spline faces and meshes.
     Part(Arc<Part>),
 }
 
@@ -77,7 +77,7 @@ pub struct Quadric {
     pub products: DVec3,
     /// Coefficients of `x`, `y`, `z`.
     pub linear: DVec3,
-    /// The rest.
+    /// The constant term.
     pub constant: f64,
 }
 
@@ -110,8 +110,8 @@ impl Quadric {
 pub struct Primitive {
     /// In its own coordinates.
     pub shape: Shape,
-    /// Own coordinates to the solid's. One that flattens space makes the primitive empty; one that
-    /// mirrors leaves it a solid.
+    /// Own coordinates to the solid's. A transform that flattens space makes the primitive empty; one that mirrors
+    /// leaves it a solid.
     pub transform: DAffine3,
     /// Colour of its faces.
     pub colour: Colour,
@@ -119,7 +119,7 @@ pub struct Primitive {
     pub id: u32,
 }
 
-/// Why a primitive is not one.
+/// Why a primitive is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)]
 pub enum ShapeError {

@@ -6,15 +6,15 @@
 //!   boss   z = 2 ... 4      bottom of the boss (flipped) ┘   equal parameters are equal bit for bit
 //! ```
 //!
-//! At one ray parameter the toggles of the whole coincident group apply together, and a face exists only
-//! where the state before differs from the state after: that is the regularised Boolean operation, and it
-//! needs exact equality, which no tolerance on ray parameters gives (gaps would close).
+//! At one ray parameter the toggles of the whole coincident group apply together, and a face exists only where the
+//! state before differs from the state after. This is the regularised Boolean operation. It needs exact equality: a
+//! tolerance on ray parameters would close gaps.
 //!
-//! Two carriers are one when each passes within the tolerance of points on the other that reach as far as
-//! the face does. The carrier met first represents the rest. Candidates of a large face are found by one number a
-//! carrier, a fixed combination of its coefficients that nearly coincident carriers nearly share. A small face may
-//! lean, and that number with it: its candidates are the surfaces of the faces that it may touch, and those whose
-//! number is the same. (What lies apart is never met at one depth; it may share a surface, but need not.)
+//! Two carriers are one when each passes within the tolerance of sample points on the other, spread as far as its face.
+//! The first carrier represents the rest. A key, a fixed combination of the coefficients that nearly coincident
+//! carriers nearly share, finds the candidates of a large face. A small face may lean, and change its key: its
+//! candidates are the surfaces of faces that it may touch, and those with the same key. (Faces apart are never met at
+//! one depth; they may share a surface, but need not.)
 
 use super::carrier::Carrier;
 use super::nearby::Nearby;
@@ -24,7 +24,7 @@ use crate::model::Bounds;
 use glam::{DAffine3, DMat3, DVec3};
 use std::collections::BTreeMap;
 
-/// A surface that one or more faces lie on.
+/// A surface that carries one or more faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// The formula, in the coordinates of [`Surface::primitive`].
@@ -44,7 +44,7 @@ pub struct CarriedFace {
     pub flipped: bool,
 }
 
-/// The distinct surfaces of a solid, and on which each face lies.
+/// The distinct surfaces of a solid, and the surface of each face.
 #[derive(Clone, Debug)]
 pub struct SurfaceTable {
     surfaces: Vec<Surface>,
@@ -61,7 +61,7 @@ struct Candidate {
     samples: Vec<DVec3>,
     /// Diameter of the samples.
     size: f64,
-    /// The samples do not say how far the face reaches.
+    /// The samples do not cover the face.
     anywhere: bool,
 }
 
@@ -69,10 +69,10 @@ impl SurfaceTable {
     /// Tolerance for files that round to six digits: coplanar faces come back from a rotation up to 2.5e-6
     /// of their coordinates apart, while gaps of 1e-5 of the model stay open.
     pub const ROUNDED: f64 = 4e-6;
-    /// Least tolerance of what is drawn. Single precision may take one of two faces for the other where they are nearer
-    /// than some ten of these, at a pixel here and there where rays graze them.
+    /// Least tolerance for drawing. Single precision may confuse two faces that are nearer than some ten of these, at
+    /// single pixels where rays graze them.
     pub const FINEST: f64 = 1e-7;
-    /// Largest tolerance of what is drawn.
+    /// Largest tolerance for drawing.
     pub const COARSEST: f64 = 1e-3;
     /// Tolerance for coordinates in full precision.
     pub const EXACT: f64 = 1e-11;
@@ -104,8 +104,8 @@ impl SurfaceTable {
         table
     }
 
-    /// How far a face may be from the surface that it shares, in the solid's units: primitives reach as far beyond their
-    /// [`bounds`](super::Primitive::bounds).
+    /// How far a face may be from the surface that it shares, in the solid's units. A primitive reaches so far beyond
+    /// its [`bounds`](super::Primitive::bounds).
     pub fn distance(&self) -> f64 {
         self.distance
     }
@@ -180,7 +180,7 @@ impl Surface {
                 let [x, y, z] = columns;
                 (DMat3::from_cols(x, y, z), m.transpose() * q.gradient(o), q.value(o))
             }
-            // a sphere about the centre stands for it
+            // the sphere about its centre represents it
             Carrier::Torus { .. } => {
                 let at = -(self.to_own.inverse().transform_point3(DVec3::ZERO) - centre) / size;
                 return [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 2.0 * at.x, 2.0 * at.y, 2.0 * at.z, at.length_squared()];
@@ -221,7 +221,7 @@ struct Finder {
 }
 
 impl Finder {
-    /// Of the next face; `faces` are those before.
+    /// The surface of the next face; `faces` are the earlier ones.
     fn find(&mut self, new: Candidate, faces: &[CarriedFace]) -> CarriedFace {
         let coefficients = new.surface.coefficients(self.centre, self.size);
         let key = coefficients.iter().zip(WEIGHTS).map(|(c, w)| c * w).sum::<f64>().abs();

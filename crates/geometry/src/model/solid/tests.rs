@@ -1,4 +1,4 @@
-//! Coincident surfaces: what is one, what is not, and which way round.
+//! Coincident surfaces: which faces share one, and which way round.
 
 use crate::csg::{Builder, Node, Op, Tree};
 use crate::math::random::Random;
@@ -28,7 +28,7 @@ fn touching_blocks_share_a_flipped_plane() {
     assert_eq!([b[2], b[4], b[5]], [a[2], a[4], a[5]]);
 }
 
-/// One surface said by different shapes: turned, scaled, and as ten coefficients of either sign.
+/// One surface in different forms: turned, scaled, and as ten coefficients of either sign.
 #[test]
 fn the_same_surface_in_other_words() {
     let move_ = DAffine3::from_rotation_translation(DQuat::from_rotation_x(0.8), DVec3::new(3.0, -2.0, 7.0));
@@ -83,7 +83,7 @@ fn a_hundred_thousand_posts() {
     assert_eq!(t.surfaces().len(), 100_002);
 }
 
-/// A small ball in a large model, told as a quadric, of which few lines through the model meet any point.
+/// A small ball in a large model, as a quadric: few lines through the model meet any point of it.
 #[test]
 fn small_quadrics_are_met() {
     let at = DVec3::new(31.0, 12.0, -7.0);
@@ -106,7 +106,7 @@ fn empty_primitives_have_no_faces() {
     assert_eq!([0, 1, 2].map(|p| t.faces(p).len()), [0, 0, 6]);
 }
 
-/// What is written is read again; indices that lead nowhere, radii below 0 and trees in a ring are refused.
+/// A written solid is read again; indices out of range, radii below 0 and trees in a ring are refused.
 #[cfg(feature = "serde")]
 #[test]
 fn solids_are_written_and_read() {
@@ -153,8 +153,8 @@ fn expression(random: &mut Random, leaves: u32, primitives: u32) -> Tree {
     b.finish(parts[0]).unwrap()
 }
 
-/// Any primitives whose reach does not hold a point may be taken for their outsides there. Boxes of whole numbers and
-/// points between them, so that nothing is rounded; half-spaces among them reach as far as what they are cut with.
+/// Any primitives whose reach does not hold a point may be taken as absent there. Boxes of whole numbers and points
+/// between them, so that nothing is rounded; half-spaces reach as far as the primitives that they are cut with.
 #[test]
 fn beyond_their_reach_primitives_do_not_matter() {
     let mut random = Random::new(71);
@@ -203,7 +203,7 @@ fn beyond_their_reach_primitives_do_not_matter() {
     assert!(left_out > 5000 && smaller > 3000, "{left_out} {smaller}");
 }
 
-/// What is cut with a block, or taken from one, reaches no farther; added to it, it does.
+/// A primitive cut with a block, or subtracted from one, reaches no farther than it; a united one does.
 #[test]
 fn reach_of_what_is_cut() {
     let sphere =

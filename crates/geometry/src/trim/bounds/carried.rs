@@ -8,10 +8,9 @@ use crate::trim::{LoopIndex, RectSide};
 use glam::{DVec2, DVec3};
 use std::cell::OnceCell;
 
-/// How far beside a curve it is asked whether the face is there, in shares of the domain: a face that is nowhere so
-/// wide has no area.
+/// How far beside a curve the face is tested, in shares of the domain: a face that is nowhere so wide has no area.
 const BESIDE: [f64; 2] = [1e-6, 1e-9];
-/// Parameters at which it is asked.
+/// Parameters at which it is tested.
 const ASKED: [f64; 3] = [0.5, 0.21, 0.83];
 /// Shortest piece of a curve, in its parameter: shorter ones are roundings of a cut.
 const SHORTEST: f64 = 1e-14;
@@ -23,7 +22,7 @@ pub(super) struct Piece {
     pub patch: usize,
     /// Homogeneous, in the patch's unit square.
     pub curve: Vec<DVec3>,
-    /// Whether the face is anywhere beside it.
+    /// Whether the face lies anywhere beside it.
     beside: OnceCell<bool>,
 }
 
@@ -57,7 +56,7 @@ impl<'a> Carried<'a> {
         DVec2::new(u1 - u0, v1 - v0)
     }
 
-    /// What of a curve is over the domain, patch by patch.
+    /// The part of a curve over the domain, patch by patch.
     fn cut(&self, curve: &Bezier<DVec3>, lines: &[Vec<f64>; 2]) -> Vec<Piece> {
         let mut stops = vec![0.0, 1.0];
         for (axis, lines) in lines.iter().enumerate() {
@@ -93,7 +92,7 @@ impl<'a> Carried<'a> {
         self.index.get_or_init(|| LoopIndex::new(&self.face.loops))
     }
 
-    /// Whether the face is there.
+    /// Whether a point belongs to the face.
     pub fn holds(&self, p: DVec2) -> bool {
         match self.around {
             None => true,
@@ -110,7 +109,7 @@ impl<'a> Carried<'a> {
         if self.around.is_none() { RectSide::Inside } else { self.index().classify(lo, hi) }
     }
 
-    /// Whether the face is anywhere beside a piece of its trim curves: loops that cancel each other bound nothing.
+    /// Whether the face lies anywhere beside a piece of its trim curves: loops that cancel each other bound nothing.
     pub fn is_beside(&self, piece: usize) -> bool {
         let piece = &self.pieces[piece];
         *piece.beside.get_or_init(|| self.asks_beside(piece))

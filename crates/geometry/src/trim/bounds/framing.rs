@@ -1,4 +1,4 @@
-//! A camera that shows all of a model, and little beside it.
+//! A camera that shows all of a model as large as it fits.
 //!
 //! ```text
 //!          eye            The sides of the pyramid that the picture shows have fixed directions. Each side touches the
@@ -8,9 +8,9 @@
 //!       ╱ ╰────╲╯         margin on both.
 //! ```
 //!
-//! The sides are those of [`FILL`] of the picture. How far the model reaches is a search as for its box, within
-//! [`WITHIN`] of the box's diagonal; of Boolean solids it is that of boxes turned across the direction. The model is in
-//! the middle to [`CENTRED`] of the picture.
+//! The sides are those of [`FILL`] of the picture. A search as for the box finds how far the model reaches, within
+//! [`WITHIN`] of the box's diagonal; for Boolean solids it uses boxes turned across the direction. The model is in the
+//! middle to [`CENTRED`] of the picture.
 
 use super::search::{Search, Tolerance};
 use super::{Placed, solid};
@@ -19,13 +19,13 @@ use glam::DVec3;
 
 /// Share of the tighter side of the picture that the model covers.
 const FILL: f64 = 0.9;
-/// How far a search may be off, in shares of the model's diagonal: small beside what is seen of the nearest end.
+/// How far a search may be off, in shares of the model's diagonal: small beside the nearest visible end.
 const WITHIN: f64 = 1e-6;
 /// Half the difference of two margins, in shares of the picture's half.
 const CENTRED: f64 = 1e-3;
-/// The eye is no nearer to the model, in shares of the model's diagonal, however thin the model looks.
+/// Least distance of the eye from the model, in shares of the model's diagonal, however thin the model looks.
 const NEAREST: f64 = 1e-2;
-/// Steps of the search for the slope of sides that do not decide.
+/// Steps of the search for the slope of the sides that do not determine the eye.
 const MOST_STEPS: usize = 24;
 
 /// How far a model reaches along directions.
@@ -36,7 +36,7 @@ struct Reach<'a> {
 }
 
 impl Reach<'_> {
-    /// The largest `direction · p` of what is drawn.
+    /// The largest `direction · p` of the drawn points.
     fn along(&self, direction: DVec3) -> f64 {
         let mut search = Search::new(&self.placed.bodies, &self.placed.placements, direction);
         let faces = search.refine(self.tolerance);
@@ -60,7 +60,7 @@ struct Pair {
 }
 
 impl Pair {
-    /// Where the two meet, along the axis.
+    /// The place where the two meet, along the axis.
     fn across(self) -> f64 {
         0.5 * (self.above - self.below)
     }
@@ -77,8 +77,8 @@ impl Pair {
 }
 
 impl Camera {
-    /// A camera that shows all of `model` from direction `from` (towards the eye): it covers nine tenths of the tighter
-    /// side of the picture. A model of which nothing is left is shown as large as its control points.
+    /// A camera that shows all of `model` from direction `from` (towards the eye): the model covers nine tenths of the
+    /// tighter side of the picture. A model that its trims leave empty is shown as large as its control points.
     ///
     /// `fov_y` in radians, `size` in pixels.
     ///
@@ -111,7 +111,7 @@ impl Camera {
         let back = pairs.iter().map(|(_, pair)| pair.depth()).fold(front - NEAREST * diagonal, f64::min);
         let [across, upright] = pairs.map(|(axis, pair)| {
             let slope = pair.slope;
-            // sides that do not decide meet before the eye's depth: a smaller slope makes them meet at it
+            // sides that do not determine the eye meet before its depth: a smaller slope makes them meet at it
             let (mut wide, mut narrow) =
                 (pair, Pair { slope: 0.0, above: reach.along(axis), below: reach.along(-axis) });
             for step in 0..MOST_STEPS {
@@ -123,7 +123,7 @@ impl Camera {
                 if over <= enough {
                     return narrow.across();
                 }
-                // every other step halves: secants of a convex function move one end alone
+                // every other step halves: secants of a convex function move one end only
                 let share = if step % 2 == 0 { over / (over - under) } else { 0.5 };
                 let next = reach.touching(axis, narrow.slope + share * (wide.slope - narrow.slope), forward);
                 if next.beyond(back) > 0.0 { narrow = next } else { wide = next }

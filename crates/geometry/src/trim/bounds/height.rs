@@ -22,10 +22,10 @@ pub(super) type Height = Net<DVec2>;
 
 /// Trim curves whose one parameter changes by no more, of the patch's width, run along the other one.
 const STRAIGHT: f64 = 4.0 * f64::EPSILON;
-/// Of heights: each is a sum of a few rounded products.
+/// Rounding of heights: each is a sum of a few rounded products.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Which way is up, and the height of the origin.
+/// The upward direction, and the height of the origin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Up {
     pub along: DVec3,
@@ -53,13 +53,13 @@ pub(super) fn quotient(pair: DVec2) -> f64 {
 }
 
 impl Height {
-    /// A height that it does not exceed; infinite where a weight is not positive.
+    /// An upper bound of the height; infinite where a weight is not positive.
     pub(super) fn upper(&self) -> f64 {
         let bound = |pair: &DVec2| if pair.y > 0.0 { quotient(*pair) } else { f64::INFINITY };
         self.all().iter().map(bound).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// A height that it is nowhere below; infinite where a weight is not positive.
+    /// A lower bound of the height; infinite where a weight is not positive.
     pub(super) fn lower(&self) -> f64 {
         let bound = |pair: &DVec2| if pair.y > 0.0 { quotient(*pair) } else { f64::NEG_INFINITY };
         self.all().iter().map(bound).fold(f64::INFINITY, f64::min)
@@ -91,7 +91,7 @@ impl Height {
         !one_sign(&mut along_u) && !one_sign(&mut along_v)
     }
 
-    /// Whether it bends, or else changes, more along `v` than along `u` about a height.
+    /// Whether its second derivatives, or else its first, are larger along `v` than along `u` about a height.
     pub(super) fn is_steeper_in_v(&self, height: f64) -> bool {
         let at = |i: usize, j: usize| self.at(i, j).x - height * self.at(i, j).y;
         let (n, k) = (self.n, self.k);
@@ -115,7 +115,7 @@ impl Height {
         Self::build(0, self.k, |_, j| self.at(if last { self.n } else { 0 }, j))
     }
 
-    /// The same of `v`.
+    /// The same at one end of `v`.
     pub(super) fn side_v(&self, last: bool) -> Self {
         Self::build(self.n, 0, |i, _| self.at(i, if last { self.k } else { 0 }))
     }
@@ -204,7 +204,7 @@ fn add_product<T: Copy + std::ops::AddAssign + std::ops::Mul<f64, Output = T>>(t
     }
 }
 
-/// Bernstein coefficients of what is scaled by binomials.
+/// Bernstein coefficients from coefficients scaled by binomials.
 fn unscaled(scaled: Vec<DVec2>) -> Height {
     let degree = scaled.len() - 1;
     Net::build(degree, 0, |i, _| scaled[i] / binomial(degree, i))

@@ -1,4 +1,4 @@
-//! How far models reach: boxes of what the trims leave, not of control points.
+//! The extent of models: boxes of trimmed faces, not of control points.
 //!
 //! ```text
 //!        control points                 highest along a direction is       1. a point of a trim curve, or of the
@@ -9,26 +9,27 @@
 //!     ●            ●
 //! ```
 //!
-//! *Method.* Each of the six sides is a search of its own for the highest point along a direction. What may hold it
-//! waits in a heap, the highest bound first: placed parts, their faces, pieces of trim curves, patches and their sides.
-//! Bounds are those of boxes, then of control values. A piece of a trim curve over one patch is a rational curve in
-//! space ([`height`]), and is halved until the bound is met; a patch is halved likewise, and goes where the loops
-//! leave nothing of it or where it is nowhere level. Points that are certainly there raise a mark: ends of curves, and
-//! corners that the loops keep. The search is over when no bound is above the mark by more than the tolerance: parts
-//! and faces that are not at the border of the model are never looked at.
+//! *Method.* Each of the six sides is a search for the highest point along a direction. Its candidates are in a heap,
+//! the highest bound first: placed parts, their faces, pieces of trim curves, patches and their sides. Bounds come from
+//! boxes, then from control values. A piece of a trim curve over one patch is a rational curve in space ([`height`]),
+//! and is halved until the bound is met. A patch is halved likewise, and dropped where the loops leave nothing of it or
+//! where it is nowhere level. Points that certainly belong to the model raise a mark: ends of curves, and corners
+//! inside the loops. The search is over when no bound is above the mark by more than the tolerance, so parts and faces
+//! away from the border of the model are never examined.
 //!
-//! *Accuracy.* A side is where a point of the model is, and no point is beyond it by more than [`ANALYTIC`] of the box's
-//! diagonal, or [`OTHER`] of it for faces that have no equation of their own, plus some roundings of the largest
-//! coordinate. Faces are those of the model: what an importer's tolerance moved stays moved. Where a search would take
-//! more than some 65,000 steps, the side is that of the bounds that are left, and too far out. Loops that cancel each
-//! other bound nothing; a face of which nothing is left has no box.
+//! *Accuracy.* Each side touches a point of the model, and no point is beyond it by more than [`ANALYTIC`] of the box's
+//! diagonal, or [`OTHER`] of it for faces without an equation, plus some roundings of the largest coordinate. The faces
+//! are the model's: an importer's tolerance is not undone. Where a search would take more than some 65,000 steps, the
+//! side is that of the remaining bounds, and too far out. Loops that cancel each other bound nothing; a face that the
+//! loops leave empty has no box.
 //!
 //! *Placed parts.* A direction of the model is turned into a direction of the part, so turned parts have boxes as tight
-//! as others. Of copies that are turned alike the highest is searched alone; of all others, those that no bound rules
-//! out. A copy costs one box. A turned copy that may reach farthest costs a box for each of its faces, and their search.
+//! as others. Of copies with the same rotation only the highest is searched; of all others, those that no bound
+//! excludes. A copy costs one box. A turned copy that may reach farthest costs a box for each of its faces, and their
+//! search.
 //!
 //! *Solids.* See [`solid`]. A volume that [trims](Model::trim_by) the model cuts the box of the faces, where it has a
-//! box: such sides are not nearer than the model, and may be farther.
+//! box: such sides contain the model, and may be too far out.
 //!
 //! Source: branch and bound on hulls as in T. W. Sederberg, *Computer Aided Geometric Design*, course notes, 2012,
 //! chapter 10 (Bézier clipping), with the test for level points instead of clipping.
@@ -46,21 +47,21 @@ use std::ops::Range;
 
 /// How far points may be beyond a box, in shares of its diagonal: of planes, cylinders, cones, spheres and tori.
 pub const ANALYTIC: f64 = 1e-9;
-/// The same of other surfaces.
+/// The same for other surfaces.
 pub const OTHER: f64 = 1e-6;
 
-/// A first guess at the size: how far a search may be off, in shares of the guess.
+/// How far a search may be off in the first guess at the size, in shares of the guess.
 const COARSE: f64 = 1e-2;
-/// The box is no smaller beside the guess, or the guess is too large.
+/// If the box is smaller than this share of the guess, the guess is too large.
 const GOOD_GUESS: f64 = 0.1;
-/// Guesses; after them the size is a rounding of the first.
+/// Guesses, at most; after them the size is below the rounding of the first.
 const MOST_GUESSES: usize = 16;
 
 impl Face {
     /// Box of the trimmed face; empty where its loops leave nothing.
     ///
-    /// Each side is where a point of the face is. No point is beyond it by more than [`ANALYTIC`] of the box's diagonal,
-    /// or [`OTHER`] of it where the surface has no equation of its own, plus some roundings of the largest coordinate.
+    /// Each side touches a point of the face. No point is beyond it by more than [`ANALYTIC`] of the box's diagonal, or
+    /// [`OTHER`] of it where the surface has no equation of its own, plus some roundings of the largest coordinate.
     pub fn bounds(&self) -> Bounds {
         of(&[Body::new(std::slice::from_ref(self), &[])], &[(0, DAffine3::IDENTITY)])
     }
@@ -72,15 +73,15 @@ impl Part {
         self.bounds_placed(DAffine3::IDENTITY)
     }
 
-    /// Box of the part when it is placed so: as tight as its own, however it is turned.
+    /// Box of the part under a placement: as tight as its own, however it is turned.
     pub fn bounds_placed(&self, transform: DAffine3) -> Bounds {
         of(&[Body::new(&self.faces, &self.meshes)], &[(0, transform)])
     }
 }
 
 impl Model {
-    /// Box of all that is drawn, model coordinates: of the placed faces and meshes as tight as [`Face::bounds`]; of the
-    /// solids that have an end, a box of their expressions over tight boxes of their primitives.
+    /// Box of everything drawn, model coordinates: for placed faces and meshes as tight as [`Face::bounds`]; for
+    /// bounded solids, a box of their expressions over tight boxes of their primitives.
     pub fn bounds(&self) -> Bounds {
         self.bounds_of(0..self.instances.len(), 0..self.solids.len())
     }
@@ -88,7 +89,7 @@ impl Model {
     /// The same of some of the instances and solids, by their numbers.
     ///
     /// # Panics
-    /// Where there are fewer.
+    /// Where a number is out of range.
     pub fn bounds_of(&self, instances: Range<usize>, solids: Range<usize>) -> Bounds {
         let Placed { bodies, placements } = Placed::new(&self.parts, &self.instances[instances]);
         let faces = of(&bodies, &placements);

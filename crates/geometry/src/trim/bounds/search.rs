@@ -1,7 +1,7 @@
 //! The largest height of placed faces and meshes, by branch and bound.
 //!
 //! ```text
-//!   body ──▶ face ──┬─▶ piece of a trim curve ──▶ its halves …      the heap: what is left, the highest bound first
+//!   body ──▶ face ──┬─▶ piece of a trim curve ──▶ its halves …      the heap, the highest bound first
 //!     │             └─▶ patch ──┬─▶ its halves, inside or across the loops …
 //!     └────▶ mesh               └─▶ its four sides ──▶ their halves …
 //! ```
@@ -15,7 +15,7 @@ use std::cell::OnceCell;
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap};
 
-/// Steps of one search; after them what is left counts as high as its bounds.
+/// Steps of one search; after them each candidate counts as high as its bound.
 const MOST_STEPS: usize = 1 << 16;
 /// Halvings of a curve or patch; after them it counts as high as its bound.
 const MOST_HALVINGS: u32 = 96;
@@ -51,13 +51,13 @@ impl<'a> Body<'a> {
 /// How far from the truth a search may end.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tolerance {
-    /// Of faces that have equations.
+    /// For faces that have equations.
     pub analytic: f64,
-    /// Of others; no less.
+    /// For other faces; no less.
     pub other: f64,
 }
 
-/// What is left to look at.
+/// A candidate for the highest point.
 struct Candidate {
     upper: f64,
     placed: usize,
@@ -96,7 +96,7 @@ struct Area {
 }
 
 impl What {
-    /// Of those with equal bounds: trim curves raise the mark at once, areas ask the loops.
+    /// The order among equal bounds: trim curves raise the mark at once, areas need a test against the loops.
     fn rank(&self) -> u8 {
         u8::from(!matches!(self, Self::Area(_)))
     }
@@ -119,17 +119,17 @@ impl Ord for Candidate {
     }
 }
 
-/// Of one direction.
+/// The search along one direction.
 pub(super) struct Search<'s, 'a> {
     bodies: &'s [Body<'a>],
-    /// Of each body that is placed, which way is up and its number.
+    /// For each placed body, its upward direction and its number.
     placed: Vec<(Up, usize)>,
     heap: BinaryHeap<Candidate>,
-    /// The highest point found that is certainly there.
+    /// The height of the highest point that certainly belongs to the model.
     low: f64,
-    /// As high as what could not be looked at closely enough may be.
+    /// The largest bound of candidates that were not examined to the end.
     unsure: f64,
-    /// Heights are rounded by as much.
+    /// Rounding of heights.
     rounding: f64,
     steps: usize,
 }
@@ -137,7 +137,7 @@ pub(super) struct Search<'s, 'a> {
 impl<'s, 'a> Search<'s, 'a> {
     /// Of bodies by their numbers, as placed.
     pub fn new(bodies: &'s [Body<'a>], placements: &[(usize, DAffine3)], direction: DVec3) -> Self {
-        // of bodies that are turned alike the highest
+        // of bodies with the same rotation the highest
         let mut highest: HashMap<(usize, [u64; 3]), Up> = HashMap::new();
         for &(body, transform) in placements {
             let along = transform.matrix3.transpose() * direction + 0.0; // no -0
@@ -158,11 +158,11 @@ impl<'s, 'a> Search<'s, 'a> {
         Self { bodies, placed, heap, low: f64::NEG_INFINITY, unsure: f64::NEG_INFINITY, rounding, steps: 0 }
     }
 
-    /// The largest height, or less by the tolerance; more where the work that it may take does not suffice. Negative
-    /// infinity where there is nothing.
+    /// The largest height, or less by the tolerance; more where the allowed work does not suffice. Negative infinity
+    /// where there is nothing.
     pub fn refine(&mut self, tolerance: Tolerance) -> f64 {
         while let Some(top) = self.heap.peek() {
-            // what is no number reaches no farther
+            // NaN reaches no farther
             let reaches_farther = top.upper > self.low + tolerance.analytic + self.rounding;
             if !reaches_farther {
                 break;
@@ -294,7 +294,7 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         let side = if inside { RectSide::Inside } else { carried.classify(lo, hi) };
         let inside = side == RectSide::Inside;
-        // a level one is as high as the trim curves in it, which are looked at
+        // a level area is as high as the trim curves in it, which are candidates too
         if side == RectSide::Outside || !inside && upper - lower <= self.rounding {
             return;
         }
@@ -311,7 +311,8 @@ impl<'s, 'a> Search<'s, 'a> {
         }
     }
 
-    /// Whether nothing higher than what is found is in it, its ends and sides apart; or it is too small to be halved.
+    /// Whether the candidate holds nothing higher than the mark, its ends and sides apart; or is too small to be
+    /// halved.
     fn is_done(&mut self, upper: f64, lower: f64, height: &Height, halvings: u32) -> bool {
         let from = self.low.max(lower);
         if upper <= self.low || from.is_finite() && upper.is_finite() && !height.may_turn(from, upper) {
@@ -325,7 +326,7 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 }
 
-/// The largest height of a box; negative infinity of nothing.
+/// The largest height of a box; negative infinity for an empty box.
 fn of_box(up: Up, around: Bounds) -> f64 {
     if around.is_empty() {
         return f64::NEG_INFINITY;

@@ -7,16 +7,16 @@
 //!   A - B   box of A, less where a block B goes right through it and takes one of its ends
 //! ```
 //!
-//! *What is certain.* The box holds the solid. It is tight for one primitive and for unions of such, to rounding. It is
-//! also tight where blocks along the axes, half-spaces across them and tight boxes meet in a box. Otherwise it may be
-//! larger: where boxes meet and solids do not, and where a difference takes what reached farthest.
+//! *Certainty.* The box contains the solid. It is tight for one primitive and for unions of primitives, to rounding. It
+//! is also tight where blocks along the axes, half-spaces across them and tight boxes meet in a box. Otherwise it may
+//! be larger: where boxes meet and solids do not, and where a difference removes the farthest points.
 
 use crate::model::{Bounds, Boxes, Primitive, Quadric, Shape, Solid};
 use glam::{BVec3, DAffine3, DMat3, DVec3};
 
 /// Directions that differ by less are one: rounding of a placement.
 const PARALLEL: f64 = 8.0 * f64::EPSILON;
-/// Ellipsoids that are longer beside their width count as without an end.
+/// Ellipsoids that are longer beside their width count as unbounded.
 const LONGEST: f64 = 1e5;
 
 /// All of space.
@@ -26,8 +26,8 @@ pub(super) fn bounds(solid: &Solid) -> Bounds {
     solid.bounds_over(boxes)
 }
 
-/// A height along `direction`, of any length but 0, that no point of the solid exceeds: that of a box with a side across
-/// it. Infinite where the solid may have no end there.
+/// A height along `direction`, of any length but 0, that no point of the solid exceeds: that of a box with a side
+/// across it. Infinite where the solid may be unbounded there.
 pub(super) fn reach(solid: &Solid, direction: DVec3) -> f64 {
     let (u, v) = direction.normalize().any_orthonormal_pair();
     let turn = DAffine3::from_mat3(DMat3::from_cols(direction, u, v).transpose());
@@ -69,7 +69,7 @@ fn is_along_axis(v: DVec3) -> bool {
     u8::from(x) + u8::from(y) + u8::from(z) == 2
 }
 
-/// The box of a placed shape of which the support is known, own coordinates.
+/// The box of a placed shape with a known support, own coordinates.
 fn placed(primitive: &Primitive, support: impl Fn(DVec3) -> f64) -> Bounds {
     let transposed = primitive.transform.matrix3.transpose();
     let t = primitive.transform.translation;
@@ -85,7 +85,7 @@ fn half_space(normal: DVec3, offset: f64, d: DVec3) -> f64 {
     if is_across && d.dot(normal) > 0.0 { offset * d.dot(normal) / normal.length_squared() } else { f64::INFINITY }
 }
 
-/// The largest `d · x` of a shape, own coordinates; infinite where it has no end.
+/// The largest `d · x` of a shape, own coordinates; infinite where it is unbounded.
 fn support(shape: &Shape, d: DVec3) -> f64 {
     let around = d.truncate().length();
     match shape {
@@ -99,7 +99,7 @@ fn support(shape: &Shape, d: DVec3) -> f64 {
             let corners = mesh.triangles().iter().flatten().map(|v| d.dot(mesh.positions()[*v as usize]));
             corners.fold(f64::NEG_INFINITY, f64::max)
         }
-        // in ways of their own: see `boxes`
+        // `boxes` treats these itself
         Shape::HalfSpace { .. } | Shape::Part(_) => f64::INFINITY,
     }
 }

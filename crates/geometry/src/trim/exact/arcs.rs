@@ -7,11 +7,11 @@ use crate::spline::{Bezier, Control};
 use crate::trim::piece::{Piece, append_pieces};
 use glam::{DVec2, DVec3};
 
-/// Arcs of all loops, and which follows which.
+/// Arcs of all loops, and their order.
 #[derive(Debug, Default)]
 pub(super) struct Chains {
     pub arcs: Vec<Arc>,
-    /// Of each arc the one that its loop runs through before it, and after it.
+    /// For each arc, the one before it in its loop, and the one after it.
     pub before: Vec<u32>,
     pub after: Vec<u32>,
 }
@@ -24,7 +24,7 @@ impl Chains {
     }
 }
 
-/// Cuts the loops; what rounds to a point is left out, and its neighbours follow each other.
+/// Cuts the loops; a piece that rounds to a point is dropped, and its neighbours follow each other.
 pub(super) fn chains(loops: &[TrimLoop], origin: DVec2, size: DVec2) -> Chains {
     let unit = |p: DVec2| (p - origin) / size;
     let mut all = Chains::default();
@@ -66,7 +66,7 @@ fn cut(conics: &mut Vec<Conic>, curve: &Bezier<DVec3>, piece: &Piece, unit: impl
     append_conics(conics, &Bezier { points });
 }
 
-/// In single precision, joints kept inside the box of the piece's ends: rounding must not undo its monotony.
+/// In single precision, joints clamped to the box of the piece's ends: rounding must not undo its monotony.
 fn append_arcs(arcs: &mut Vec<Arc>, conics: &[Conic], (start, end): (DVec2, DVec2)) {
     let mut from = start;
     for (k, conic) in conics.iter().enumerate() {

@@ -1,10 +1,10 @@
 //! Arcs sorted into the cells' lists.
 //!
 //! ```text
-//!   winding number that a list leaves = crossings right of the centre, on its scan line, by what is not in the list
+//!   winding number beside a list = crossings right of the centre, on its scan line, of arcs outside the list
 //!
 //!   cells of a row:   all arcs of the row, sorted by where they pass its middle
-//!   parts of a cell:  what the cell leaves, and those of its list that are not in the part's
+//!   parts of a cell:  those outside of the cell's list, and those of its list that are not in the part's
 //! ```
 
 use super::arcs::Chains;
@@ -12,13 +12,13 @@ use super::grid::Region;
 use super::{AT_HIGH, AT_LOW, Arc, Cell, Entry, ExactTrim, Grid, MOST_HALVINGS};
 use std::collections::HashMap;
 
-/// Entries of a list that need not be fewer: a joint has two arcs beside it in any cell, and smaller cells are told less far
-/// around.
+/// Entries that a list may always have: a joint has two arcs beside it in any cell, and smaller cells decide over
+/// smaller distances.
 const FEW: usize = 3;
 /// Parts of a cell, and their entries, at most so many to an entry of its own.
 const MOST_PARTS_AN_ENTRY: usize = 4;
 
-/// What becomes of arcs along a scan line where no chain leaves a list by them.
+/// Where arcs along a scan line are listed, if no chain leaves a list by them.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Flats {
     /// They are in no list.
@@ -60,7 +60,7 @@ pub(super) fn sorted_into(chains: Chains, flats: Flats) -> ExactTrim {
     ExactTrim { arcs: chains.arcs, grid, cells, entries }
 }
 
-/// Where arcs pass a scan line.
+/// The crossings of arcs with a scan line.
 struct Crossings {
     /// From the largest `u` to the smallest, with the sum of all up to it.
     sums: Vec<(f64, i32)>,
@@ -84,7 +84,7 @@ impl Crossings {
     }
 }
 
-/// Where an arc passes a scan line, and its sign; bottom-open, top-closed.
+/// The crossing of an arc with a scan line, and its sign; bottom-open, top-closed.
 fn crossing(arc: &Arc, v: f64) -> Option<(f64, i32)> {
     let (low, high) = (f64::from(arc.low[1]), f64::from(arc.high[1]));
     (low < v && v <= high).then(|| (if v == high { f64::from(arc.high[0]) } else { arc.at(v) }, sign(arc)))
@@ -95,11 +95,11 @@ fn sign(arc: &Arc) -> i32 {
     if arc.up { 1 } else { -1 }
 }
 
-/// What meets a region's box, and the winding number that it leaves.
+/// The arcs that meet a region's box, and the winding number of the others.
 struct Told {
     /// Numbers of arcs and their flags.
     arcs: Vec<(u32, u32)>,
-    /// Of them, those that are in the list.
+    /// How many of them are in the list.
     length: usize,
     winding: i32,
 }
@@ -107,7 +107,7 @@ struct Told {
 struct Sorter<'a> {
     chains: &'a Chains,
     flats: Flats,
-    /// Of each arc the last region whose box it was found to meet.
+    /// For each arc the last region whose box it meets.
     met: Vec<u32>,
     regions: u32,
     /// First entry of each list.
@@ -116,7 +116,7 @@ struct Sorter<'a> {
 }
 
 impl Sorter<'_> {
-    /// What meets a region's box, where all crossings right of its centre add up to `right`.
+    /// The arcs that meet a region's box, where all crossings right of its centre add up to `right`.
     fn told(&mut self, region: &Region, meet: &[u32], right: i32) -> Told {
         self.regions += 1;
         meet.iter().for_each(|&i| self.met[i as usize] = self.regions);
@@ -159,7 +159,7 @@ impl Sorter<'_> {
         }
     }
 
-    /// Into as few parts as have few arcs each; else into those with the fewest that there may be.
+    /// Splits into as few parts as have few arcs each; else into the parts with the fewest.
     fn parts(&mut self, region: &Region, told: &Told) -> Option<(u32, Vec<Told>)> {
         let most = MOST_PARTS_AN_ENTRY * told.length;
         let mut best = None;
@@ -224,7 +224,7 @@ impl Sorter<'_> {
     }
 }
 
-/// What the flags of an arc add to the winding number of a point on a scan line.
+/// The contribution of an arc's flags to the winding number of a point on a scan line.
 fn lengthened(arc: &Arc, flags: u32, v: f64) -> i32 {
     let low = if flags & AT_LOW != 0 && f64::from(arc.low[1]) < v { -sign(arc) } else { 0 };
     let high = if flags & AT_HIGH != 0 && f64::from(arc.high[1]) < v { sign(arc) } else { 0 };

@@ -8,14 +8,14 @@
 //!   low ───────── high         below the chord, or where the right side is larger: on the chord's side of the arc
 //! ```
 //!
-//! Circles, ellipses and all else of degree two are such arcs as they stand. Any other piece gets the conic that has its ends,
-//! their tangents, and one more point of it; where that leaves the piece by more than [`TOLERANCE`], the piece is halved.
-//! Conics follow a smooth piece of length `h` to within `O(h⁵)`, so few halvings are enough, but at inflections, where
-//! pieces get smaller by a constant ratio.
+//! Circles, ellipses and all other curves of degree two are such arcs exactly. Any other piece gets the conic through
+//! its ends with their tangents, and one more point of it. Where this conic leaves the piece by more than
+//! [`TOLERANCE`], the piece is halved. Conics follow a smooth piece of length `h` to within `O(h⁵)`, so few halvings
+//! are enough, except at inflections, where pieces get smaller by a constant ratio.
 //!
-//! The distance is not measured but proved: the piece moved by the tolerance away from its chord has to be beyond
-//! the conic, and moved by as much towards it has to be within. The equation of the conic along the moved piece is a
-//! polynomial, and all of its Bernstein coefficients must have the sign.
+//! The distance is proved, not measured: the piece moved by the tolerance away from its chord must be beyond the conic,
+//! and moved by as much towards it must be within. The equation of the conic along the moved piece is a polynomial, and
+//! all of its Bernstein coefficients must have the right sign.
 //!
 //! Source: G. Farin, *Curves and Surfaces for CAGD*, 2002, chapter 12 (conics in barycentric coordinates); E. T. Y. Lee,
 //! *The rational Bézier representation for conics*, 1987.
@@ -35,7 +35,7 @@ const SHOULDER_HALVINGS: u32 = 16;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Conic {
     pub end: DVec2,
-    /// Where the tangents of its ends meet; the start where it is straight.
+    /// The meeting point of the end tangents; the start where the arc is straight.
     pub corner: DVec2,
     /// 0 where it is straight.
     pub fullness: f64,
@@ -60,8 +60,8 @@ fn append(conics: &mut Vec<Conic>, piece: &Bezier<DVec3>, tolerance: f64, halvin
     }
 }
 
-/// All control points are near the chord: so is the piece, and it runs along it. So is what is too large to be told: no
-/// comparison holds there, and halving would not end.
+/// All control points are near the chord: so is the piece, and it runs along it. Also true for pieces too large for a
+/// decision: no comparison holds there, and halving would not end.
 fn is_straight(piece: &Bezier<DVec3>, start: DVec2, end: DVec2, tolerance: f64) -> bool {
     let chord = end - start;
     let most = tolerance * chord.length();
@@ -93,7 +93,7 @@ fn followed(piece: &Bezier<DVec3>, start: DVec2, end: DVec2, tolerance: f64) -> 
     follows.then_some(Conic { end, corner, fullness })
 }
 
-/// Of the piece, a point that is as far from the one tangent as from the other.
+/// A point of the piece that is equally far from both tangents.
 fn shoulder(piece: &Bezier<DVec3>, triangle: &Triangle) -> DVec3 {
     let (mut a, mut b) = (0.0, 1.0);
     let mut t = 0.5;
@@ -112,7 +112,7 @@ fn shoulder(piece: &Bezier<DVec3>, triangle: &Triangle) -> DVec3 {
     piece.homogeneous(t)
 }
 
-/// Of an arc's ends and its corner.
+/// An arc's ends and its corner.
 struct Triangle {
     start: DVec2,
     corner: DVec2,
@@ -164,7 +164,7 @@ mod tests {
     use super::*;
     use crate::spline::arc;
 
-    /// Of a control point `u`, `v` and its weight.
+    /// `u`, `v` and weight of a control point.
     type Weighted = (f64, f64, f64);
 
     fn conics(points: &[Weighted]) -> (Bezier<DVec3>, Vec<Conic>) {
@@ -175,7 +175,7 @@ mod tests {
         (piece, conics)
     }
 
-    /// How far points of the arcs are from the piece, both finely sampled.
+    /// The largest distance of points of the arcs from the piece, both finely sampled.
     fn worst_distance(piece: &Bezier<DVec3>, conics: &[Conic]) -> f64 {
         const FINE: u32 = 20_000;
         let at: Vec<DVec2> = (0..=FINE).map(|k| piece.point(f64::from(k) / f64::from(FINE))).collect();
@@ -204,7 +204,7 @@ mod tests {
         assert!((quarter[0].fullness - 2.0).abs() < 1e-14 && quarter[0].corner == DVec2::ONE);
         let (_, parabola) = conics(&[(0.0, 0.0, 1.0), (0.5, 0.0, 1.0), (1.0, 1.0, 1.0)]);
         assert!(parabola.len() == 1 && (parabola[0].fullness - 4.0).abs() < 1e-14);
-        // as files have them: of a higher degree than need be
+        // as in files: of a higher degree than necessary
         let elevated = conics(&[(1.0, 0.0, 1.0), (1.0, 1.0, w), (0.0, 1.0, 1.0)]).0.elevated().elevated();
         let mut again = Vec::new();
         append_conics(&mut again, &elevated);
@@ -215,13 +215,13 @@ mod tests {
     fn straight_pieces_have_no_corner() {
         let (_, line) = conics(&[(0.0, 0.0, 1.0), (0.2, 0.1, 2.0), (1.0, 0.5, 1.0)]);
         assert_eq!(line, [Conic { end: DVec2::new(1.0, 0.5), corner: DVec2::ZERO, fullness: 0.0 }]);
-        // and not the bulge of a hundredth of the tolerance
+        // without the bulge of a hundredth of the tolerance
         assert_eq!(conics(&[(0.0, 0.0, 1.0), (0.5, 1e-10, 1.0), (1.0, 0.0, 1.0)]).1[0].fullness, 0.0);
     }
 
-    /// Cubics, with an inflection or a cusp at the end, a quintic, and a rational one of uneven weights: never farther off than
-    /// the tolerance, and few arcs, but for some thirty to either side of an inflection. What is measured against, the piece
-    /// by chords, is off by less than 1e-9.
+    /// Cubics, with an inflection or a cusp at the end, a quintic, and a rational one of uneven weights: never farther
+    /// off than the tolerance, and few arcs, except for some thirty on either side of an inflection. The reference, the
+    /// piece by chords, is off by less than 1e-9.
     #[test]
     fn other_curves_are_followed_by_a_few() {
         let cases: [(&[Weighted], usize); 5] = [
@@ -250,7 +250,7 @@ mod tests {
         assert!(followed(&piece, ends.0, ends.1, TOLERANCE).is_none());
     }
 
-    /// What lies far beyond the domain is followed as single precision has it, and what is too large to be told ends.
+    /// A piece far beyond the domain is followed within single precision, and one too large for a decision ends.
     #[test]
     fn huge_pieces_are_a_few_arcs() {
         for size in [1e3, 1e9, 1e30, 1e160, 1e300] {

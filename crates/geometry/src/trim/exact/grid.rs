@@ -1,4 +1,4 @@
-//! How many cells of the first level a face has, and which of them an arc is near.
+//! The number of a face's cells of the first level, and the cells near each arc.
 
 use super::{Arc, Grid, MARGIN};
 use glam::{DVec2, IVec2};
@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 
 /// Arcs to a cell of the first level, on average.
 const ARCS_A_CELL: f64 = 1.0;
-/// Cells to an arc at most, and as many that arcs are in, all added up.
+/// Cells to an arc at most, and cells that hold an arc, summed over all arcs.
 const MOST_CELLS_AN_ARC: f64 = 8.0;
 /// Finest columns and rows, of the domain.
 const MOST_BITS: u32 = 15;
@@ -14,7 +14,7 @@ const MOST_BITS: u32 = 15;
 const MOST_COUNT: f64 = 4096.0;
 
 impl Grid {
-    /// Around all arcs. Cells have the proportions that arcs have on average, so they are about square on the surface.
+    /// The grid around all arcs. Cells have the average proportions of arcs, so they are about square on the surface.
     pub(super) fn around(arcs: &[Arc]) -> Self {
         if arcs.is_empty() {
             return Self { first: [0; 2], counts: [1; 2], bits: [0; 2] };
@@ -38,7 +38,7 @@ impl Grid {
             let met: f64 = arcs.iter().map(|arc| cells_met((point(arc.high) - point(arc.low)).abs() * scale)).sum();
             let fits = counts.max_element() <= MOST_COUNT && counts.element_product() <= most && met <= most;
             if fits || bits == [0; 2] {
-                // outermost cells have what is beyond: one cell has loops that are many domains wide
+                // points beyond belong to the outermost cells: one cell serves loops that are many domains wide
                 let first = first.to_array().map(|x| x as i16);
                 let counts = if fits { counts.to_array().map(|n| n as u16) } else { [1; 2] };
                 return Self { first, counts, bits };
@@ -63,12 +63,12 @@ impl Grid {
     }
 }
 
-/// Of an arc so many cells wide and high.
+/// Cells met by an arc of this width and height.
 fn cells_met(size: DVec2) -> f64 {
     size.x + size.y + 1.0 + 2.0 * f64::from(MARGIN)
 }
 
-/// A part of the domain for which one list holds.
+/// A part of the domain with one list.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Region {
     /// Its own rectangle.
@@ -108,7 +108,7 @@ impl Region {
         Self { lo, hi, box_lo, box_hi }
     }
 
-    /// Where it is told which winding number the rest of the loops leaves.
+    /// The point at which the winding number of the rest of the loops is computed.
     pub(super) fn centre(&self) -> DVec2 {
         0.5 * (self.lo + self.hi)
     }
@@ -168,7 +168,7 @@ mod tests {
         ]
     }
 
-    /// As many cells as arcs ask for, about, however wide, narrow or far away the loops are.
+    /// About as many cells as arcs, however wide, narrow or far away the loops are.
     #[test]
     fn cells_are_few_whatever_the_size() {
         let sizes = [1e-30, 1e-7, 1e-3, 1.0, 5e3, 1e6, 1e30, f32::MAX];

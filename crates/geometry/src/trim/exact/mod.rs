@@ -1,36 +1,36 @@
 //! Trim loops prepared once for answers at any zoom: two levels of cells, each with the few arcs near it.
 //!
 //! ```text
-//!   v ▲ ┌───────┬───────┬───────┐     cells are as many as the arcs ask for, their sides powers of two
+//!   v ▲ ┌───────┬───────┬───────┐     as many cells as there are arcs, about; their sides are powers of two
 //!     │ │   0   │       │ 0     │
 //!     │ │      ╭┼───┬─●╮│       │     a cell with many arcs is split, once, into 4, 16, 64 or 256 alike
 //!     │ ├──────│┼─┼─┼─┼│┼───────┤
 //!     │ │      ╲│ │1│ │╱│       │     ┄┄┄┄┄  each has the arcs of a box a quarter wider to every side:
-//!     │ │       ╲─┼─┼─╱ │       │     ┆ ┌─┐  what a pixel asks on behalf of its neighbourhood is in the list
-//!     │ └───────┴─●───┴─┴───────┘     ┆ └─┘  that its centre finds
+//!     │ │       ╲─┼─┼─╱ │       │     ┆ ┌─┐  so a point near the centre of a pixel has its arcs in
+//!     │ └───────┴─●───┴─┴───────┘     ┆ └─┘  the list that the centre finds
 //!     └───────────────────────────▶ u
 //! ```
 //!
-//! An *arc* is a piece of a trim curve that turns back neither in `u` nor in `v`: straight, or of a conic ([`conic`]), from
-//! its lower end to its higher one. Whether a point lies left of it is decided without a search, all in `f32`, the shader's
-//! arithmetic: by the side of its chord, and on the corner's side by the sign of the conic's equation.
+//! An *arc* is a piece of a trim curve that turns back neither in `u` nor in `v`: straight, or of a conic ([`conic`]),
+//! from its lower end to its higher one. Whether a point lies left of it is decided without a search, all in `f32`, the
+//! shader's arithmetic: by the side of its chord, and on the corner's side by the sign of the conic's equation.
 //!
-//! **Winding.** The winding number of `p` counts crossings right of `p`. Arcs of the list are asked. The others add up to
-//! one number for all points of the box, provided that they form whole chains; a chain that leaves the list at a
-//! joint right of the box is lengthened straight upwards from that joint, at `u = ∞`, and the arc of the list takes
-//! the lengthening back: that is the meaning of [`AT_LOW`] and [`AT_HIGH`]. Joints are the same bits for both
+//! **Winding.** The winding number of `p` counts crossings right of `p`. Arcs of the list are tested. The others add up
+//! to one number for all points of the box, provided that they form whole chains. A chain that leaves the list at a
+//! joint right of the box is lengthened straight upwards from that joint, at `u = ∞`, and the arc of the list subtracts
+//! the lengthening again: that is the meaning of [`AT_LOW`] and [`AT_HIGH`]. Joints are the same bits for both
 //! neighbours and are only compared, so the loops stay closed whatever an arc's own rounding is.
 //!
-//! **Accuracy.** An arc is within 2⁻²⁵ of the domain of its trim curve, proved as it is made. Corners are stored relative to
-//! the arc's lower end, so the equation is off by a few roundings times the arc's size, and joints are rounded to
-//! 2⁻²⁴ of the domain, as the fragment's own (u, v) is.
+//! **Accuracy.** An arc is within 2⁻²⁵ of the domain of its trim curve, proved as it is made. Corners are stored
+//! relative to the arc's lower end, so the equation is off by a few roundings times the arc's size. Joints are rounded
+//! to 2⁻²⁴ of the domain, as the fragment's own (u, v) is.
 //!
-//! **Memory.** See [`ExactTrim::bytes`]. Lists lie where they are read, arc for arc, and cells whose lists are the same share
-//! one. Cells are fewer where arcs cross each other, so that all of it stays linear in the number of arcs.
+//! **Memory.** See [`ExactTrim::bytes`]. A list stores its arcs themselves, and cells with equal lists share one. Cells
+//! are fewer where arcs cross each other, so memory stays linear in the number of arcs.
 //!
-//! Sources: D. Nehab, H. Hoppe, *Random-access rendering of general vector graphics*, 2008 (a lattice
-//! of cells that know their winding number, and shortcuts for what leaves them); A. Schollmeyer,
-//! B. Fröhlich, *Direct trimming of NURBS surfaces on the GPU*, 2009 (monotone pieces).
+//! Sources: D. Nehab, H. Hoppe, *Random-access rendering of general vector graphics*, 2008 (a lattice of cells that
+//! store their winding number, and shortcuts for chains that leave them); A. Schollmeyer, B. Fröhlich, *Direct trimming
+//! of NURBS surfaces on the GPU*, 2009 (monotone pieces).
 
 mod arcs;
 mod cells;
@@ -53,7 +53,7 @@ pub struct Arc {
     pub low: [f32; 2],
     /// End of the larger `v`.
     pub high: [f32; 2],
-    /// Where the tangents at the ends meet, relative to `low`; zero when the arc is straight.
+    /// The meeting point of the end tangents, relative to `low`; zero when the arc is straight.
     pub corner: [f32; 2],
     /// `4 w²` of the corner's weight `w`, where the ends have weight 1; 0 when the arc is straight.
     pub fullness: f32,
@@ -64,23 +64,23 @@ pub struct Arc {
 /// A rectangle of the domain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cell {
-    /// Told by a list.
+    /// With a list.
     Whole {
         /// First entry of the list.
         first: u32,
-        /// Winding number by what is in no list.
+        /// Winding number of the arcs outside the list.
         winding: i32,
     },
     /// Split into `4^halvings` others.
     Split {
         /// First of them.
         first: u32,
-        /// Of each side; at most 4.
+        /// Halvings of each side; at most 4.
         halvings: u32,
     },
 }
 
-/// Of the sides of a [`Cell::Split`].
+/// Most halvings of a side of a [`Cell::Split`].
 const MOST_HALVINGS: u32 = 4;
 
 /// An arc of a list.
@@ -94,16 +94,16 @@ pub struct Entry {
     pub last: bool,
 }
 
-/// One face's trims: what passes `visibility` and `heal` read in the way [`crate::trim`] calls *exact*.
+/// One face's trims, as passes `visibility` and `gap_fill` read them in the way [`crate::trim`] calls *exact*.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExactTrim {
     /// The arcs of all loops.
     pub arcs: Vec<Arc>,
-    /// Where the cells are.
+    /// The place of the cells.
     pub grid: Grid,
-    /// Those of the grid, row by row, then those of each split one.
+    /// The cells of the grid, row by row, then the parts of each split one.
     pub cells: Vec<Cell>,
-    /// The lists; first that of the cells without arcs.
+    /// The lists; the first is that of cells without arcs.
     pub entries: Vec<Entry>,
 }
 
@@ -127,8 +127,8 @@ impl ExactTrim {
         cells::sorted_into(arcs::chains(loops, origin, size), cells::Flats::Left)
     }
 
-    /// As [`new`](Self::new), with arcs along scan lines in the lists: they cross no scan line, so no winding number asks for
-    /// them, but they are part of the border that pass `coverage` measures.
+    /// As [`new`](Self::new), with arcs along scan lines in the lists: they cross no scan line, so winding numbers do
+    /// not depend on them, but they are part of the border that pass `coverage` measures.
     pub fn with_flats(loops: &[TrimLoop], origin: DVec2, size: DVec2) -> Self {
         cells::sorted_into(arcs::chains(loops, origin, size), cells::Flats::Kept)
     }

@@ -1,4 +1,4 @@
-//! Faces of which little is left or nothing, and numbers that are none.
+//! Faces that loops leave nearly empty or empty, and numbers that are not finite.
 
 use super::support::{assert_box, placed};
 use crate::shapes::{at, circle, polygon, rectangle};
@@ -32,7 +32,7 @@ fn of_nothing_there_is_no_box() {
     assert_eq!(Model::default().bounds(), Bounds::EMPTY);
 }
 
-/// What is left of a part counts, and what cancels beside it does not.
+/// The remaining part of a face counts, and loops that cancel do not.
 #[test]
 fn loops_that_cancel_bound_nothing() {
     let far = || rectangle((3.0, 3.0), (3.9, 3.9));
@@ -48,7 +48,7 @@ fn a_sliver_is_as_long_as_it_is() {
     assert_box(face.bounds(), expected, 1e-12);
 }
 
-/// Far from the origin the rounding of coordinates is what is left to be off.
+/// Far from the origin the error is the rounding of coordinates.
 #[test]
 fn a_small_face_far_away() {
     let by = DVec3::new(1e7, -3e6, 2e6);
@@ -71,7 +71,7 @@ fn what_is_no_number_is_no_face() {
     assert!(matches!(TrimLoop::new(vec![line], DVec2::ONE), Err(FaceError::ControlPoint { curve: 0 })));
 }
 
-/// Placements are plain data: one that is no number places nothing, and leaves the others alone.
+/// Placements are plain data: one that is not finite places nothing, and does not affect the others.
 #[test]
 fn a_placement_that_is_no_number_places_nothing() {
     let mut model = placed(&square(vec![], 1.0), DAffine3::IDENTITY);
@@ -95,7 +95,7 @@ fn huge_coordinates_end() {
     assert!(!face.bounds().max.is_nan() && !placed(&face, turned).bounds().max.is_nan());
 }
 
-/// Of a mesh its triangles; a vertex of none is nowhere.
+/// A mesh has the box of its triangles; a vertex of none does not count.
 #[test]
 fn meshes_are_their_triangles() {
     let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::splat(100.0)];

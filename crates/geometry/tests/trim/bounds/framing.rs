@@ -24,7 +24,8 @@ fn covered(camera: &Camera, points: &[DVec3]) -> [f64; 4] {
         .fold([-1.0; 4], |far, q| [far[0].max(q.x), far[1].max(-q.x), far[2].max(-q.y), far[3].max(q.y)])
 }
 
-/// Nine tenths of the tighter side, in the middle of both; `slack`: how much less points may show than there is.
+/// Nine tenths of the tighter side, in the middle of both; `slack`: how much less of the picture the points may cover
+/// than the model.
 #[track_caller]
 fn assert_framed(model: &Model, points: &[DVec3], slack: f64) {
     for size in SIZES {
@@ -93,7 +94,7 @@ fn a_drilled_ball_fills_the_picture() {
         vec![primitive(Shape::Sphere { radius: 2.0 }), primitive(Shape::Cylinder { radius: 0.1, height: 9.0 })];
     let solid = Solid::new(primitives, builder.finish(root).unwrap()).unwrap();
     // a point each degree: by 1 - cos 0.7 degrees less than the ball, and by 1 - cos 2.9 degrees where it is drilled,
-    // which its box does not tell
+    // which does not change its box
     let ball = (-90..=90).flat_map(|latitude| {
         let (z, r) = f64::from(latitude).to_radians().sin_cos();
         (0..360).map(move |k| {

@@ -1,4 +1,4 @@
-//! Spline faces: a dome with holes, and random ones against a search that shares nothing with the box's.
+//! Spline faces: a dome with holes, and random ones against a search that shares no code with the box's.
 
 use super::support::{assert_box, assert_support, placed};
 use crate::shapes::{at, circle, rectangle};
@@ -171,7 +171,7 @@ const SIDE: u32 = 24;
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// No point that the loops keep is beyond the box, and each of its sides is where one is.
+    /// No point inside the loops is beyond the box, and each side touches one.
     #[test]
     fn boxes_hold_and_touch(surface in random_surface(), loops in random_loops(), angle in 0f64..TAU, tilt in -1f64..1.0) {
         let turn = DAffine3::from_quat(DQuat::from_rotation_z(angle) * DQuat::from_rotation_x(tilt));

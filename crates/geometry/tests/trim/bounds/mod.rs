@@ -1,4 +1,4 @@
-//! Boxes of what the trims leave, against closed forms and against points searched for without them.
+//! Boxes of trimmed faces, against closed forms and against points found without them.
 
 mod damage;
 mod framing;

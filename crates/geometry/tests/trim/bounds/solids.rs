@@ -1,4 +1,4 @@
-//! Boolean solids: what their boxes promise.
+//! Boolean solids: the guarantees of their boxes.
 
 use super::support::{assert_box, turns};
 use glam::{DAffine3, DVec3};
@@ -99,7 +99,7 @@ fn half_spaces_across_an_axis_cut() {
     assert_eq!(model(Solid::of(half([0.0, 0.0, 1.0], 1.0)).unwrap()).bounds(), Bounds::EMPTY);
 }
 
-/// No box is larger than that which frames keep.
+/// No box is larger than that of control points, which frames store.
 #[test]
 fn boxes_are_within_those_of_control_points() {
     for transform in turns() {

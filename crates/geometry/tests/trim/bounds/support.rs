@@ -1,4 +1,4 @@
-//! What boxes are held against.
+//! The reference for boxes.
 
 use glam::{DAffine3, DQuat, DVec3};
 use selvedge_geometry::model::{Bounds, Face, Instance, Model, Part};

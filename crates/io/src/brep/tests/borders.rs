@@ -60,7 +60,7 @@ fn borders_are_known_from_their_control_points() {
 }
 
 #[test]
-fn a_border_within_the_target_tells_its_gap() {
+fn a_border_within_the_target_reports_its_gap() {
     // the target is a hundredth of the tolerance; three fifths of it
     let off = DVec3::new(0.0, 0.0, 0.6e-2 * TOLERANCE);
     let (s, mut edges) = (sheet(), Vec::new());
@@ -113,7 +113,7 @@ fn other_weights_and_other_knots_are_no_border() {
     assert_eq!(lower(&straight, |_, _| {}, |k| if k == 1.0 { 1.1 } else { k }), None);
 }
 
-/// A trough, open at the top: beside one wall the other one is a foot too, for who begins there.
+/// A trough, open at the top: a search that begins at one wall also finds a foot on the other wall.
 #[test]
 fn inversion_takes_bounded_work() {
     let row = |y: f64| [(0.0, 20.0), (5.0, -20.0), (10.0, 20.0)].map(|(x, z)| DVec4::new(x, y, z, 1.0));
@@ -158,7 +158,7 @@ fn an_edge_far_off_its_surface_takes_bounded_work() {
     let carrier = support.carrier([(0.0, 3.0), (0.0, 2.0)]).unwrap();
     let fitter = Fitter { support: &support, carrier: &carrier };
     let curves: usize = strands.iter().map(|s| fitter.curves(s).curves.len()).sum();
-    // what a node and a patch may take, what any face may, and a quarter more for what follows that loosely
+    // the allowance of nodes and patches, that of any face, and a quarter more for the loose work after it
     let allowed = (1 << 18) + 256 * (nodes + 6);
     assert!(support.spent.get() < allowed + allowed / 4, "{} of {allowed}", support.spent.get());
     assert!(support.exhausted());

@@ -1,4 +1,4 @@
-//! Loops of one curve whose ends nearly meet: they are there, however large the gap.
+//! Loops of one curve whose ends nearly meet: the loop is closed, however large the gap.
 
 use super::flat::rectangle;
 use super::*;
@@ -133,7 +133,7 @@ fn an_edge_along_all_of_a_curve_that_nearly_closes_is_one_of_several() {
 }
 
 #[test]
-fn a_loop_that_encloses_nothing_is_told() {
+fn a_loop_that_encloses_nothing_is_reported() {
     // a hole whose only edge is a point: the rest of the face is there
     let f = odd_frame();
     let mut edges = Vec::new();

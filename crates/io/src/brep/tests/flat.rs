@@ -116,7 +116,7 @@ fn composite_edges_and_polylines() {
 }
 
 #[test]
-fn faults_are_healed_and_named() {
+fn faults_are_repaired_and_named() {
     let f = odd_frame();
     let plane = SurfaceGeometry::Plane { frame: f };
     let mut edges = Vec::new();
@@ -142,9 +142,10 @@ fn faults_are_healed_and_named() {
     assert_eq!(slit.unwrap_err(), BuildError::NoArea { face: 7 });
 }
 
-/// A hole across the border: what it takes is taken, and it is told. A hole that touches the border is none.
+/// A hole across the border takes its part of the face, and a note says so. A hole that touches the border crosses
+/// nothing.
 #[test]
-fn loops_that_cross_are_told() {
+fn loops_that_cross_are_reported() {
     let f = odd_frame();
     for (x, told) in [(5.0, true), (4.2, false)] {
         let mut edges = Vec::new();

@@ -60,7 +60,7 @@ fn full_circle(list: &mut Vec<Edge>, frame: Frame, radius: f64) -> usize {
 }
 
 fn face(surface: SurfaceGeometry, bounds: Vec<Boundary>) -> FaceGeometry {
-    FaceGeometry { id: 7, surface, bounds, same_sense: true, doubtful: false }
+    FaceGeometry { id: 7, surface, bounds, same_sense: true, ambiguous: false }
 }
 
 fn build(surface: SurfaceGeometry, bounds: Vec<Boundary>, edges: &[Edge]) -> BuiltFace {

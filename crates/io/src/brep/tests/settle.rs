@@ -46,9 +46,9 @@ fn vertices_win_over_a_line_beside_them() {
 }
 
 #[test]
-fn what_fits_neither_stays_and_is_told() {
+fn an_edge_that_cannot_be_repaired_stays_and_is_reported() {
     let line = |origin: DVec3, direction: DVec3| CurveGeometry::Line { origin, direction };
-    // another direction: nobody knows what was meant
+    // another direction: the edge cannot be repaired
     let (mut edges, mut faces) = two_sides(line(DVec3::splat(3.0), DVec3::new(1.0, 1.0, 0.0)));
     let before = edges.clone();
     let notes = settled(&mut edges, &mut faces);
@@ -161,7 +161,7 @@ fn a_contradicted_loop_bounds_the_smaller_part() {
     let built = build(true, true, 4, true);
     assert_area(&built, part, 1e-9);
     assert_eq!(built.notes, told);
-    // by itself, the other seven eighths are what it says
+    // alone, its loop means the other seven eighths
     let built = build(true, true, 1, false);
     assert_area(&built, 7.0 * part, 1e-9);
     assert!(built.notes.is_empty());

@@ -7,8 +7,8 @@
 //!                                                            MANIFOLD_SOLID_BREP, FACETED_BREP
 //! ```
 //!
-//! A primitive that several leaves name is one entity. An apple, a torus whose faces meet on the axis, is the half-space
-//! of its surface. A solid that is everything but something is taken from the union of two half-spaces, all space.
+//! A primitive that several leaves name is one entity. An apple, a torus whose faces meet on the axis, is the
+//! half-space of its surface. A complement is subtracted from all space, which is the union of two half-spaces.
 //!
 //! Source: ISO 10303-42, 6 (solid model); ISO 10303-515 (constructive solid geometry).
 
@@ -30,7 +30,7 @@ pub(super) struct Written {
     pub item: Id,
     /// It is a solid by itself, not an expression.
     pub plain: bool,
-    /// Largest distance of a curve from what it stands for, mm.
+    /// Largest distance of a curve from the one it approximates, mm.
     pub deviation: f64,
 }
 
@@ -61,7 +61,7 @@ pub(super) fn solid<W: Write>(
             }
         };
     }
-    // faces may turn out not to close: they are written aside, so that nothing is left of a solid that fails
+    // faces may turn out not to close: they are written aside, so that a solid that fails leaves nothing in the file
     let mut aside = Vec::new();
     let mut apart = text.aside(&mut aside);
     let mut faces = Colours::default();
@@ -175,7 +175,7 @@ fn pair<W: Write>(text: &mut Text<W>, op: Op, a: Id, b: Id) -> io::Result<Id> {
     text.add(format_args!("BOOLEAN_RESULT('',.{name}.,{a},{b})"))
 }
 
-/// What lies behind the plane whose normal points out.
+/// The half-space behind the plane whose normal points out.
 fn half_space<W: Write>(text: &mut Text<W>, point: DVec3, normal: DVec3) -> io::Result<Id> {
     let at = text.placement(point, normal, normal.any_orthonormal_vector())?;
     let plane = text.add(format_args!("PLANE('',{at})"))?;

@@ -7,7 +7,7 @@
 //!   solid ─▶ PRODUCT ─▶ CSG_SHAPE_REPRESENTATION ─▶ an expression over primitives (`csg`, `facets`)
 //! ```
 //!
-//! A model of one part that stands at the origin is one product without an assembly. STEP places rigidly: an
+//! A model of one part that stands at the origin is one product without an assembly. STEP's placements are rigid: an
 //! instance that scales, shears or mirrors, or that has a colour of its own, becomes a product of its own.
 //!
 //! Source: ISO 10303-21, -42, -43, -44, -214, and CAx-IF Recommended Practices.
@@ -29,17 +29,16 @@ use text::{Id, List, Quoted, Real, Text, reals};
 
 /// Writes `model` as ISO 10303-21 text (AP214), millimetres. The same model gives the same bytes.
 ///
-/// Planes are written as such, every other face as its exact rational B-spline. Edges of faces that meet within
-/// 1e-5 of the part's diagonal are shared, and within 2e-4 those of a part that says it is closed that would stay alone;
-/// their curves in space are exact on planes and along parameter lines, else fitted to 1e-8 of the diagonal. The largest
-/// distance met is the file's UNCERTAINTY.
+/// Planes are written as planes, every other face as its exact rational B-spline. Faces that meet within 1e-5 of the
+/// part's diagonal share edges. In a part marked as closed, edges that would stay alone are shared within 2e-4. Curves
+/// in space are exact on planes and along parameter lines, else fitted to 1e-8 of the diagonal. The largest distance
+/// met is the file's UNCERTAINTY.
 ///
 /// A solid that is one bounded primitive is written as its exact faces, or as its mesh. A Boolean expression becomes a
-/// CSG_SOLID: a tree of operations over primitives with exact dimensions, half-spaces, and solids of exact faces where a
-/// primitive is stretched or a part. Not every program reads those, so a warning names each; what they leave out they
-/// cannot draw. Expressions over quadrics, solids that are empty, meshes of parts, and parts without instances, are not
-/// written: a warning names them. So is a part that says it is closed but whose edges do not meet; it becomes an open
-/// shell.
+/// CSG_SOLID: a tree of operations over primitives with exact dimensions, half-spaces, and solids of exact faces for
+/// stretched primitives and for parts. Not every program reads those, so a warning names each. Expressions over
+/// quadrics, empty solids, meshes of parts, and parts without instances are not written: a warning names them. A part
+/// marked as closed whose edges do not meet becomes an open shell, with a warning.
 ///
 /// # Errors
 /// [`ExportError`] when writing fails or the model's instances are not sound.
@@ -85,7 +84,7 @@ struct Product {
     part: Part,
     /// Where it is from.
     item: Item,
-    /// Stands for one instance alone, its transform carried out.
+    /// A copy for one instance, its transform carried out.
     baked: bool,
     colour: Option<Colour>,
     places: Vec<(DAffine3, String)>,
@@ -207,7 +206,7 @@ impl<W: Write> Writer<'_, '_, W> {
         Ok(self.product(&part.name, representation)?)
     }
 
-    /// A Boolean solid; a warning says what is not written of it.
+    /// A Boolean solid; a warning names what is not written.
     fn solid(
         &mut self,
         index: usize,

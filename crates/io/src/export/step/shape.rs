@@ -26,7 +26,7 @@ const SAMPLES: u32 = 8;
 pub(super) struct Shape {
     pub items: Vec<Id>,
     pub solid: bool,
-    /// Largest distance of a curve from what it stands for, mm.
+    /// Largest distance of a curve from the one it approximates, mm.
     pub deviation: f64,
 }
 

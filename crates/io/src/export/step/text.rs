@@ -98,7 +98,7 @@ pub(super) fn reals(x: impl IntoIterator<Item = f64>) -> String {
     List(&x.into_iter().map(Real).collect::<Vec<_>>()).to_string()
 }
 
-/// A quoted string; what is not printable ASCII as `\X2\` or `\X4\` code points.
+/// A quoted string; characters other than printable ASCII become `\X2\` or `\X4\` code points.
 pub(super) struct Quoted<'a>(pub &'a str);
 
 impl Display for Quoted<'_> {

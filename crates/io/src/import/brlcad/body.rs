@@ -25,8 +25,8 @@ use std::sync::Arc;
 const SINGLE: f64 = 1e-6;
 /// Cosine that still counts as that of parallel vectors. BRL-CAD draws no cone beyond.
 const PARALLEL: f64 = 1e-3;
-/// Of a mesh's diagonal: how far from a side of a triangle a vertex may lie that divides it, so that the mesh closes.
-/// Converted meshes miss by 1e-6 to 4e-5; in a picture that the mesh fills this is a sixth of a pixel of 1500.
+/// Share of a mesh's diagonal within which a vertex beside a triangle's side divides that side, so that the mesh
+/// closes. Converted meshes miss by 1e-6 to 4e-5; in a picture that the mesh fills this is a sixth of a pixel of 1500.
 const JUNCTION: f64 = 1e-4;
 
 /// Makes solids of records.

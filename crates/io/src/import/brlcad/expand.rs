@@ -1,12 +1,12 @@
-//! Objects with all that they are made of, as nodes of one expression.
+//! Expands combinations and their members into one expression.
 //!
 //! ```text
-//!   assembly ─u─ region ─ - ─ solid          what cannot be read is nothing, and what it is part of may be too small:
-//!        ╰────── region ─ - ─ solid          too small to be taken away. So no more is drawn than the file describes
+//!   assembly ─u─ region ─ - ─ solid          a member that cannot be read is empty; its combination may be too small
+//!        ╰────── region ─ - ─ solid          and is not subtracted, so nothing beyond the file is drawn
 //! ```
 //!
-//! Colours: what is further down wins, unless a combination says that its own holds; below a region none does. The
-//! table of colours goes over that of a region. Regions of air are not drawn.
+//! Colours: the lower object wins, unless a combination states that its own colour holds; below a region no colour
+//! counts. The table of colours overrides a region's own. Regions of air are not drawn.
 
 use super::Fault;
 use super::body::Bodies;
@@ -54,7 +54,7 @@ pub(super) struct Expansion<'d, 'a> {
     bodies: Bodies<'d, 'a>,
     budget: usize,
     roots: Vec<u32>,
-    /// The first that was left out.
+    /// The first member that was left out, and why.
     first: Option<Fault>,
     told: HashSet<String>,
 }
@@ -66,10 +66,10 @@ impl<'d, 'a> Expansion<'d, 'a> {
         Self { database, bodies, budget: MOST_PLACED, roots: Vec::new(), first: None, told }
     }
 
-    /// The union of all that was added; `None` when nothing was, or only air.
+    /// The union of all that was added; `None` when it is empty, or only air.
     ///
     /// # Errors
-    /// What was left out first, when nothing is left.
+    /// The first fault, when nothing is left.
     pub fn finish(mut self) -> Result<Option<Solid>, Fault> {
         if self.roots.is_empty() {
             return Ok(None);
@@ -162,7 +162,7 @@ impl<'d, 'a> Expansion<'d, 'a> {
         }
     }
 
-    /// What an object hands down, and has itself.
+    /// What an object's members inherit from it, given what it inherits itself.
     fn seen_from_below(&self, object: &Object<'a>, above: Above) -> Above {
         let mut below = above;
         if !above.holds {
@@ -193,7 +193,7 @@ impl<'d, 'a> Expansion<'d, 'a> {
         Value { node: self.bodies.to.nothing(), whole: false }
     }
 
-    /// `a` and `b` under an operation: what is taken away must be whole.
+    /// `a` and `b` under an operation: `b` is subtracted only if it is whole.
     fn joined(&mut self, op: Op, a: Value, b: Value) -> Value {
         let whole = a.whole && b.whole;
         let grows = match op {

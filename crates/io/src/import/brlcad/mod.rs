@@ -4,13 +4,13 @@
 //!   put rod tgc V {0 0 0} H {0 0 9} A {1 0 0} B {0 1 0} C {1 0 0} D {0 1 0}     a solid
 //!   put all comb region yes rgb {255 0 0} tree {- {l box} {l rod {1 0 0 ...}}}  a combination
 //!
-//!   text ──words, tree──▶ objects by name ──from those that nobody names, expand──▶ Assembly ──▶ one Solid
+//!   text ──words, tree──▶ objects by name ──from objects without parent, expand───▶ Assembly ──▶ one Solid
 //!        ╰─────old──────▶               ╰──body: arb, quadric, tube, sketch──▶ shapes
 //! ```
 //!
-//! Lengths are millimetres, whatever `units` says. What has no exact counterpart is left out, named with its line, and
-//! with it all that would be too large without it; a file of which nothing is left is refused. Combinations may share
-//! others; the expansion is bounded. Sketches make nothing by themselves.
+//! Lengths are millimetres, whatever `units` says. An object without an exact counterpart is left out, named with its
+//! line, together with everything that would be too large without it. A file of which nothing remains is refused.
+//! Combinations may share members; the expansion is bounded. A sketch is drawn only as part of an extrusion.
 
 mod arb;
 mod body;
@@ -85,7 +85,7 @@ pub(super) fn read(text: &str, name: &str) -> Result<Import, ImportError> {
     Ok(Import { model, warnings, report, ..Import::default() })
 }
 
-/// An object that only what it is part of leads to, if there is one: nothing that is drawn would show it.
+/// An object that is reached only through its own members, if there is one: a cycle, which nothing drawn would show.
 fn circular<'o, 'a>(objects: &'o BTreeMap<&'a str, Object<'a>>, named: &HashSet<&str>) -> Option<&'o Object<'a>> {
     let members = |name: &str| objects.get(name).into_iter().flat_map(Database::named);
     let mut todo: Vec<&str> = objects.keys().copied().filter(|name| !named.contains(name)).collect();
@@ -93,7 +93,7 @@ fn circular<'o, 'a>(objects: &'o BTreeMap<&'a str, Object<'a>>, named: &HashSet<
     while let Some(name) = todo.pop() {
         todo.extend(members(name).filter(|member| reached.insert(member)));
     }
-    // whoever names one that is not reached is not reached either: going on so comes round
+    // the owner of an unreached object is unreached too: following owners ends in the cycle
     let mut owner: BTreeMap<&str, &str> = BTreeMap::new();
     for name in objects.keys().copied().filter(|name| !reached.contains(name)) {
         owner.extend(members(name).map(|member| (member, name)));
@@ -103,7 +103,7 @@ fn circular<'o, 'a>(objects: &'o BTreeMap<&'a str, Object<'a>>, named: &HashSet<
     while seen.insert(at) {
         at = owner.get(at)?;
     }
-    // the cycle once more, for the one that stands first in the file
+    // around the cycle again, for its first object in the file
     let mut first = at;
     loop {
         at = owner.get(at)?;

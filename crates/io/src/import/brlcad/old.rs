@@ -245,7 +245,7 @@ fn combination<'a>(
             Some(&"+") => Some(Op::Intersection),
             _ => None,
         };
-        // without its operation or place, a member is one that is not there; taken away, it takes all with it
+        // a member without its operation or place is missing; subtracted, it leaves nothing of the rest
         let known = words.get(3..19).and_then(matrix).filter(|_| stated.is_some());
         let (name, matrix) = known.map_or(("", DAffine3::IDENTITY), |m| (words[2], m));
         let op = stated.unwrap_or(Op::Difference);

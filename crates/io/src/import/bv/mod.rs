@@ -8,12 +8,12 @@
 //!   …                                     9, 10 triangle and square with a field of normals
 //! ```
 //!
-//! Squares: `deg_u + 1` rows of `deg_v + 1` points. Triangles become the part `u + v <= 1` of a surface of
-//! that degree in both directions, see [`triangle_surface`]. The normals of kinds 9 and 10 are those that
-//! their viewer shades with; here the surface's own are drawn, so they are read over, and counted.
+//! Squares: `deg_u + 1` rows of `deg_v + 1` points. Triangles become the part `u + v <= 1` of a surface of that degree
+//! in both directions, see [`triangle_surface`]. The normals of kinds 9 and 10 serve the shading of BezierView; here
+//! the surface's own are drawn, so the stated ones are skipped, and counted.
 //!
-//! The format has neither unit nor colours of its own: a group's number chooses one of [`PALETTE`]. What is
-//! no number where one should stand ends the reading, for nothing says where the next patch begins.
+//! The format has neither unit nor colours of its own: a group's number chooses one of [`PALETTE`]. A word where a
+//! number should stand ends the reading, since the start of the next patch is then unknown.
 //!
 //! Source: X. Wu, *BezierViewer Data Format*, SurfLab, University of Florida, 2003.
 
@@ -98,7 +98,7 @@ impl Reader<'_> {
                 let number: i64 = self.words.number("the number of a colour")?;
                 self.colour = Some(PALETTE[number.rem_euclid(PALETTE.len() as i64) as usize]);
                 self.group = self.words.word().unwrap_or_default();
-                // what may follow is how finely the viewer is to cut the group
+                // the rest of the line may say how finely the viewer subdivides the group
                 self.words.skip_line();
                 continue;
             }

@@ -93,7 +93,7 @@ fn groups_have_a_name_and_a_colour() {
 }
 
 #[test]
-fn damage_is_told_with_its_line() {
+fn damage_is_reported_with_its_line() {
     let told = |text: &str| told(&import(text)).join("\n");
     let rest = "the rest of the file left out";
     assert_eq!(told(&format!("{TROUGH}5 1")), format!("t.bv:9: {rest}: the file ends where a degree should stand"));

@@ -7,7 +7,7 @@ pub(super) struct Words<'t> {
     line: usize,
 }
 
-/// Why the words cannot be what they should be; nothing after them can be told either.
+/// Why a word is not of the expected kind; the words after it cannot be read either.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Lost {
     pub line: usize,

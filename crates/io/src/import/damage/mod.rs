@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_are_told_apart_from_warnings() {
+    fn errors_differ_from_warnings() {
         let error = ImportError::Format { file: "t".into() };
         let message = format!("error: {error}");
         assert_eq!(outcome(Err(error), |_| true, |_| 7), (message, 0));

@@ -200,7 +200,7 @@ fn instances_of_all_files_are_bounded() {
     assert!(told(&found).iter().any(|w| w.contains("is one of more than 1048576 instances")), "{:?}", told(&found));
 }
 
-/// Damage in a file that is mentioned is told with that file's name.
+/// Warnings about a mentioned file carry that file's name.
 #[test]
 fn warnings_of_the_other_file_name_it() {
     let damaged = BOLT.replacen("PLANE('',", "PLAIN('',", 1);

@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn forms_are_told_apart() {
+    fn forms_are_distinguished() {
         assert_eq!(recognise(card("", "S0000001").as_bytes()), Some(Form::Fixed));
         assert_eq!(recognise(card("", "C      1").as_bytes()), Some(Form::Compressed));
         assert_eq!(recognise(card("", "B      1").as_bytes()), Some(Form::Binary));

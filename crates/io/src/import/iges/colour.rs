@@ -1,7 +1,6 @@
 //! Colours: eight standard numbers, or the red, green and blue percent of a 314.
 //!
-//! The standard names no colour space; what writers store is what their screen shows, sRGB. The model
-//! wants linear light.
+//! The standard names no colour space; writers store the values of their screen, sRGB. The model stores linear light.
 
 use super::entity::Entity;
 use super::geometry::Geometry;
@@ -21,7 +20,7 @@ const STANDARD: [[f64; 3]; 8] = [
 ];
 
 impl<'a> Geometry<'a> {
-    /// The entity's own colour in linear light; what cannot be read is told and counts as none.
+    /// The entity's own colour in linear light; an unreadable one counts as none, with a warning.
     pub fn colour(&self, entity: Entity<'a>) -> Option<Colour> {
         let number = entity.entry.colour;
         let rgb = match number {

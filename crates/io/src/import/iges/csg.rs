@@ -1,4 +1,4 @@
-//! Boolean solids: primitives, trees of them, and what places them.
+//! Boolean solids: primitives, trees of primitives, assemblies.
 //!
 //! ```text
 //!   150 block   LX,LY,LZ, corner, x, z              158 sphere     R, centre
@@ -9,8 +9,8 @@
 //!   184 assembly  N, N items, N matrices            430 instance   a solid, with the matrix of its entry
 //! ```
 //!
-//! A solid of faces (186) or a swept one (162, 164) may be an operand. One operand that cannot be read costs the whole solid: without it, the rest
-//! is another one.
+//! A solid of faces (186) or a swept one (162, 164) may be an operand. If an operand cannot be read, the whole solid is
+//! left out: without the operand it would be a different solid.
 //!
 //! Source: US Product Data Association, *IGES 5.3*, 1996.
 

@@ -82,7 +82,7 @@ impl<'a> Geometry<'a> {
                 let mut all = Vec::new();
                 for index in 2..2 + entity.count(1, 1)? {
                     let member = entity.pointer(index)?;
-                    // points may be members, for what hangs on them
+                    // a composite may hold points as anchors of other entities; they are no segments
                     if Entity::find(self.file, member)?.kind() != 116 {
                         all.extend(self.segments(member, &map)?);
                     }

@@ -32,7 +32,7 @@ pub(super) struct Entry {
     pub matrix: u32,
     /// Not shown.
     pub blank: bool,
-    /// Another entity cannot do without it.
+    /// Subordinate to another entity, which contains it.
     pub dependent: bool,
     /// What it is for: 0 geometry, 1 annotation, 2 definition, 5 in a parameter plane.
     pub purpose: u8,
@@ -48,7 +48,7 @@ pub(super) struct Entry {
     pub values: (u32, u32),
 }
 
-/// Pairs up the cards; what cannot be read is told and left out.
+/// Pairs up the cards; an unreadable entry is left out, with a warning.
 pub(super) fn read(cards: &[(Card<'_>, u32)], encoding: Encoding, warnings: &mut Warnings) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::with_capacity(cards.len() / 2);
     let mut at = 0;

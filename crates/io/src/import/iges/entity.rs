@@ -57,12 +57,12 @@ impl<'a> Entity<'a> {
         Place::Entity { id: self.id(), line: self.entry.line as usize }
     }
 
-    /// A complaint that it is not what was wanted.
+    /// The fault that it is not of the wanted kind.
     pub fn not(self, wanted: &'static str) -> Fault {
         Fault::Kind { id: self.id(), found: self.kind(), wanted }
     }
 
-    /// A complaint that nothing here draws it.
+    /// The fault that its type is not supported.
     pub fn unsupported(self) -> Fault {
         Fault::Unsupported { id: self.id(), kind: self.kind(), form: self.entry.form }
     }
@@ -89,7 +89,7 @@ impl<'a> Entity<'a> {
     fn number(self, index: usize) -> Option<f64> {
         match self.value(index) {
             Value::Number(x) => Some(x),
-            // the standard's default for numbers; of a record that is not there at all nothing is known
+            // a missing number is 0 by the standard; a missing record has no numbers
             Value::Empty if !self.file.values(self.entry).is_empty() => Some(0.0),
             _ => None,
         }

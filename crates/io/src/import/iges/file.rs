@@ -185,7 +185,7 @@ impl File {
         if claimed <= SHARING * self.text.len() {
             return spans;
         }
-        // some claim more than is theirs: what counts is where their records end
+        // where entries claim each other's cards, the ends of their records count
         let (mut left, mut values) = (SHARING * self.text.len(), Vec::new());
         spans.retain_mut(|span| {
             if left == 0 {

@@ -1,4 +1,4 @@
-//! The state of mapping geometry, and the small geometric entities: matrices, points, directions.
+//! The state of converting geometry, and the small geometric entities: matrices, points, directions.
 //!
 //! ```text
 //!   entity ──its matrix──▶ ──its owner's matrix──▶ ... ──unit──▶ millimetres
@@ -27,7 +27,7 @@ const SHARING: u64 = 64;
 /// Work that even the smallest file may do.
 const FREE_WORK: u64 = 1 << 20;
 
-/// A file, what may still be done with it, and what was found.
+/// A file, the work that it may still cause, and the warnings so far.
 #[derive(Debug)]
 pub(super) struct Geometry<'a> {
     /// The file.
@@ -38,7 +38,7 @@ pub(super) struct Geometry<'a> {
     dropped: RefCell<Reasons>,
 }
 
-/// A frame in millimetres, and what a reflection did to it.
+/// A frame in millimetres, and the sign and scale of its heights.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
     pub frame: Frame,

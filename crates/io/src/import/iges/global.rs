@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_right_is_told() {
+    fn impossible_values_are_reported() {
         let says = |text: &str, what: &str| {
             let (_, w) = read(text);
             assert!(w.len() == 1 && w[0].starts_with("g.igs:2: global section: ") && w[0].contains(what), "{w:?}");

@@ -142,13 +142,13 @@ fn place_solids(
     report.face_records.iter_mut().for_each(|r| r.part = new[r.part].unwrap_or(left));
 }
 
-/// Edges of solids and shells put right where they miss their vertices.
+/// Repairs edges of solids and shells where they miss their vertices.
 fn settled(geometry: &Geometry<'_>, bodies: &mut [Body], report: &mut ImportReport) {
     for body in bodies {
         let mut faces: Vec<_> = body.shells.faces.iter_mut().map(|(face, _)| face).collect();
         for (id, note) in settle(&mut body.shells.edges, &mut faces, body.closed, geometry.file.global.resolution) {
-            report.healed.add(&note);
-            geometry.note("edge healed", id, note);
+            report.repaired.add(&note);
+            geometry.note("edge repaired", id, note);
         }
     }
 }
@@ -172,8 +172,8 @@ fn build(geometry: &Geometry<'_>, bodies: &[Body], model: &mut Model, report: &m
                 Ok(mut built) => {
                     built.face.colour = colour;
                     for note in &built.notes {
-                        report.healed.add(note);
-                        geometry.note("face healed", id, note.as_str());
+                        report.repaired.add(note);
+                        geometry.note("face repaired", id, note.as_str());
                     }
                     for why in &built.lost {
                         geometry.note(LOOP_LOST, id, why.as_str());

@@ -8,8 +8,8 @@
 //!        first curve
 //! ```
 //!
-//! Lines of the surface join points of equal parameters. For arcs the rational parameter stands for the
-//! angle: the same lines when both sides are arcs of one sweep, and nearly the same else.
+//! Lines of the surface join points of equal parameters. Arcs use the rational parameter in place of the angle: the
+//! lines are the same when both sides are arcs of one sweep, and nearly the same else.
 
 use super::curve::Segment;
 use crate::brep::CurveGeometry;

@@ -107,7 +107,7 @@ impl<'a> Geometry<'a> {
         Ok(())
     }
 
-    /// Keeps a face, or tells why not; fails only when the budget of work is spent.
+    /// Keeps a face, or records why it is lost; fails only when the budget of work is spent.
     fn keep(
         &self,
         id: u32,
@@ -155,7 +155,7 @@ impl<'a> Geometry<'a> {
         }
         let same_sense = context.sense != carrier.flipped;
         let (id, surface) = (entity.id(), carrier.surface);
-        let face = FaceGeometry { id, surface, bounds, same_sense, doubtful: false };
+        let face = FaceGeometry { id, surface, bounds, same_sense, ambiguous: false };
         Ok((face, self.colour(entity).or(context.colour)))
     }
 

@@ -1,12 +1,12 @@
-//! Spline curves and surfaces: 126 and 128 as they stand, 112 and 114 from power to Bézier form.
+//! Spline curves and surfaces: 126 and 128 unchanged, 112 and 114 from power to Bézier form.
 //!
 //! ```text
 //!   112, 114: a piece over [0, h] of  A + B s + C s² + D s³
 //!     control points   A,  A + B h/3,  A + 2 B h/3 + C h²/3,  A + B h + C h² + D h³
 //! ```
 //!
-//! Pieces are joined with knots as often as the degree; the first point of a piece stands for the last
-//! of the one before.
+//! Knots between pieces are as multiple as the degree; the last point of a piece is not stored, since the first point
+//! of the next is the same.
 
 use super::curve::Segment;
 use super::entity::{Entity, Fault};
@@ -79,7 +79,7 @@ impl<'a> Geometry<'a> {
         if nu == 0 || nv == 0 || nu.saturating_mul(nv) > given {
             return Err(Fault::Parameter { id, index: entity.len() + 1, wanted: "there, the record is too short" });
         }
-        // each row of patches along v ends with 48 numbers that mean nothing; some writers leave them out
+        // each row of patches along v ends with 48 unused numbers; some writers leave them out
         let stride = if nu * (nv + 1) <= given { nv + 1 } else { nv };
         let (width, height) = (3 * nu + 1, 3 * nv + 1);
         let mut points = vec![DVec4::ZERO; width * height];

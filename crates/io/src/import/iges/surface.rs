@@ -31,7 +31,7 @@ pub(super) struct Carrier {
     pub to_native: Option<DAffine2>,
     /// The file's normal is the opposite of the surface's.
     pub flipped: bool,
-    /// What the file calls the whole surface, in the surface's own parameters.
+    /// The whole surface in the file's sense, in the surface's own parameters.
     pub natural: Option<[(f64, f64); 2]>,
 }
 
@@ -44,8 +44,8 @@ impl Carrier {
         Self { surface, to_native: Some(to_native), flipped, natural }
     }
 
-    /// The same for a face that ends where the surface does: a profile that goes on beyond its range
-    /// becomes one that ends there, in parameters of its own.
+    /// The same for a face that ends where the surface ends: a profile that goes on beyond its range is cut there, and
+    /// gets parameters of its own.
     pub fn bounded(self, id: u32) -> Result<Self, Fault> {
         let Some([u, v]) = self.natural else { return Ok(self) };
         let end = |profile: Box<CurveGeometry>, (start, end): (f64, f64)| match *profile {

@@ -18,7 +18,7 @@ use crate::model::Bounds;
 use glam::{DAffine3, DVec3};
 use std::f64::consts::TAU;
 
-/// Points of a segment that tell the plane of a curve and the direction in which it runs.
+/// Points of a segment from which the plane of a curve and its direction follow.
 const SAMPLES: usize = 16;
 
 /// Share of the size by which ends may miss each other, and a curve its plane: writers round to as few as six digits.
@@ -66,7 +66,7 @@ impl<'a> Geometry<'a> {
             surface: SurfaceGeometry::Plane { frame: area },
             bounds: vec![Boundary::Edges((0..edges.len()).map(|i| (i, true)).collect())],
             same_sense: true,
-            doubtful: false,
+            ambiguous: false,
         };
         let faces = sweep(area, motion, &mut edges, near).map_err(fault)?;
         self.spend(id, 4 * faces.len())?;

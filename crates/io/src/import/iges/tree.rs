@@ -3,13 +3,13 @@
 //! ```text
 //!   scope: the file, or a 308                     instances of its parts
 //!     186, 162, 164, 430 ▶ one part a solid       408: scale, then move, then the matrix
-//!     514, 510 ────▶ one part a shell                  ─▶ the scope of its 308, once more
+//!     514, 510 ────▶ one part a shell                  ─▶ the scope of its 308, again
 //!     150 to 180 ──▶ one Boolean solid each       412, 414: copies of one entity; 184: items with matrices
 //!     143, 144, surfaces ─▶ one open part a group (402) and level
 //! ```
 //!
-//! Blanked entities, annotation and construction are counted and not drawn. The status of an entity that
-//! another one is made of says nothing about the whole: some writers blank them all.
+//! Blanked entities, annotation and construction are counted and not drawn. The status of an entity that is part of
+//! another one does not count for the whole: some writers blank all parts.
 
 use super::array;
 use super::csg::Expression;
@@ -105,7 +105,7 @@ impl<'g, 'a> Tree<'g, 'a> {
         tree
     }
 
-    /// Entities that others are made of. Fills in the groups, whose members stay what they are.
+    /// Entities that are parts of other ones. Fills in the groups, whose members are still drawn by themselves.
     fn used(&mut self) -> HashSet<u32> {
         let mut used = HashSet::new();
         for entry in &self.geometry.file.entries {
@@ -219,7 +219,7 @@ impl<'g, 'a> Tree<'g, 'a> {
         place
     }
 
-    /// The entity `#base`, or what the subfigure of that number lists, once more for `#id`.
+    /// Places the entity `#base`, or the list of the subfigure of that number, again for `#id`.
     fn copy(&mut self, id: u32, base: u32, transform: DAffine3, name: &str) -> Result<(), Fault> {
         let sound = transform.is_finite() && transform.matrix3.determinant() != 0.0;
         sound.then_some(()).ok_or(Fault::Value { id, what: "the placement cannot be inverted" })?;
@@ -234,7 +234,7 @@ impl<'g, 'a> Tree<'g, 'a> {
             308 => (4..4 + entity.count(3, 1)?).filter_map(|i| entity.optional(i).ok().flatten()).collect(),
             _ => vec![base],
         };
-        // the members of an entity that places others are placed by it, not here
+        // the members of an entity that places others are placed by that entity
         self.scope(base, &members, transform, name);
         Ok(())
     }
@@ -271,9 +271,9 @@ impl<'g, 'a> Tree<'g, 'a> {
         Ok(())
     }
 
-    /// Whether an entity is to be seen; tells of those that are not.
+    /// Whether an entity is drawn; counts the ones that are not.
     fn is_drawn(&self, entity: Entity<'a>) -> bool {
-        // shells of sheet models are written as dependent, with no solid that could own them
+        // writers mark shells of sheet models as dependent, though no solid owns them
         let orphan = match entity.kind() {
             510 => !self.owners[1],
             514 => !self.owners[0],
@@ -330,7 +330,7 @@ impl<'g, 'a> Tree<'g, 'a> {
         (first..self.bodies.len()).filter(|i| !self.bodies[*i].operand).collect()
     }
 
-    /// The type of what a 430 places.
+    /// The type of the entity that a 430 places.
     fn instance_of(&self, entity: Entity<'a>) -> Option<u16> {
         let of = Entity::find(self.geometry.file, entity.optional(1).ok()??).ok()?;
         Some(of.kind())

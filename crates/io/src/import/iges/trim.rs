@@ -5,11 +5,10 @@
 //!   B(t) in (u, v) ──S──▶ S(B(t))┴──▶ edges ──▶ brep
 //! ```
 //!
-//! A curve in space is shared by the two faces that meet along it, a curve in `(u, v)` is not: where both
-//! are there, C is used. B is used instead where there is no C; where the file prefers B and the
-//! surface lies farther than the file's resolution from C; where C is farther off than a thousandth of
-//! the face, or makes no face, whatever the file prefers. S(B(t)) is fitted to `1e-10` of its box, so from
-//! there on both ways are one.
+//! The two faces that meet along a curve in space share it, a curve in `(u, v)` they do not: where both are there, C is
+//! used. B is used instead where there is no C; where the file prefers B and the surface lies farther than the file's
+//! resolution from C; where C is farther off than a thousandth of the face, or makes no face, whatever the file
+//! prefers. S(B(t)) is fitted to `1e-10` of its box; the rest is the same for both.
 
 use super::curve::Segment;
 use super::entity::{Entity, Fault};
@@ -21,7 +20,7 @@ use crate::brep::{build_face, face_in_parameters};
 use crate::model::{Bounds, TrimLoop};
 use glam::{DAffine2, DAffine3, DVec2, DVec3};
 
-/// A surface and what bounds it.
+/// A surface and its bounds.
 #[derive(Clone, Debug)]
 pub(super) struct Sheet {
     /// The entity.
@@ -37,12 +36,12 @@ pub(super) struct Sheet {
 pub(super) struct Trim {
     pub model: Vec<Segment>,
     pub parameter: Vec<Segment>,
-    /// The file says that the curves in the parameters are the better ones.
+    /// The file prefers the curves in the parameters.
     pub prefers_parameter: bool,
 }
 
-/// Distance from the surface beyond which a curve in space gives way to one in the parameters, of the
-/// size of the face.
+/// Share of the face's size: a curve in space farther than this from the surface is replaced by its curve in the
+/// parameters.
 const FAR: f64 = 1e-3;
 
 impl<'a> Geometry<'a> {
@@ -92,7 +91,7 @@ impl<'a> Geometry<'a> {
         })
     }
 
-    /// 141: curves in space, each with those in the parameters that stand for it.
+    /// 141: curves in space, each with its curves in the parameters.
     fn boundary(&self, id: u32, outer: &DAffine3) -> Result<Trim, Fault> {
         self.nested(id, |entity| {
             let entity = entity.of_kind(141, "141, a boundary")?;
@@ -122,7 +121,7 @@ impl<'a> Geometry<'a> {
         })
     }
 
-    /// Of two descriptions of a loop one may be damaged.
+    /// Tries one description of a loop, then the other: one may be damaged.
     fn either(
         &self,
         id: u32,
@@ -190,7 +189,7 @@ impl Sheet {
             face
         };
         if prefers {
-            // known without a trial
+            // no attempt is needed to see this
             let by = self.loops.iter().map(|l| l.apart(&map, &to_native)).fold(0.0, f64::max);
             if by > limit {
                 let first = self.attempt(&map, tolerance, true).map(|face| replaced(face, by));
@@ -198,7 +197,7 @@ impl Sheet {
             }
         }
         let first = self.attempt(&map, tolerance, false);
-        // a file that prefers B means the surface's points, from which C may be as far as from a fitted curve
+        // a file that prefers B means the surface's points, so C may be as far from them as a fitted curve
         let off = |f: &BuiltFace| if prefers { f.deviation.max(f.gap) } else { f.deviation };
         if first.as_ref().is_ok_and(|f| off(f) <= limit) {
             return first;
@@ -213,7 +212,7 @@ impl Sheet {
         }
     }
 
-    /// The face along the curves in space, or in the parameters where those are there.
+    /// The face along the curves in space, or along the curves in the parameters where there are any.
     fn attempt(&self, map: &SurfaceMap, tolerance: f64, in_parameters: bool) -> Result<BuiltFace, BuildError> {
         if let Some(face) = self.given(map, tolerance, in_parameters) {
             return Ok(face);
@@ -249,7 +248,7 @@ impl Sheet {
             surface: self.carrier.surface.clone(),
             bounds,
             same_sense: !self.carrier.flipped,
-            doubtful: false,
+            ambiguous: false,
         };
         let mut built = build_face(&face, &edges, tolerance)?;
         // its edges are its own: no other face can share them
@@ -257,7 +256,8 @@ impl Sheet {
         Ok(built)
     }
 
-    /// The face along the curves in the parameters, where those are its spline's own and bound it as they stand.
+    /// The face along the curves in the parameters, where these are the parameters of its spline and the curves bound
+    /// it unchanged.
     fn given(&self, map: &SurfaceMap, tolerance: f64, in_parameters: bool) -> Option<BuiltFace> {
         let SurfaceGeometry::BSpline(surface) = &self.carrier.surface else { return None };
         let own = self.carrier.to_native == Some(DAffine2::IDENTITY) && !self.natural && !map.is_closed();
@@ -296,7 +296,7 @@ impl Sheet {
     }
 }
 
-/// The ends of the curves in space, which say where the surface is.
+/// The ends of the curves in space: points on the surface.
 fn ends(loops: &[Trim]) -> Vec<DVec3> {
     loops.iter().flat_map(|l| &l.model).flat_map(|s| <[DVec3; 2]>::from(s.ends())).collect()
 }

@@ -122,8 +122,8 @@ const TENS: [f64; 23] = [
     1e21, 1e22,
 ];
 
-/// A number whose digits and power of ten are both exact in `f64`: one operation then rounds right. `None` for others,
-/// and for what is no number.
+/// A number whose digits and power of ten are both exact in `f64`: one operation then rounds right. `None` for other
+/// numbers and other text.
 ///
 /// Source: W. D. Clinger, *How to read floating point numbers accurately*, PLDI 1990.
 fn short(token: &[u8]) -> Option<f64> {

@@ -4,9 +4,9 @@
 //!   bytes ──by ending or content──▶ Found { pieces, placements } ──▶ parts of one mesh a colour, instances
 //! ```
 //!
-//! A file that is damaged is an error that says where: a mesh with a hole where a file was cut looks whole from the
-//! other side. Lengths are millimetres where the format says a unit (3MF, AMF, glTF), else as they are. A part is closed
-//! when every side of a triangle has its opposite.
+//! A damaged file is an error that names the place: a mesh whose file was cut off looks whole from the other side.
+//! Lengths are millimetres where the format states a unit (3MF, AMF, glTF), else coordinates are unchanged. A part is
+//! closed when every side of a triangle has its opposite.
 
 mod amf;
 mod gltf;
@@ -50,7 +50,7 @@ struct Placement {
     name: String,
 }
 
-/// What a file holds.
+/// The objects of a file.
 #[derive(Debug, Default)]
 struct Found {
     format: &'static str,
@@ -59,11 +59,11 @@ struct Found {
     pieces: Vec<Piece>,
     /// Every piece once, where there are none.
     placements: Vec<Placement>,
-    /// What is left out, by kind.
+    /// Things left out, by kind.
     notes: Vec<(&'static str, String)>,
 }
 
-/// Why a file is refused: the line, if it is text, and what is wrong.
+/// Why a file is refused: the line, if it is text, and the fault.
 #[derive(Debug, PartialEq)]
 struct Wrong {
     line: Option<usize>,
@@ -158,7 +158,7 @@ impl Shared {
     }
 }
 
-/// What the bytes hold; `ending` says which format it is, `folder` where other files are.
+/// The objects in the bytes. `ending` gives the format, `folder` holds other files.
 fn found(bytes: &[u8], ending: &str, folder: Option<&Path>) -> Result<Found, Wrong> {
     match ending {
         "stl" => stl::read(bytes),

@@ -65,7 +65,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Found, Wrong> {
     Ok(Found { format: "OFF", pieces: vec![piece], notes, ..Found::default() })
 }
 
-/// Whole numbers are of 255; one number alone names an entry of a table that nobody has.
+/// Whole numbers are of 255; a single number names an entry of a table that no reader has.
 fn colour(words: &[&str]) -> Option<Colour> {
     if words.len() < 3 {
         return None;

@@ -64,7 +64,7 @@ impl PropertyAccess for Element {
     }
 }
 
-/// -1 stands for what is no whole number.
+/// -1 replaces a value that is no whole number.
 fn numbers(list: Property) -> Vec<i64> {
     match list {
         Property::ListChar(l) => l.into_iter().map(i64::from).collect(),

@@ -4,7 +4,7 @@
 //!   solid NAME                              80 bytes, number of triangles (u32), then 50 bytes each:
 //!     facet normal nx ny nz                 normal, three corners (f32 × 12), two bytes that may be a colour
 //!       outer loop
-//!         vertex x y z  (three times)       Normals are not used: they are those of the corners, or wrong.
+//!         vertex x y z  (three times)       Normals are not used: they repeat the corners, or are wrong.
 //!       endloop
 //!     endfacet                              Colours: Magics where the header says COLOR=, else VisCAM where
 //!   endsolid                                all triangles have one

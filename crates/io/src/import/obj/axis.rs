@@ -1,4 +1,4 @@
-//! The bases of free-form statements, each made a B-spline's control points exactly.
+//! The bases of free-form statements, converted exactly to B-spline control points.
 //!
 //! ```text
 //!   control points   c0 c1 c2 c3 c4 c5 c6           parm  t0 t1 t2
@@ -106,7 +106,7 @@ impl Axis {
             let local = &points[segment..=segment + n];
             let bezier = matrix.chunks_exact(n + 1).map(|row| {
                 let terms = row.iter().zip(local).filter(|(m, _)| **m != 0.0);
-                // a lone point is taken as it is, so that Bézier input keeps its bits
+                // a lone point is not multiplied, so that Bézier input keeps its bits
                 terms.fold(P::ZERO, |sum, (&m, &p)| if m == 1.0 { sum + p } else { sum + p * m })
             });
             let mut bezier = bezier.peekable();

@@ -6,7 +6,7 @@
 //!   t crease 2/1/0 a b s      OpenSubdiv's tag: the edge from vertex a to b (from 0) is sharp by s
 //! ```
 //!
-//! A mesh with a polygon missing is another surface, so what cannot be read is an error here, not a warning.
+//! Without one of its polygons a mesh is another surface, so an unreadable statement is an error here, not a warning.
 //!
 //! Source: Pixar, *OpenSubdiv* regression shapes, which write creases as tags in OBJ comments' place.
 
@@ -97,7 +97,7 @@ impl Object {
         let mut used: Vec<usize> = self.faces.iter().flatten().copied().collect();
         used.sort_unstable();
         used.dedup();
-        // a crease between vertices that no polygon of the object has is left to whoever checks the mesh
+        // a crease between vertices that no polygon of the object has: the check of the mesh refuses it
         used.extend(
             self.creases.iter().flatten().filter(|v| used.binary_search(v).is_err()).copied().collect::<Vec<_>>(),
         );

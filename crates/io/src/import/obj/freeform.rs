@@ -1,4 +1,4 @@
-//! Free-form curves and surfaces: what stands between `curv2` or `surf` and `end`.
+//! Free-form curves and surfaces: the statements between `curv2` or `surf` and `end`.
 //!
 //! ```text
 //!   cstype rat bspline, deg 2 2           the state when the element begins
@@ -21,7 +21,7 @@ use crate::model::{Face, SurfaceKind, TrimLoop};
 use crate::spline::{BSpline, Bezier, Control, Surface};
 use glam::{DVec2, DVec3, DVec4};
 
-/// What `cstype`, `deg`, `step` and `bmat` last said.
+/// The last `cstype`, `deg`, `step` and `bmatrix`.
 #[derive(Clone, Default)]
 pub(super) struct State {
     pub rational: bool,
@@ -91,7 +91,7 @@ impl Element {
         BSpline::new(axis.degree, axis.knots, points).map_err(|e| e.to_string())
     }
 
-    /// The face of a surface, and what was healed. `work` falls by the control points that are made.
+    /// The face of a surface, and notes on repairs. `work` falls by the control points that are made.
     pub fn face(&self, id: u32, curves: &Curves, work: &mut usize) -> Result<(Face, Vec<String>), String> {
         let (u, v) = (self.axis(0)?, self.axis(1)?);
         fits(u.count.saturating_mul(v.count), self.points.len())?;
@@ -171,7 +171,7 @@ fn fits(wanted: usize, given: usize) -> Result<(), String> {
     if wanted == given { Ok(()) } else { Err(format!("{given} control points where parm asks for {wanted}")) }
 }
 
-/// Takes `amount` off what may still be done.
+/// Takes `amount` off the work that is left.
 fn spend(work: &mut usize, amount: usize) -> Result<(), String> {
     match work.checked_sub(amount) {
         Some(rest) => *work = rest,

@@ -4,7 +4,7 @@
 //!   mtllib a.mtl ─▶ folder/a.mtl ─▶ lines that say something about a colour ─tobj─▶ name: Colour
 //! ```
 //!
-//! The format names no colour space; programs store what their screen shows, sRGB.
+//! The format names no colour space; programs store the values of their screen, sRGB.
 
 use super::lines::lines;
 use crate::import::{Place, Warnings, colour, source, text};
@@ -56,7 +56,7 @@ impl Materials {
 
     /// Reads the text of a material file.
     pub fn read(&mut self, text: &[u8], file: &str, warnings: &mut Warnings) {
-        // tobj ends at the first number that is missing, so it is shown whole statements only
+        // tobj ends at the first missing number, so it gets whole statements only
         let mut clean = String::new();
         for (line, text) in lines(text) {
             let mut words = text.split_whitespace();

@@ -6,12 +6,12 @@
 //!                             └ vp curv2 surf trim hole … ─freeform, axis─▶ Face
 //! ```
 //!
-//! An object (`o`) is a part; a group in one colour is a mesh; a surface is a face. The format has no
-//! unit: coordinates are taken as they are. It does not say what encloses a volume either: meshes of a
-//! part are closed when every side of a triangle has its opposite, surfaces never.
+//! An object (`o`) is a part; a group in one colour is a mesh; a surface is a face. The format states no unit:
+//! coordinates are taken as millimetres. It states no volumes either: meshes of a part are closed when every side of a
+//! triangle has its opposite, surfaces never.
 //!
-//! A statement that cannot be read costs itself, or its surface, and has a warning; statements that say
-//! nothing of surfaces are counted.
+//! An unreadable statement is left out, or its whole surface, with a warning; statements that do not describe surfaces
+//! are counted.
 
 mod axis;
 pub(super) mod cage;
@@ -32,7 +32,7 @@ const KEYWORDS: [&str; 22] = [
     "curv2", "parm", "end", "trim", "mg",
 ];
 
-/// Statements at which the form of a file is told.
+/// Statements from which a file's form is recognised.
 const LOOKED_AT: usize = 16;
 
 /// The text begins as an OBJ file does: known statements, a vertex among them.

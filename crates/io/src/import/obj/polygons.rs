@@ -5,9 +5,9 @@
 //!   o g usemtl   ──▶ Look, one mesh each             ──facets::triangulate──▶ Mesh
 //! ```
 //!
-//! tobj gives up a file at its first bad index, so it is shown good statements only: the others have
-//! their warning here, with their line. A polygon without normals is shown with a normal of its own,
-//! the zero vector, which becomes the normal of each triangle.
+//! tobj gives up a file at its first bad index, so it gets good statements only: the others have their warning here,
+//! with their line. A polygon without normals gets one of its own, the zero vector, which later becomes the normal of
+//! each triangle.
 
 use super::index;
 use crate::import::facets::{MAX_CORNERS, triangulate};
@@ -16,7 +16,7 @@ use glam::{DVec3, DVec4};
 use std::collections::HashMap;
 use std::fmt::Write;
 
-/// What a run of polygons has in common.
+/// The object, group and material that a run of polygons shares.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Look {
     /// Name of the object.

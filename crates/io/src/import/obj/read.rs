@@ -12,12 +12,12 @@ use glam::{DVec3, DVec4};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// What is between an element's first statement and its `end`.
+/// The element between its first statement and its `end`.
 enum Open {
     Curve(Element),
     /// A surface and the line on which it begins, for messages.
     Surface(Element, usize),
-    /// One of no interest, or one whose beginning could not be read.
+    /// An ignored element, or one whose beginning could not be read.
     Other,
 }
 
@@ -35,7 +35,7 @@ pub(super) struct Reader<'f> {
     state: State,
     curves: Curves,
     open: Option<Open>,
-    /// What may still be made from shared geometry, in control points.
+    /// Control points that may still be made from shared geometry.
     work: usize,
     /// Surfaces by the name of their object.
     faces: Vec<(String, Stated)>,
@@ -176,7 +176,7 @@ impl<'f> Reader<'f> {
             "surf" => {
                 self.close(line);
                 self.report.faces += 1;
-                // a surface of which nothing is known yet: what goes wrong now is its fault
+                // nothing is known of the surface yet: a fault from here on is reported as its own
                 self.open = Some(Open::Surface(Element::new(State::default(), Vec::new(), [0.0; 4]), line));
                 let range = values(words.get(..4).ok_or("surf without a range")?)?;
                 let vertex = |w: &&str| index(w.split('/').next().unwrap_or_default(), self.vertices.len(), "vertex");
@@ -218,7 +218,7 @@ impl<'f> Reader<'f> {
         words.chunks_exact(3).map(piece).collect()
     }
 
-    /// Gives up the element that is open, which cannot be told without what went wrong.
+    /// Gives up the open element; the message says why.
     fn fail(&mut self, line: usize, why: String) {
         match self.open.take() {
             Some(Open::Surface(..)) => self.lose(line, why),
@@ -247,8 +247,8 @@ impl<'f> Reader<'f> {
                 match element.face(id, &self.curves, &mut self.work) {
                     Ok((face, notes)) => {
                         for note in &notes {
-                            self.report.healed.add(note);
-                            self.warn("face healed", line, note.clone());
+                            self.report.repaired.add(note);
+                            self.warn("face repaired", line, note.clone());
                         }
                         let colour = self.look.colour;
                         self.faces.push((self.look.object.clone(), Ok((Face { colour, ..face }, notes))));

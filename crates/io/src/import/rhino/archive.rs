@@ -23,7 +23,7 @@ const WIDE: u32 = 50;
 /// Deepest nesting of classes.
 const MAX_DEPTH: u32 = 16;
 
-/// What was looked for and is not there.
+/// A value, or the name of the part that is missing.
 pub(super) type Lost<T> = Result<T, String>;
 
 /// A stretch of an archive that is read from its start on.

@@ -1,4 +1,4 @@
-//! Bodies that the decoder refuses as a whole, face by face from the archive's own record.
+//! Bodies that the decoder refuses as a whole: each face is read from the archive's own record.
 //!
 //! ```text
 //!   lists of  curves in (u, v) | curves in space | surfaces | (vertices) | edges | trims | loops | faces
@@ -7,7 +7,8 @@
 //!        └▶ loops ─▶ trims              edge ─▶ its part of a curve in space
 //! ```
 //!
-//! One that cannot be read, or names what is not there, loses its face and no other. Source: `opennurbs_brep_io.cpp`.
+//! A face that cannot be read, or that refers to a missing item, is lost; the other faces stay. Source:
+//! `opennurbs_brep_io.cpp`.
 
 use super::archive::{Class, Lost, Reader, version};
 use super::face::{Beside, Built, Outline, Ring, built};
@@ -46,7 +47,7 @@ struct Stated {
     colour: Option<Colour>,
 }
 
-/// A body's lists. Places in them may lead nowhere.
+/// A body's lists. Indices in them may be out of range.
 pub(super) struct Brep<'b> {
     flat: Vec<Option<Class<'b>>>,
     space: Vec<Option<Class<'b>>>,
@@ -81,7 +82,7 @@ impl<'b> Brep<'b> {
         let [flat, space, surfaces] = [classes(&mut r)?, classes(&mut r)?, classes(&mut r)?];
         r.anonymous()?; // vertices
         let edge_list = r.anonymous()?;
-        // later archives state the parameter's range once more
+        // later archives repeat the parameter's range
         let later = version(archive).is_some_and(|v| v >= 4);
         let (edges, uses) = match list(edge_list, |r| edge(r, true)) {
             Err(_) if !later => list(edge_list, |r| edge(r, false))?,
@@ -113,7 +114,7 @@ impl<'b> Brep<'b> {
     /// A face, numbered `id`.
     ///
     /// # Errors
-    /// What of it is not there, or is none.
+    /// What the face lacks, or which part of it is invalid.
     pub fn face(&self, at: usize, id: u32) -> Result<Built, String> {
         let face = &self.faces[at];
         let carrier = surface(class(&self.surfaces, face.surface, "surface")?, self.scale)?;
@@ -202,7 +203,7 @@ fn trim(r: &mut Reader<'_>) -> Lost<Trim> {
     let (curve, range, edge) = (r.int()?, r.pair()?, r.int()?);
     // vertices, direction along the edge, kind, isoparametric side, loop, tolerances
     r.skip(8 + 4 + 4 + 4 + 4 + 16)?;
-    // the parameter's range once more; whether the curve is run backwards; reserved. Or two points, in older archives
+    // the parameter's range again; whether the curve is run backwards; reserved. Or two points, in older archives
     r.skip(16)?;
     let backwards = r.byte()? == 1;
     r.skip(7 + 24 + 16)?;
@@ -233,7 +234,7 @@ fn faces(mut r: Reader<'_>) -> Lost<Vec<Stated>> {
     Ok(all)
 }
 
-/// What the body says of itself: 1 a solid, 2 one inside out, 3 none.
+/// The body's own statement: 1 a solid, 2 one inside out, 3 none.
 fn solid(r: &mut Reader<'_>, minor: u8) -> Lost<i32> {
     r.skip(48)?;
     if minor < 2 {

@@ -30,7 +30,7 @@ pub(super) struct Tables<'i> {
     curves: HashMap<&'i str, &'i Curve>,
 }
 
-/// What a trim runs along in space.
+/// The edge beside a trim, in space.
 pub(super) enum Beside {
     Nothing,
     /// An edge without a curve that could be compared.
@@ -47,7 +47,7 @@ pub(super) struct Ring {
     pub hole: bool,
 }
 
-/// A face and what is to be said of it.
+/// A face, and the notes on it.
 pub(super) struct Built {
     pub face: Face,
     pub notes: Vec<String>,
@@ -148,7 +148,7 @@ pub(super) fn built(mut face: Face, rings: &[Ring], mut notes: Vec<String>) -> R
     Ok(Built { face, notes, gap })
 }
 
-/// The spline of a curve in `(u, v)`: curves joined of several may be torn where those meet, by rounding.
+/// The spline of a curve in `(u, v)`. Rounding may tear a curve that is joined of several.
 fn splines(geometry: &PcurveGeometry) -> Result<Vec<BSpline<DVec3>>, String> {
     let PcurveGeometry::Nurbs { nurbs } = geometry else { return Err("a curve in (u, v) that is no spline".into()) };
     let rows = nurbs.pole_rows();

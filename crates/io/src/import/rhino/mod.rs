@@ -7,10 +7,10 @@
 //!                    products and their occurrences ──────────────▶ Instance  blocks
 //! ```
 //!
-//! Lengths come in millimetres. A face's trims are the curves in `(u, v)` that the file holds; the distance
-//! of their images from the edges in space, which the file holds too, is reported as the gap. What the
-//! decoder says it lost is among the warnings; objects of hidden layers are read, but not placed. The decoder leaves out
-//! a whole body for one bad face; such a body is read from its record, which the decoder finds.
+//! Lengths come in millimetres. A face's trims are the curves in `(u, v)` that the file holds; the distance of their
+//! images from the file's edges in space is reported as the gap. Losses that the decoder reports are among the
+//! warnings; objects of hidden layers are read, but not placed. The decoder leaves out a whole body for one bad face;
+//! such a body is read from its record, which the decoder finds.
 
 mod archive;
 mod brep;
@@ -130,7 +130,7 @@ fn parts(
     part_of
 }
 
-/// A face with its record, or the record of one that is left out; `name` is what messages call it.
+/// A face with its record, or the record of one that is left out; `name` is its name in messages.
 fn kept(
     built: Result<Built, String>,
     name: &str,
@@ -143,8 +143,8 @@ fn kept(
         Ok(Built { mut face, notes, gap }) => {
             face.colour = face.colour.or(colour);
             for note in &notes {
-                report.healed.add(note);
-                warnings.push("face healed", || Place::File, || format!("{name}: {note}"));
+                report.repaired.add(note);
+                warnings.push("face repaired", || Place::File, || format!("{name}: {note}"));
             }
             Ok(report.record(record, BuiltFace { face, notes, deviation: 0.0, gap, lost: Vec::new() }))
         }
@@ -156,7 +156,7 @@ fn kept(
     }
 }
 
-/// Bodies where they stand, and those of blocks once for every use of the block.
+/// Bodies at their places, and bodies of blocks at each use of the block.
 fn place(ir: &CadIr, part_of: &HashMap<String, usize>, model: &mut Model, warnings: &mut Warnings) {
     let definitions: HashMap<_, _> = ir.model.product_definitions.iter().map(|d| (d.id.as_str(), d)).collect();
     let occurrences: HashMap<_, _> = ir.model.occurrences.iter().map(|o| (o.id.as_str(), o)).collect();
@@ -203,7 +203,7 @@ fn place(ir: &CadIr, part_of: &HashMap<String, usize>, model: &mut Model, warnin
     }
 }
 
-/// Mesh objects; the meshes with which Rhino draws its bodies, those `read` besides among them, are not needed.
+/// Mesh objects. The meshes with which Rhino draws its bodies are skipped, including those of the bodies `read`.
 fn meshes(ir: &CadIr, read: HashSet<&str>, model: &mut Model, warnings: &mut Warnings) {
     let mut id = model.face_count() as u32;
     // names of bodies end in the number of their object
@@ -257,7 +257,7 @@ fn meshes(ir: &CadIr, read: HashSet<&str>, model: &mut Model, warnings: &mut War
     }
 }
 
-/// Rhino stores what its screen shows.
+/// Rhino stores sRGB.
 fn linear(c: Color) -> Colour {
     colour::linear([c.r(), c.g(), c.b()].map(f64::from), f64::from(c.a()))
 }

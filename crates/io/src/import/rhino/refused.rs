@@ -4,7 +4,7 @@
 //!   record without a body ─▶ offset ─archive, brep─▶ faces ─▶ Part, placed where it stands
 //! ```
 //!
-//! Names, colours and layers are those that the decoder gives to what it kept of the object.
+//! Names, colours and layers come from the decoder's other records of the object.
 
 use super::brep::Brep;
 use super::{NOWHERE, archive, kept, linear, object};
@@ -16,7 +16,7 @@ use cadmpeg_ir::document::CadIr;
 use glam::DAffine3;
 use std::collections::{HashMap, HashSet};
 
-/// What the decoder made of a file.
+/// The decoder's records of a file.
 pub(super) struct Records<'i> {
     pub bytes: &'i [u8],
     pub ir: &'i CadIr,

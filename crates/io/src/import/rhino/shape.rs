@@ -1,7 +1,7 @@
 //! Curves and surfaces of an archive as splines, in millimetres.
 //!
 //! ```text
-//!   spline, line, arc, polyline, chain of curves    ──▶  BSpline          arcs and turned surfaces are exact, but by
+//!   spline, line, arc, polyline, chain of curves    ──▶  BSpline          arcs and turned surfaces are exact, but in
 //!   spline, plane, turned, sum of two curves        ──▶  Surface, Map     another parameter than the angle: a Map
 //! ```
 
@@ -23,7 +23,7 @@ const PLANE: u32 = 0x4ED7_D4DF;
 const REVOLUTION: u32 = 0xA162_20D3;
 const SUM: u32 = 0xC4CD_5359;
 
-/// The id that openNURBS gives to a class: older archives, and Rhino's modeller, know some by another.
+/// The id that openNURBS gives to a class; older archives and Rhino's modeller use other ids for some classes.
 fn known(id: u32) -> u32 {
     match id {
         0x5EAF_1119 | 0x76A7_09D5 => NURBS_CURVE,
@@ -131,7 +131,7 @@ fn part(curve: &BSpline<DVec4>, range: Option<[f64; 2]>) -> Lost<BSpline<DVec4>>
     BSpline::new(degree, knots, points).map_err(failed)
 }
 
-/// Quarter by quarter; knots are where the quarters end in the parameter, which goes evenly with the angle.
+/// Quarter by quarter. Knots are at the parameters where the quarters end; the parameter is linear in the angle.
 fn circular(r: &mut Reader<'_>, range: Option<[f64; 2]>) -> Lost<BSpline<DVec4>> {
     let (centre, x, y) = (r.point()?, r.point()?, r.point()?);
     r.skip(24 + 32)?;
@@ -187,7 +187,7 @@ fn polycurve(r: &mut Reader<'_>, range: Option<[f64; 2]>) -> Lost<BSpline<DVec4>
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Map {
     Same,
-    /// Along `u`, or `v`, goes an angle: knots of the spline are the ends of its pieces.
+    /// Along `u` or `v` the surface's parameter is an angle; the spline's knots are the ends of its pieces.
     Angle {
         along_v: bool,
         from: [f64; 2],
@@ -287,7 +287,7 @@ impl Map {
         let angle = first + (own - from[0]) / (from[1] - from[0]) * (last - first);
         let k = angles.windows(2).position(|k| angle <= k[1]).unwrap_or(angles.len() - 2);
         let (middle, half) = (0.5 * (angles[k] + angles[k + 1]), 0.5 * (angles[k + 1] - angles[k]));
-        // of an arc with weights 1, cos h, 1 the tangents of half the angles go evenly with the parameter
+        // on an arc with weights 1, cos h, 1 the tangent of half the angle is linear in the parameter
         let share = (0.5 * (angle - middle)).tan() / (0.5 * half).tan();
         let t = middle + half * share.clamp(-1.0, 1.0);
         if *along_v { DVec2::new(p.x, t) } else { DVec2::new(t, p.y) }
@@ -295,7 +295,7 @@ impl Map {
 
     /// A curve in the surface's own parameters in those of its spline.
     ///
-    /// Lines at one angle, and along the angle, stay lines, exactly. Others become chords, `EACH` a piece.
+    /// Lines at one angle, and along the angle, stay lines, exactly. Other curves become chords, `EACH` a piece.
     pub fn curve(&self, curve: &BSpline<DVec4>) -> Lost<BSpline<DVec3>> {
         const EACH: u32 = 64;
         let flat = |p: &DVec4| DVec3::new(p.x, p.y, p.w);

@@ -34,7 +34,7 @@ fn face_counts_of_a_folder() {
             start.elapsed(),
             read.report.warnings,
             read.report.dropped,
-            read.report.healed,
+            read.report.repaired,
         );
         read.warnings.iter().take(6).for_each(|w| eprintln!("    {w}"));
         let lost = read.report.dropped.total();

@@ -23,7 +23,7 @@ pub(super) enum Value {
 /// Depth of lists: points of a list of lists need 2.
 const MOST_NESTED: usize = 16;
 
-/// What stands between a node's brackets, and its place.
+/// The arguments between a node's brackets, and its place.
 #[derive(Debug)]
 pub(super) struct Args<'a> {
     pub node: &'a str,
@@ -124,7 +124,7 @@ impl<'a> Args<'a> {
         Ok(if paths.is_empty() { vec![points.clone()] } else { paths.iter().map(along).collect() })
     }
 
-    /// `$fn`, 0 where it says nothing.
+    /// `$fn`, or 0 without it.
     pub fn fragments(&self) -> f64 {
         self.number("$fn", 0.0).unwrap_or(0.0)
     }
@@ -148,7 +148,7 @@ impl Value {
     }
 }
 
-/// A text without the escapes of OpenSCAD; others stay as they are.
+/// A text with OpenSCAD's escapes resolved; other escapes stay.
 fn unescaped(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut rest = text.chars();

@@ -1,4 +1,4 @@
-//! Leaves: solids, 2-D shapes and how they are lifted.
+//! Leaves: solids, 2-D shapes and their extrusion.
 //!
 //! ```text
 //!   cube sphere cylinder polyhedron ──▶ Assembly
@@ -51,7 +51,7 @@ impl Reader<'_> {
         }))
     }
 
-    /// Whether what is flat, or solid, has a place here, and matrices that leave it its volume; a warning otherwise.
+    /// Whether a flat shape, or a solid, may stand here, under matrices that leave it its volume; a warning otherwise.
     pub(super) fn fits(&mut self, args: &Args<'_>, inside: &Context, flat: bool, placed: &Placed) -> bool {
         match (inside.lift, flat) {
             (Some(_), false) => {
@@ -162,7 +162,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What an extrusion does to shapes, and its wedge if it does not go all around.
+    /// The lift that an extrusion gives to shapes, and its wedge if it does not go all around.
     pub(super) fn lift(&mut self, args: &Args<'_>) -> Result<(Lift, Option<Wedge>), Fault> {
         if args.node == "rotate_extrude" {
             let angle = args.number("angle", 360.0)?;

@@ -87,7 +87,7 @@ pub(super) fn polyhedron(to: &mut Assembly, placed: &Placed, args: &Args<'_>) ->
     Ok(to.add(Shape::Mesh(Arc::new(mesh)), placed))
 }
 
-/// Whether faces that close turn their backs outwards: a polyhedron is the same one, but whoever made it did not mean it.
+/// Whether faces that close are oriented inwards. The polyhedron is the same, but its author made a mistake.
 pub(super) fn is_inverted(args: &Args<'_>) -> Result<bool, Fault> {
     let points: Vec<DVec3> = args.points("points")?.into_iter().map(DVec3::from_array).collect();
     let faces = args.indices("faces", points.len())?;

@@ -8,8 +8,8 @@
 //!                              without other cones (edges that look to the axis)
 //! ```
 //!
-//! Outlines that cross themselves are first put right by `facets`.
-//! A twisted extrusion has no such form: `twist` makes the facets that OpenSCAD makes.
+//! `facets` first resolves outlines that cross themselves. A twisted extrusion has no such form: `twist` makes the
+//! facets that OpenSCAD makes.
 
 use super::args::Args;
 use super::polygon::{self, MOST_POINTS, Piece};
@@ -30,8 +30,7 @@ const ROUNDING: f64 = 1e-5;
 pub(super) enum Lift {
     /// Along z from `base`; the upper end is scaled about the origin.
     Linear { base: f64, height: f64, scale: f64 },
-    /// x becomes the distance from the z axis, y becomes z; in segments where few are asked for.
-    /// `part`: not all around.
+    /// x becomes the distance from the z axis, y becomes z; in segments where few are stated. `part`: not all around.
     Round { segments: Option<u32>, part: bool },
     /// As `Round`, by an angle in degrees and in segments: facets, as OpenSCAD makes them.
     Sector { angle: f64, segments: u32 },
@@ -39,20 +38,20 @@ pub(super) enum Lift {
     Twisted(Twist),
 }
 
-/// What a matrix does to the plane.
+/// The matrix as it acts on the plane.
 pub(super) fn in_plane(m: &DAffine3) -> DAffine2 {
     let matrix2 = DMat2::from_cols(m.matrix3.x_axis.truncate(), m.matrix3.y_axis.truncate());
     DAffine2 { matrix2, translation: m.translation.truncate() }
 }
 
-/// Where 2-D shapes go.
+/// The target of 2-D shapes.
 pub(super) struct Plate<'a> {
     pub to: &'a mut Assembly,
     pub lift: Lift,
-    /// 2-D coordinates to those that are lifted.
+    /// 2-D coordinates to the coordinates that are lifted.
     pub plane: DAffine2,
     pub placed: Placed,
-    /// That extrusions which turn may still have.
+    /// Triangles that twisted extrusions may still have.
     pub triangles: &'a mut f64,
 }
 

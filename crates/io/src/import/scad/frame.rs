@@ -1,8 +1,8 @@
-//! Nodes that are being read: what their children have become so far.
+//! Nodes that are being read: the result of their children so far.
 //!
 //! ```text
 //!   difference() { A B C }     sum: A, then A - B, then A - B - C
-//!                              A is nothing: void;  A is left out: lost
+//!                              A is empty: void;  A is left out: lost
 //! ```
 
 use super::facets::{Gather, Shape};
@@ -10,13 +10,13 @@ use super::{Args, Context, Lexer};
 use crate::csg::Op;
 use crate::import::solid::Assembly;
 
-/// What a node has become.
+/// The result of a node.
 #[derive(Clone, Debug)]
 pub(super) enum Made<T> {
     Is(T),
     /// A node without a solid in it, or one that is empty.
     Empty,
-    /// Left out, and told.
+    /// Left out, with a warning.
     Lost,
 }
 
@@ -49,11 +49,11 @@ pub(super) struct Frame<'a> {
     own: Option<Outcome>,
     /// Children so far, of any kind.
     count: usize,
-    /// A child is nothing, where that makes the whole nothing.
+    /// A child is empty, where that makes the whole empty.
     void: bool,
     /// A child was left out.
     lost: bool,
-    /// Is no part of the solid: background, disabled, or inside what is.
+    /// Is no part of the solid: background, disabled, or inside such a node.
     absent: bool,
 }
 
@@ -81,7 +81,7 @@ impl<'a> Frame<'a> {
         self.absent
     }
 
-    /// A node that is made without its children: those count for their grammar only.
+    /// A node that is made without its children: those are only parsed.
     pub fn leaf(&mut self, outcome: Outcome) {
         self.own = Some(outcome);
         self.inside.skipped = true;
@@ -107,7 +107,7 @@ impl<'a> Frame<'a> {
             Made::Is(node) => {
                 self.sum = Some(match self.sum {
                     Some(sum) => assembly.nodes.pair(self.op, sum, node),
-                    // what is taken from nothing
+                    // subtracted from nothing
                     None if self.op == Op::Difference && !first => return,
                     None => node,
                 });
@@ -117,7 +117,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// What the node is, once its last child is known.
+    /// The node's result, after its last child.
     pub fn outcome(&mut self, assembly: &mut Assembly) -> Outcome {
         if let Some(own) = self.own.take() {
             return own;

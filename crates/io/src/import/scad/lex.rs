@@ -13,7 +13,7 @@ pub(super) enum Token<'a> {
     /// `cube`, `$fn`, `true`.
     Name(&'a str),
     Number(f64),
-    /// What stands between the quotes, escapes as they are.
+    /// The text between the quotes, escapes unresolved.
     Text(&'a str),
     Sign(u8),
     End,

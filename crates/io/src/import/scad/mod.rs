@@ -1,4 +1,4 @@
-//! OpenSCAD's flattened solids: what `openscad -o x.csg` writes.
+//! OpenSCAD's flattened solids, the output of `openscad -o x.csg`.
 //!
 //! ```text
 //!   text ──lex──▶ words ──args──▶ node(name, arguments) ──one frame a node on a stack──▶ Assembly ──▶ Solid
@@ -9,14 +9,14 @@
 //!   }
 //! ```
 //!
-//! Circles, balls and cylinders are round unless few segments are asked for: `0 < $fn < 13` is a choice of
-//! shape (a nut) and gives exactly those facets; [`Facets::AsWritten`] gives the facets of every one.
-//! An extrusion that turns has the facets of OpenSCAD, and so have its circles, and whatever stands inside of a hull, a
-//! Minkowski sum, an offset, a projection (`facets`).
+//! Circles, balls and cylinders are round unless few segments are stated: `0 < $fn < 13` is a choice of shape (a nut)
+//! and gives exactly those facets; [`Facets::AsWritten`] gives the facets of every one. A twisted extrusion has
+//! OpenSCAD's facets, including its circles. So has everything inside a hull, a Minkowski sum, an offset, a projection
+//! (`facets`).
 //!
-//! A node that cannot be made is left out, named with its line. So is a difference whose first operand is left out, and
-//! a Minkowski sum of which any operand is; other nodes are made of what is left. A node that is nothing counts: nothing
-//! without something is nothing, and nothing has nothing in common with anything. Nesting is bounded by memory alone.
+//! A node that cannot be made is left out, and a warning names its line. So is a difference whose first operand is left
+//! out, and a Minkowski sum with any operand left out; other nodes are made of the remaining children. An empty node
+//! counts as the empty set: subtracting from it, or intersecting with it, is empty. Nesting is bounded by memory alone.
 
 mod args;
 mod body;
@@ -71,18 +71,18 @@ impl Fault {
     }
 }
 
-/// What nodes inherit from those around them.
+/// Properties that nodes inherit from those around them.
 #[derive(Clone, Copy, Debug)]
 struct Context {
     transform: DAffine3,
     colour: Option<Colour>,
     /// Inside an extrusion.
     lift: Option<Lift>,
-    /// 2-D coordinates to those that are lifted.
+    /// 2-D coordinates to the coordinates that are lifted.
     plane: DAffine2,
     /// Inside a node that is made of facets.
     facets: bool,
-    /// Inside what is left out: read for its grammar only.
+    /// Inside a node that is left out: only parsed.
     skipped: bool,
 }
 
@@ -151,17 +151,17 @@ struct Reader<'a> {
     /// Nodes so far.
     count: u32,
     root: Option<u32>,
-    /// That extrusions which turn may still have.
+    /// Triangles that twisted extrusions may still have.
     triangles: f64,
-    /// What facets may still cost.
+    /// Work that facets may still cost.
     budget: Budget,
-    /// Nodes around that will be read again: what is told then is not told now.
+    /// Depth of nodes that will be read again: their warnings are not given the first time.
     muted: usize,
     /// Characters that may still be read again.
     again: usize,
 }
 
-/// Characters that are read twice, for the box of what is resized.
+/// Characters that are read twice, to find the box of a resized node.
 const MOST_AGAIN: usize = 1 << 30;
 
 impl<'a> Reader<'a> {
@@ -244,7 +244,7 @@ impl<'a> Reader<'a> {
         inside
     }
 
-    /// Makes what the node itself is.
+    /// Begins a node: leaves are made, other nodes set up their frame.
     fn enter(&mut self, frame: &mut Frame<'a>) -> Result<(), Fault> {
         let (inside, args) = (&mut frame.inside, &frame.args);
         if inside.facets || Gather::needs(args.node) {
@@ -280,7 +280,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// The same where facets are asked for.
+    /// The same within nodes that are made of facets.
     fn enter_facets(&mut self, frame: &mut Frame<'a>) -> Result<(), Fault> {
         let args = &frame.args;
         let (op, mut matrix_of, mut lift) = match args.node {
@@ -300,7 +300,7 @@ impl<'a> Reader<'a> {
         }
         frame.gather = Some(Box::new(Gather::new(args, op, matrix_of, lift)?));
         if args.node == "resize" && !frame.inside.facets {
-            // its box is that of facets; what it shows is read again, and exact
+            // its size comes from its facets; then its children are read again for their exact solids
             frame.start = Some(Box::new((self.lexer.clone(), self.count)));
             self.muted += 1;
         }
@@ -308,7 +308,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// The frame of a node that is to be read once more, now that its size is known.
+    /// The frame of a node that is read again, now that its size is known.
     fn read_again(&mut self, done: &mut Frame<'a>) -> Option<Frame<'a>> {
         let (start, count) = *done.start.take()?;
         self.muted -= 1;
@@ -357,7 +357,7 @@ impl<'a> Reader<'a> {
         parent.add(outcome, &mut self.assembly);
     }
 
-    /// What a node has become, as its parent takes it.
+    /// The result of a node, for its parent.
     fn finish(&mut self, done: &mut Frame<'a>) -> Result<Outcome, Fault> {
         let Some(gather) = done.gather.take() else { return Ok(done.outcome(&mut self.assembly)) };
         let strangers = gather.strangers();
@@ -376,7 +376,7 @@ impl<'a> Reader<'a> {
         Ok(Outcome::Node(self.placed(&done.args, &done.inside, shape)?))
     }
 
-    /// Names a node that cannot be made; its children are read for their grammar only.
+    /// Names a node that cannot be made; its children are only parsed.
     fn left_out(&mut self, frame: &mut Frame<'a>, fault: Fault) {
         if self.muted == 0 {
             self.warnings.push("node left out", || Place::Line(fault.line), || fault.message);

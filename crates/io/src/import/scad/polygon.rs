@@ -17,7 +17,7 @@ use glam::DVec2;
 pub(super) struct Piece {
     /// Counter-clockwise, at least three.
     pub hull: Vec<DVec2>,
-    /// The edge from this corner is the hull's edge around it: nothing beyond is asked for.
+    /// The edge from this corner is the hull's edge around it: no test beyond it is needed.
     pub lid: Option<usize>,
     pub pockets: Vec<Piece>,
 }

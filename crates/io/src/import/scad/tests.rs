@@ -190,7 +190,7 @@ fn modifiers() {
     let import = import(&at("%"));
     assert_eq!(import.report.nodes["%"], 1);
     assert!(import.warnings[0].to_string().starts_with("t.csg:1: background not drawn"), "{:?}", import.warnings);
-    // grammar alone counts in what is disabled
+    // disabled nodes are only parsed
     assert!(super::super::scad(b"*hull() { text(); } cube();", "t", Facets::Round).is_ok());
 }
 
@@ -223,7 +223,7 @@ fn bad_text_is_named_with_its_line() {
 }
 
 #[test]
-fn what_has_no_volume_is_empty_and_told() {
+fn an_operand_without_volume_is_empty_and_reported() {
     let flat = "multmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 0], [0, 0, 0, 1]]) { sphere(r = 1); }";
     for text in [flat, "sphere(r = nan);", "cube(size = [1, inf, 1]);", "cylinder(h = -1);"] {
         let import = import(text);
@@ -233,13 +233,13 @@ fn what_has_no_volume_is_empty_and_told() {
     }
     // undef is absent: the default of 1
     assert_eq!(import("sphere(r = undef);").model.solids[0].primitives()[0].shape, Shape::Sphere { radius: 1.0 });
-    // nodes without solids count: nothing without a cube, and what it has in common with one, are nothing
+    // empty nodes count: a difference from nothing is empty, and so is an intersection with nothing
     for text in ["difference() { group(); cube(); }", "intersection() { cube(); group(); }"] {
         assert!(import(text).model.solids.is_empty(), "{text}");
     }
     assert_eq!(import("union() { group(); cube(); }").model.solids[0].primitives().len(), 1);
     assert_eq!(import("difference() { cube(); group(); }").model.solids[0].primitives().len(), 1);
-    // what is no part of the solid does not
+    // nodes that are no part of the solid do not
     for text in ["difference() { *group(); cube(); }", "difference() { %sphere(); cube(); }"] {
         assert_eq!(import(text).model.solids[0].primitives().len(), 1, "{text}");
     }

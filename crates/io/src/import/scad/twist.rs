@@ -1,4 +1,4 @@
-//! Extrusions that turn, or are scaled by other factors in x and y: OpenSCAD makes them of facets, and so do we.
+//! Extrusions that turn, or scale differently in x and y: made of facets, as in OpenSCAD.
 //!
 //! ```text
 //!   slice j + 1   p2 ───── q2      every corner of the outline is turned and scaled for the height of each slice;
@@ -6,8 +6,8 @@
 //!   slice j       p1 ───── q1      diagonal, or by the one along the turn where both are as long
 //! ```
 //!
-//! Slices are `slices`, or as many as `$fn`, `$fa` and `$fs` ask of the helix that the outermost corner runs along
-//! (of a spiral where the upper end has another size).
+//! The number of slices is `slices`, or follows from `$fn`, `$fa` and `$fs` by the length of the helix along which the
+//! outermost corner runs (of a spiral where the upper end has another size).
 
 use super::Fault;
 use super::args::Args;

@@ -6,16 +6,16 @@ use crate::import::camera::{Lens, NamedCamera, PictureSettings, Stance};
 use crate::model::Bounds;
 use glam::DVec3;
 
-/// From the model towards the eye where nothing is said: front, right, a little above.
+/// Default direction from the model towards the eye: front, right, a little above.
 const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
-/// Vertical field of view where nothing is said, degrees.
+/// Default vertical field of view, degrees.
 const FOV: f64 = 35.0;
-/// Room around what is fitted where nothing is said.
+/// Default room around a fitted box.
 const MARGIN: f64 = 1.08;
 /// Largest side of a picture.
 const MOST_PIXELS: usize = 16384;
 
-/// Reads one camera; `bounds_of` gives the box of what a name has placed.
+/// Reads one camera; `bounds_of` gives the box of everything placed under a name.
 pub(super) fn camera<'a>(
     scene: &Scene<'a>,
     name: &str,

@@ -12,7 +12,7 @@ use crate::construct::polyloop::PolyLoop;
 use crate::spline::{BSpline, Control, MAX_DEGREE};
 use glam::{DAffine3, DVec3, DVec4};
 
-/// Most points of a curve: files are bounded, what is made from their curves grows with squares.
+/// Most points of a curve: files are bounded, but the cost of their curves grows with squares.
 pub(super) const MOST_POINTS: usize = 1 << 16;
 /// Share of a curve's size by which planar curves may leave their plane.
 const FLAT: f64 = 1e-12;

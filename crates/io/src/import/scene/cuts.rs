@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   trim = "window"                                  surfaces stay within the solid of that name, open
-//!   section = { normal = [0, -1, 0], offset = 2 }    what lies behind a plane goes; caps. Or a list of them
+//!   section = { normal = [0, -1, 0], offset = 2 }    the side behind a plane is cut off; caps. Or a list
 //! ```
 
 use super::items::{Scene, Thing};
@@ -28,7 +28,7 @@ pub(super) fn volume<'a>(scene: &mut Scene<'a>, name: Value<'a>) -> Outcome<Soli
     Ok(volume)
 }
 
-/// Cuts the whole model: first what trims it, then sections in the order of the text.
+/// Cuts the whole model: first by the trimming solid, then by sections in the order of the text.
 pub(super) fn cut(
     scene: &Scene<'_>,
     model: &mut Model,

@@ -15,7 +15,7 @@ fn data(source_name: String, message: impl ToString) -> ConstructError {
 /// The grid in a CSV table: a line a row, three numbers a point, no header. `name` is for messages.
 ///
 /// # Errors
-/// [`ConstructError::Data`] with file, line and field; what [`PointGrid::new`] refuses.
+/// [`ConstructError::Data`] with file, line and field; errors of [`PointGrid::new`].
 pub fn points_from_csv(text: &[u8], name: &str) -> Result<PointGrid, ConstructError> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)

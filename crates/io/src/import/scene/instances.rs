@@ -1,8 +1,8 @@
 //! The scene as a whole: settings, named objects, instances, cameras.
 //!
 //! ```text
-//!   [[instance]]  of = "bolt"  at = [20, 0, 5]          without any, whatever no other item is made of
-//!                 repeat = 6   step = { rotate = 60 }   is drawn once, where it is
+//!   [[instance]]  of = "bolt"  at = [20, 0, 5]          without any, each item that no other item uses
+//!                 repeat = 6   step = { rotate = 60 }   is drawn once, unmoved
 //! ```
 
 use super::items::{Scene, Section, Thing};
@@ -111,7 +111,7 @@ struct Builder<'a> {
     warnings: Vec<Warning>,
     /// Indices of the model's parts by item.
     parts: HashMap<&'a str, Range<usize>>,
-    /// What each placement has added, by item.
+    /// Instances and solids that each placement has added, by item.
     placed: Vec<(&'a str, Range<usize>, Range<usize>)>,
 }
 
@@ -158,7 +158,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// Every item that no other is made of, once.
+    /// Places every item that no other item uses, once.
     fn unused(&mut self, scene: &mut Scene<'a>) -> Outcome<()> {
         for item in scene.items.clone() {
             if item.section != Section::Curve && !scene.used.contains(item.name) {
@@ -259,7 +259,7 @@ impl<'a> Builder<'a> {
         self.model.parts.push(part);
     }
 
-    /// The parts of another file, and what is known of them.
+    /// Adds the parts of another file, and its report.
     fn file(&mut self, import: &Import) {
         let first = self.model.parts.len();
         self.model.parts.extend(import.model.parts.iter().cloned());
@@ -272,7 +272,7 @@ impl<'a> Builder<'a> {
         self.told(import);
     }
 
-    /// What is known of another file, whether or not its parts are placed.
+    /// Adds the report of another file, whether or not its parts are placed.
     fn told(&mut self, import: &Import) {
         let (own, of) = (&mut self.report, &import.report);
         own.pcurves += of.pcurves;
@@ -291,7 +291,7 @@ impl<'a> Builder<'a> {
         }
         own.files_read.extend(of.files_read.iter().cloned());
         own.dropped.extend(&of.dropped);
-        own.healed.extend(&of.healed);
+        own.repaired.extend(&of.repaired);
         for (kind, why) in &of.left_out {
             own.left_out.entry(kind.clone()).or_default().extend(why);
         }
@@ -304,7 +304,7 @@ impl<'a> Builder<'a> {
         self.model.instances.push(Instance { part, transform, colour, name });
     }
 
-    /// What was placed of the items of some names is seen through.
+    /// Makes everything placed under some names transparent.
     fn xray(&mut self, clear: Value<'_>) -> Outcome<()> {
         let all = if clear.is_table() { vec![clear] } else { clear.list()? };
         for one in all {
@@ -335,7 +335,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// Box of all that was placed of the item of a name.
+    /// Box of everything placed under a name.
     fn bounds(&self, name: Value<'_>) -> Outcome<crate::model::Bounds> {
         let word = name.text()?;
         let of: Vec<_> = self.placed.iter().filter(|p| p.0 == word).collect();

@@ -1,8 +1,8 @@
-//! The named objects of a scene, each made once: when another one names it, or at the end.
+//! The named objects of a scene, each made once: when another item uses it, or at the end.
 //!
 //! ```text
 //!   thing("bowl") ──made before?──▶ shared
-//!        └─ open: what is being made now; a name among them is a circle
+//!        └─ open: items being made now; a name among them is a cycle
 //! ```
 
 use super::curve::Curve;
@@ -86,19 +86,19 @@ pub(super) struct File {
     pub shared: OnceCell<Vec<Arc<Part>>>,
 }
 
-/// Everything known while a scene is read.
+/// The state of reading a scene.
 pub(super) struct Scene<'a> {
     pub text: &'a str,
     pub folder: Option<&'a Path>,
     /// Millimetres of the file's unit.
     pub unit: f64,
-    /// Of what is approximated, in the file's unit.
+    /// Of approximations, in the file's unit.
     pub tolerance: f64,
     /// In the order of the text.
     pub items: Vec<Item<'a>>,
     /// How often each shape was made.
     pub shapes: BTreeMap<String, usize>,
-    /// Names that other items are made of.
+    /// Names that other items use.
     pub used: HashSet<&'a str>,
     places: HashMap<&'a str, usize>,
     /// Other files, as they were read.
@@ -197,7 +197,7 @@ impl<'a> Scene<'a> {
         self.entered(item, name)
     }
 
-    /// An item that another is made of.
+    /// Makes an item for another one that uses it.
     pub fn entered(&mut self, item: Item<'a>, name: Value<'a>) -> Outcome<Thing> {
         self.used.insert(item.name);
         if let Some(at) = self.open.iter().position(|n| *n == item.name) {
@@ -267,7 +267,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// A thing of another kind than is wanted.
+    /// The fault that a thing is of another kind than wanted.
     pub fn other(&self, name: Value<'_>, thing: &Thing, wanted: &str) -> Fault {
         let found = match thing {
             Thing::Curve(_) => "curve",

@@ -9,9 +9,9 @@
 //!   [[instance]]     of = "vase" …
 //! ```
 //!
-//! `docs/scene.md` describes the form, [`VERSION`] numbers it. All or nothing: the first thing that is wrong is an
-//! error with file, line and column. Time and memory are bounded: by counts on what grows faster than the text
-//! (see the constants named `MOST_`), and by a budget of control points and placed things for the whole scene.
+//! `docs/scene.md` describes the form, [`VERSION`] numbers it. Nothing is left out: the first fault is an error with
+//! file, line and column. Time and memory are bounded: by counts on everything that grows faster than the text (see the
+//! constants named `MOST_`), and by a budget of control points and placed things for the whole scene.
 
 mod cameras;
 mod curve;

@@ -17,7 +17,7 @@ use crate::model::{Colour, Face, Mesh, Model, Part, Primitive, Quadric, Shape, S
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
-/// What a solid is made of.
+/// A solid's primitives and expression, or a part.
 pub(super) enum Form {
     Primitive(Shape),
     Part(Arc<Part>),
@@ -169,7 +169,7 @@ fn boolean<'a>(scene: &mut Scene<'a>, table: &mut Table<'a>) -> Outcome<Form> {
     Ok(Form::Boolean(expression, things))
 }
 
-/// Only what has an inside.
+/// Only operands that have an inside.
 fn operand<'a>(scene: &Scene<'a>, name: Value<'a>, thing: Thing) -> Outcome<Thing> {
     let open = |part: &Part| !part.closed;
     let why = match &thing {

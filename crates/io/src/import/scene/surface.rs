@@ -1,4 +1,4 @@
-//! `[surface.NAME]`: surfaces from curves, and what all surfaces have: loops, colour, side, placement.
+//! `[surface.NAME]`: surfaces from curves, and the keys of all surfaces: loops, colour, side, placement.
 //!
 //! ```text
 //!   plane bilinear bezier bspline equations grid │ extrude sweep lathe ruled loft coons gordon tube │ offset
@@ -32,9 +32,9 @@ const MOST_SPANS: usize = 1 << 13;
 pub(super) struct Made {
     pub surface: Surface,
     pub kind: SurfaceKind,
-    /// Largest distance from what is described, in the file's units.
+    /// Largest distance from the description, in the file's units.
     pub deviation: f64,
-    /// What is to be known about it.
+    /// Notes for the report.
     pub notes: Vec<String>,
     pub loops: Vec<TrimLoop>,
     pub same_sense: bool,

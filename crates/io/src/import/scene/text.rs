@@ -1,4 +1,4 @@
-//! Tables and values of the text, each with its place: keys are asked for one by one, and what nobody asked for is
+//! Tables and values of the text, each with its place. The reader takes keys one by one; a key that was never taken is
 //! an error.
 //!
 //! ```text
@@ -12,7 +12,7 @@ use std::borrow::Cow;
 use toml::Spanned;
 use toml::de::DeValue;
 
-/// What is wrong, and the byte of the text where it is.
+/// A fault, and the byte of the text at which it is.
 #[derive(Debug)]
 pub(super) struct Fault {
     pub at: usize,
@@ -203,7 +203,7 @@ impl<'a> Value<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// The value of a key, which is then known.
+    /// The value of a key, which is then marked as used.
     pub fn get(&mut self, key: &'static str) -> Option<Value<'a>> {
         if !self.asked.contains(&key) {
             self.asked.push(key);
@@ -236,7 +236,7 @@ impl<'a> Table<'a> {
     }
 
     /// # Errors
-    /// A key that nobody asked for.
+    /// A key that was not used.
     pub fn finish(self) -> Outcome<()> {
         let unknown = self.entries.iter().find(|e| !self.asked.contains(&e.0));
         let Some((key, at, _)) = unknown else { return Ok(()) };

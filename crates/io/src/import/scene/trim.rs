@@ -8,7 +8,7 @@
 //!   border = true                                    the edge of the surface's domain, too
 //! ```
 //!
-//! Kept is what lies inside an odd number of loops.
+//! The face is the part inside an odd number of loops.
 
 use super::curve::{self, Curve, planar};
 use super::items::Scene;
@@ -28,7 +28,7 @@ const CORNER: f64 = 1e-6;
 /// Share of a domain by which loops may leave it: rounding.
 const OUTSIDE: f64 = 1e-9;
 
-/// One loop as it is written.
+/// One loop as stated.
 struct Written<'a> {
     value: Value<'a>,
     names: Vec<Value<'a>>,

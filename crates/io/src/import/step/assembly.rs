@@ -8,9 +8,9 @@
 //!        └─ MAPPED_ITEM         M(target) · M(origin)⁻¹
 //! ```
 //!
-//! Representations at the same place form one *group*. Groups and placements are a graph that ought to
-//! have no cycle; the walk from its roots makes one instance of a body per path. What of it is drawn, and
-//! how often, is the rule of `once`.
+//! Representations at the same place form one *group*. Groups and placements are a graph that ought to have no cycle;
+//! the walk from its roots makes one instance of a body per path. The rule of `once` decides which instances are drawn,
+//! and how often.
 //!
 //! Source: ISO 10303-43 (representation structures), ISO 10303-44 (product structure), and CAx-IF
 //! Recommended Practices for assembly structure.
@@ -41,12 +41,12 @@ pub(super) struct Placement {
     pub ids: Vec<u32>,
 }
 
-/// Everything of one group.
+/// The bodies and placements of one group.
 #[derive(Debug, Default)]
 pub(super) struct Group {
     /// Bodies, and the representation that lists each.
     pub bodies: Vec<(u32, u32)>,
-    /// What is placed in it.
+    /// Groups placed in it.
     pub placements: Vec<Placement>,
     /// Name of its product, or empty.
     pub name: String,
@@ -65,7 +65,7 @@ pub(super) struct Assembly {
     pub loose: Vec<u32>,
     /// Groups that are the shape of a product.
     pub owned: BTreeSet<u32>,
-    /// By the body that stands for them in its group: documents, and the names of their files.
+    /// By the body in place of the documents in its group: documents, and the names of their files.
     pub files: BTreeMap<u32, Vec<(u32, Vec<String>)>>,
 }
 
@@ -77,7 +77,7 @@ pub(super) struct Reader<'a, 'r> {
     pub assembly: Assembly,
     /// Parent's representation and placement.
     pub placements: Vec<(u32, Placement)>,
-    /// Those that may be an occurrence's.
+    /// Placements that may belong to an occurrence.
     pub mentions: Vec<(u32, Placement)>,
     /// Groups that list an item of a transformation.
     pub listed: HashMap<u32, Vec<u32>>,
@@ -138,7 +138,7 @@ impl Assembly {
         }
     }
 
-    /// Gives groups of which this file holds nothing a body that stands for their documents.
+    /// Gives each group that has no content in this file a body in place of its documents.
     fn follow(&mut self, documents: Documents, groups: &mut BTreeMap<u32, Group>, ledger: &Ledger<'_>) {
         let mut of_group: BTreeMap<u32, (u32, BTreeSet<u32>)> = BTreeMap::new();
         for (shape, found) in documents.of_shape {
@@ -299,8 +299,8 @@ impl<'a> Reader<'a, '_> {
         self.assembly.loose = orphans.faces;
     }
 
-    /// Bodies that only aspects of a product list, as what a feature takes away: they are none of its shape, where it has
-    /// one.
+    /// Bodies that only aspects of a product list, as the volume that a feature removes: they are no part of the
+    /// product's shape, where it has one.
     fn features(&self, listed: &mut BTreeSet<u32>) {
         if self.assembly.groups.values().all(|group| group.bodies.is_empty()) {
             return;

@@ -1,4 +1,4 @@
-//! Bodies: what a representation lists as one drawable thing.
+//! Bodies: drawable items of a representation.
 //!
 //! ```text
 //!   MANIFOLD_SOLID_BREP, FACETED_BREP('',shell)                    closed
@@ -7,8 +7,8 @@
 //!   SHELL_BASED_SURFACE_MODEL('',(shells))                         closed if every shell is
 //!   FACE_BASED_SURFACE_MODEL, GEOMETRIC_SET, a shell or a face     open
 //!   TESSELLATED_SOLID, TESSELLATED_SHELL, sets of triangles        meshes
-//!   EXTRUDED_AREA_SOLID, SWEPT_DISK_SOLID and their like            closed: see `swept`, `disk`
-//!   CSG_SOLID and its like                                         not here: see `csg`
+//!   EXTRUDED_AREA_SOLID, SWEPT_DISK_SOLID and similar              closed: see `swept`, `disk`
+//!   CSG_SOLID and similar                                          not here: see `csg`
 //! ```
 //!
 //! A face that cannot be mapped is left out with a note; the body stays.
@@ -38,7 +38,7 @@ pub(super) struct Body {
     pub stated_edges: Vec<Option<EdgeSource>>,
     /// Faces and their colours.
     pub faces: Vec<(FaceGeometry, Option<Colour>)>,
-    /// Triangles that the file states itself.
+    /// Triangles that the file states.
     pub meshes: Vec<Mesh>,
     /// Faces that could not be mapped, and why.
     pub lost: Vec<(u32, String)>,
@@ -68,12 +68,12 @@ fn is_bare(entity: Entity<'_>) -> bool {
     entity.kinds().any(|k| spline::is_surface(k) || BOUNDED.contains(&k))
 }
 
-/// What an item of a representation is to the importer.
+/// How the importer treats an item of a representation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
     /// Drawn.
     Body,
-    /// Shape that is beyond this program.
+    /// A shape that this program does not support.
     Unsupported,
     /// Curves and points: never drawn.
     Ignored,
@@ -249,7 +249,7 @@ impl<'g, 'a> Builder<'g, 'a> {
         })
     }
 
-    /// Adds a face, or a note why not. Fails only when the file's budget of work is spent.
+    /// Adds a face, or a note on why it is left out. Fails only when the file's budget of work is spent.
     fn face(&mut self, id: u32, sense: bool, colours: &[u32]) -> Result<(), Fault> {
         self.geometry.ledger.spend(id, 1)?;
         if !self.seen.insert(id) {
@@ -272,7 +272,7 @@ impl<'g, 'a> Builder<'g, 'a> {
         Ok(())
     }
 
-    /// Meshes of a tessellated item and of those that it holds.
+    /// Meshes of a tessellated item and of its members.
     fn tessellated(&mut self, id: u32, place: DAffine3, colours: &[u32]) -> Result<(), Fault> {
         let geometry = self.geometry;
         geometry.ledger.nested(id, || {
@@ -317,7 +317,8 @@ impl<'g, 'a> Builder<'g, 'a> {
         if entity.is("CURVE_BOUNDED_SURFACE") {
             return Ok(vec![self.geometry.bounded_surface(entity, &mut self.table)?]);
         }
-        let whole = |surface, same_sense| FaceGeometry { id, surface, bounds: Vec::new(), same_sense, doubtful: false };
+        let whole =
+            |surface, same_sense| FaceGeometry { id, surface, bounds: Vec::new(), same_sense, ambiguous: false };
         if entity.kinds().any(spline::is_surface) {
             let parts = self.geometry.bspline_surface(entity)?.into_iter();
             return Ok(parts.map(|s| whole(SurfaceGeometry::BSpline(s), true)).collect());

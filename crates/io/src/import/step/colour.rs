@@ -7,16 +7,16 @@
 //!     ▶ COLOUR_RGB('',r,g,b)  or  DRAUGHTING_PRE_DEFINED_COLOUR('red')
 //! ```
 //!
-//! Beside FILL_AREA stand styles of curves on the surface: SURFACE_STYLE_BOUNDARY, SILHOUETTE, PARAMETER_LINE, …; their
-//! colours are those of curves, which are not drawn, and are counted where they are an item's only ones.
+//! Beside FILL_AREA stand styles of curves on the surface: SURFACE_STYLE_BOUNDARY, SILHOUETTE, PARAMETER_LINE, … No
+//! curve is drawn, so their colours are not used. They are counted where an item has no other colour.
 //!
-//! A face takes its own colour, else its shell's, its solid's, its representation's. An
-//! OVER_RIDING_STYLED_ITEM beats a STYLED_ITEM on the same item. A colour on a MAPPED_ITEM, or one
-//! given for the context of one occurrence, is that instance's: by CONTEXT_DEPENDENT_OVER_RIDING_STYLED_ITEM, whose path
-//! it is, or by PRESENTATION_STYLE_BY_CONTEXT of the occurrence's own representation, for a body.
+//! A face takes its own colour, else its shell's, its solid's, its representation's. An OVER_RIDING_STYLED_ITEM beats a
+//! STYLED_ITEM on the same item. A colour on a MAPPED_ITEM, or one given for the context of one occurrence, belongs to
+//! that instance. A context is the path of a CONTEXT_DEPENDENT_OVER_RIDING_STYLED_ITEM, or, for a body, the
+//! occurrence's own representation in a PRESENTATION_STYLE_BY_CONTEXT.
 //!
-//! The standard names no colour space; every known writer stores what its screen shows, sRGB. The model
-//! wants linear light.
+//! The standard names no colour space; every known writer stores the values of its screen, sRGB. The model stores
+//! linear light.
 //!
 //! Source: ISO 10303-46, 6.4 to 6.7.
 
@@ -64,7 +64,7 @@ const CURVES: [&str; 5] = [
     "SURFACE_STYLE_PARAMETER_LINE",
 ];
 
-/// What has been found below a style so far.
+/// The colour and transparency found below a style so far.
 #[derive(Clone, Copy, Default)]
 struct Found {
     rgb: Option<[f64; 3]>,
@@ -81,7 +81,7 @@ impl Colours {
         let context = "CONTEXT_DEPENDENT_OVER_RIDING_STYLED_ITEM";
         for kind in ["STYLED_ITEM", "OVER_RIDING_STYLED_ITEM", context] {
             for id in file.of_kind(kind) {
-                // a style that cannot be read costs its colour, not the shape
+                // an unreadable style costs its colour, not the shape
                 if let Err(fault) = colours.styled(file, ledger, id, (kind == context, &usages)) {
                     ledger.note("colour ignored", id, fault.to_string());
                 }
@@ -95,7 +95,8 @@ impl Colours {
         self.items.get(&id).copied()
     }
 
-    /// The colour of an occurrence: `path` are the relationships that place it, `body` is its body and what lists that.
+    /// The colour of an occurrence: `path` are the relationships that place it, `body` is its body and the list that
+    /// holds that.
     pub fn of_path(&self, path: &[u32], body: [u32; 2]) -> Option<Colour> {
         // the outermost occurrence rules
         let own = |id: &u32| body.iter().find_map(|item| self.occurrences.get(&(*id, *item)));

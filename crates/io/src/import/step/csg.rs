@@ -6,15 +6,15 @@
 //!   SOLID_REPLICA('',solid,operator)                      the same, placed by the operator
 //!   BLOCK ... HALF_SPACE_SOLID                            see `primitive`
 //!   MANIFOLD_SOLID_BREP, BREP_WITH_VOIDS, FACETED_BREP    faces, or triangles where all are polygons
-//!   EXTRUDED_AREA_SOLID and its like                      faces: see `swept`
+//!   EXTRUDED_AREA_SOLID and similar                       faces: see `swept`
 //! ```
 //!
-//! References make a graph, which may be deep and may share whatever it likes: it is walked without recursion, each
-//! entity once a placement, and what it would be written out as a tree is taken from the budget of work. `(a - b) +
-//! (b - a)` over the same entities is a symmetric difference.
+//! References make a graph, which may be deep and may share entities at will. It is walked without recursion, each
+//! entity once a placement; its size as a tree is taken from the budget of work. `(a - b) + (b - a)` over the same
+//! entities is a symmetric difference.
 //!
-//! An operand takes its own colour, else that of the nearest operation around it. One that cannot be read costs the whole
-//! solid: without it, the rest is another one.
+//! An operand takes its own colour, else that of the nearest operation around it. If an operand cannot be read, the
+//! whole solid is left out: without the operand it would be a different solid.
 //!
 //! Source: ISO 10303-42, 6 (solid model).
 
@@ -30,7 +30,7 @@ use glam::DAffine3;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
-/// Expressions, and what places them.
+/// Expressions, and entities that place them.
 pub(super) const EXPRESSIONS: [&str; 3] = ["CSG_SOLID", "BOOLEAN_RESULT", "SOLID_REPLICA"];
 
 /// The item is a Boolean solid, of one primitive or more.
@@ -60,7 +60,7 @@ pub(super) struct Leaf {
     pub colour: Option<Colour>,
 }
 
-/// What an operand is.
+/// The shape of an operand.
 #[derive(Debug)]
 pub(super) enum Operand {
     Shape(Shape),
@@ -68,7 +68,7 @@ pub(super) enum Operand {
     Body(usize),
 }
 
-/// Reads the expression `#id`; `colour` is what it has from outside.
+/// Reads the expression `#id`; `colour` is inherited from outside.
 pub(super) fn read(
     geometry: &Geometry<'_>,
     id: u32,
@@ -92,7 +92,7 @@ pub(super) fn read(
     Ok(Expression { id, tree, leaves: walk.leaves, bodies: walk.bodies, kinds: walk.kinds })
 }
 
-/// What is left to do.
+/// A step of the walk.
 enum Step {
     /// Read an entity; the scope places it.
     Open { id: u32, scope: usize, colour: Option<Colour> },
@@ -223,7 +223,7 @@ impl<'g, 'a> Walk<'g, 'a> {
         let place = self.scopes[scope];
         let geometry = self.geometry;
         if entity.is("FACETED_BREP") && !self.meshes.contains_key(&id) && !self.solids.contains_key(&id) {
-            // what is not all polygons is read as faces, and faults are told there
+            // a solid that is not all polygons is read as faces, where its faults are reported
             if let Ok(mesh) = geometry.faceted(id) {
                 self.meshes.insert(id, Shape::Mesh(Arc::new(mesh)));
             }

@@ -11,9 +11,9 @@
 //! The result always runs forward, from `start` up to `end`: a basis that the file runs through downwards
 //! is turned round first. Parameters of circles and ellipses are in the context's plane angle unit.
 //!
-//! SURFACE_CURVE, SEAM_CURVE and INTERSECTION_CURVE give their curve in space; their (u, v) curves are
-//! not used where there is one. A PCURVE that stands alone becomes one: exact in a plane, fitted on other
-//! surfaces; so does OFFSET_CURVE_3D. A CURVE_REPLICA is an exact copy.
+//! SURFACE_CURVE, SEAM_CURVE and INTERSECTION_CURVE give their curve in space; their (u, v) curves are used only
+//! without one. A PCURVE that stands alone becomes a curve in space: exact in a plane, fitted on other surfaces; so
+//! does OFFSET_CURVE_3D. A CURVE_REPLICA is an exact copy.
 //!
 //! Source: ISO 10303-42, 4.4.
 
@@ -193,7 +193,7 @@ impl Geometry<'_> {
         let basis = self.curve(fields.reference(0)?)?;
         let sense = fields.flag(3);
         if matches!(basis, CurveGeometry::Composite(_)) {
-            // its parameters mean nothing elsewhere; the ends of the edge say which part is meant
+            // its parameters are not used elsewhere; the ends of the edge select the part
             let turned = if sense { Some(basis) } else { locate::reversed(basis) };
             return turned.ok_or(Fault::Value { id, what: "a composite curve without ends" });
         }
@@ -292,7 +292,7 @@ pub(super) fn trim(basis: CurveGeometry, first: f64, last: f64, sense: bool) -> 
         let (a, b) = spline.domain();
         let (first, last) = (first.clamp(a, b), last.clamp(a, b));
         let closed = (spline.point(a) - spline.point(b)).length() <= 1e-9 * (1.0 + spline.point(a).length());
-        // one point, as far as points are found on it, is all of a closed curve
+        // ends at one point, as far as points are located on the curve, are all of a closed curve
         let around = (first - last).abs() <= 1e-9 * (b - a);
         if !closed || (!around && sense == (first < last)) {
             return locate::piece(basis, first, last);
@@ -307,7 +307,7 @@ pub(super) fn trim(basis: CurveGeometry, first: f64, last: f64, sense: bool) -> 
         return locate::piece(basis, first, last);
     }
     let sign = if sense { 1.0 } else { -1.0 };
-    // a turn and a rounding error is no turn
+    // a turn and a rounding error is an empty piece
     let turn = (sign * (last - first)).rem_euclid(TAU);
     let span = if turn < 1e-12 || TAU - turn < 1e-12 { TAU } else { turn };
     locate::piece(basis, first, first + sign * span)

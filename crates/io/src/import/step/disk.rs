@@ -1,11 +1,11 @@
-//! Tubes: what a disk or a ring sweeps along a curve.
+//! Tubes: the solid that a disk or a ring sweeps along a curve.
 //!
 //! ```text
 //!   SWEPT_DISK_SOLID('',directrix,radius,inner radius or $,start or $,end or $)
 //!
 //!     line      ─▶ cylinder   ╭─ arc ─╮
 //!     arc       ─▶ torus      │       line    pieces share the circles between them; the ends are disks or rings
-//!     spline    ─▶ spline, with its error told
+//!     spline    ─▶ spline, with its error noted
 //! ```
 //!
 //! The directrix must not turn at a corner, where a disk sweeps no surface of this kind.
@@ -78,7 +78,7 @@ impl Geometry<'_> {
                 let whole = matches!(surface, SurfaceGeometry::BSpline(_)) || (closed && pieces.len() == 1);
                 let ends = vec![rim(circles[i], true), rim(circles[(i + 1) % circles.len()], false)];
                 let bounds = if whole { Vec::new() } else { ends };
-                faces.push(FaceGeometry { id, surface, bounds, same_sense: out, doubtful: false });
+                faces.push(FaceGeometry { id, surface, bounds, same_sense: out, ambiguous: false });
             }
             for (rim, circle) in rims.iter_mut().zip([circles[0], circles[circles.len() - 1]]) {
                 rim.push((circle, out));
@@ -88,7 +88,7 @@ impl Geometry<'_> {
             for (rim, (joint, same_sense)) in rims.into_iter().zip([(joints[0], false), (last.ends[1], true)]) {
                 let surface = SurfaceGeometry::Plane { frame: frame(joint.0, joint.1, None) };
                 let bounds = rim.into_iter().map(|circle| Boundary::Edges(vec![circle])).collect();
-                faces.push(FaceGeometry { id, surface, bounds, same_sense, doubtful: false });
+                faces.push(FaceGeometry { id, surface, bounds, same_sense, ambiguous: false });
             }
         }
         Ok(faces)

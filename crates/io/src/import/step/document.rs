@@ -9,10 +9,10 @@
 //! ```
 //!
 //! Writers put the file's name into any of the four strings: CATIA into the document's id and the assignment, Creo into
-//! these and the source with a title as the document's name, others into one alone. All are kept, in the order in
-//! which they are worth trying. A product may be referred to by its definition, its version or itself.
+//! these and the source with a title as the document's name, others into a single one. All strings are kept, the
+//! likeliest first. A product may be referred to by its definition, its version or itself.
 //!
-//! A document counts only for a product of which this file holds nothing: neither a body nor a part placed in it.
+//! A document counts only for a product without content in this file: it has neither a body nor a part placed in it.
 //!
 //! Source: CAx-IF Recommended Practices for external references; PDM Schema usage guide, 9.
 
@@ -22,10 +22,10 @@ use super::part21::{File, Value};
 use super::product::Products;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The documents of a file, and whose they are.
+/// The documents of a file, and their products.
 #[derive(Debug, Default)]
 pub(super) struct Documents {
-    /// Names of each document's file, those worth most first; none is blank.
+    /// Names of each document's file, the likeliest first; none is blank.
     pub names: BTreeMap<u32, Vec<String>>,
     /// Documents by the representation whose shape they hold.
     pub of_shape: BTreeMap<u32, BTreeSet<u32>>,
@@ -119,8 +119,8 @@ impl Documents {
     }
 }
 
-/// Representations by what a reference may name to mean them: themselves, their product definition, its version, its
-/// product.
+/// Representations by each entity whose number may refer to them: themselves, their product definition, its version,
+/// its product.
 fn shapes(file: &File<'_>, products: &Products) -> BTreeMap<u32, Vec<u32>> {
     let mut shapes: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     let third = |id: u32| Entity::find(file, id).ok()?.all().value(2).and_then(Value::reference);

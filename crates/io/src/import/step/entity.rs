@@ -73,7 +73,7 @@ impl<'a> Entity<'a> {
         short(self.kinds().take(12).collect::<Vec<_>>().join("+"))
     }
 
-    /// A complaint that it is not what was wanted.
+    /// The fault that it is not of the wanted kind.
     pub fn not(self, wanted: &'static str) -> Fault {
         Fault::Kind { id: self.id(), found: self.name(), wanted }
     }

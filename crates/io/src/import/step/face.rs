@@ -9,10 +9,9 @@
 //!   SUBEDGE('',start,end,edge)                          a part of another edge
 //! ```
 //!
-//! STEP runs a loop with the face on its left, seen against the normal of the *face*.
-//! [`Boundary`] wants it seen against the normal of the *surface*: when `same_sense` is false every
-//! loop is turned round. The orientation of a shell changes the face's normal only, never its loops,
-//! which belong to the face as it stands in the file.
+//! STEP runs a loop with the face on its left, seen against the normal of the *face*. A [`Boundary`] is seen against
+//! the normal of the *surface*: when `same_sense` is false every loop is turned round. The orientation of a shell
+//! changes the face's normal only, never its loops, which belong to the face as the file states it.
 //!
 //! Both faces of an edge refer to the same [`Edge`]: p-curves in the file are not used.
 //!
@@ -68,7 +67,7 @@ impl Geometry<'_> {
             if !same_sense {
                 loops.iter_mut().for_each(reverse);
             }
-            Ok(FaceGeometry { id, surface, bounds: loops, same_sense, doubtful: false })
+            Ok(FaceGeometry { id, surface, bounds: loops, same_sense, ambiguous: false })
         })
     }
 
@@ -104,9 +103,9 @@ impl Geometry<'_> {
             bounds.push(Boundary::Natural);
         }
         // on spheres, writers let the curves run either way, though the face ought to be on their left
-        let doubtful = !implicit && matches!(carrier.surface, SurfaceGeometry::Sphere { .. });
+        let ambiguous = !implicit && matches!(carrier.surface, SurfaceGeometry::Sphere { .. });
         let same_sense = !carrier.flipped;
-        Ok(FaceGeometry { id, surface: carrier.surface, bounds, same_sense, doubtful })
+        Ok(FaceGeometry { id, surface: carrier.surface, bounds, same_sense, ambiguous })
     }
 
     fn bound(&self, id: u32, table: &mut EdgeTable) -> Result<Boundary, Fault> {

@@ -1,4 +1,4 @@
-//! The state of mapping geometry, and the small geometric entities: points, directions, placements.
+//! The state of converting geometry, and the small geometric entities: points, directions, placements.
 //!
 //! Entities form a graph that a hostile file can close or share at will. Three guards keep mapping
 //! finite: a trail of the entities being mapped (cycles), a largest depth, and a budget of work that
@@ -24,7 +24,7 @@ const SHARING: u64 = 64;
 /// Work that even the smallest file may do.
 const FREE_WORK: u64 = 1 << 20;
 
-/// Work left and what was found; shared by all representations of a file.
+/// The work that is left, and the notes; shared by all representations of a file.
 #[derive(Debug)]
 pub(super) struct Ledger<'a> {
     file: &'a File<'a>,
@@ -33,19 +33,19 @@ pub(super) struct Ledger<'a> {
     notes: RefCell<Notes>,
 }
 
-/// What was found.
+/// Warnings and counts.
 #[derive(Debug)]
 pub(super) struct Notes {
     /// By kind and place.
     pub warnings: Warnings,
     /// Faces left out, by reason.
     pub dropped: Reasons,
-    /// What is not drawn though nothing is wrong with it, by kind.
+    /// Items that are not drawn though they are sound, by kind.
     pub ignored: BTreeMap<String, usize>,
 }
 
 impl Notes {
-    /// Warns about something; `place` is asked only if the warning is kept.
+    /// Adds a warning; `place` is evaluated only if the warning is kept.
     pub fn push(&mut self, kind: &'static str, place: impl FnOnce() -> Place, message: String) {
         if kind == FACE_LOST {
             self.dropped.add(&message);
@@ -73,12 +73,12 @@ impl<'a> Ledger<'a> {
         Self { file, work, trail: RefCell::default(), notes }
     }
 
-    /// What was found.
+    /// The warnings and counts.
     pub fn finish(self) -> Notes {
         self.notes.into_inner()
     }
 
-    /// Counts what is not drawn though nothing is wrong with it.
+    /// Counts items that are not drawn though they are sound.
     pub fn ignore(&self, kind: &str, count: usize) {
         let ignored = &mut self.notes.borrow_mut().ignored;
         if let Some(sum) = ignored.get_mut(kind) {
@@ -137,8 +137,8 @@ impl<'a> Geometry<'a> {
         direction.try_normalize().ok_or(Fault::Value { id, what: "the direction has no length" })
     }
 
-    /// VECTOR: direction times magnitude, in millimetres. A magnitude of 0 counts as 1: the direction is
-    /// what edges and extrusions need.
+    /// VECTOR: direction times magnitude, in millimetres. A magnitude of 0 counts as 1: edges and extrusions use the
+    /// direction.
     pub fn vector(&self, id: u32) -> Result<DVec3, Fault> {
         let fields = self.entity(id)?.fields("VECTOR", 1)?;
         let magnitude = fields.real(1)?.abs();

@@ -64,7 +64,7 @@ use rayon::prelude::*;
 use solids::Solids;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// Reads STEP text, and what it leaves to other files; `name` is the file's name in messages.
+/// Reads STEP text; `name` is the file's name in messages. The result mentions other files that hold parts.
 pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Read, ImportError> {
     let mut warnings = Warnings::new(name);
     let file = File::parse_telling(bytes, name, &mut warnings, options)?;
@@ -164,8 +164,7 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Re
     Ok((Import { model, warnings, report, ..Import::default() }, mentions.into_values().collect()))
 }
 
-/// Builds all faces, in parallel; results are taken in file order. What a face was made from is freed
-/// with it.
+/// Builds all faces, in parallel; results are taken in file order. The input of a face is freed with it.
 fn build(
     bodies: Vec<(Body, f64)>,
     (places, notes): (&Places<'_>, &mut Notes),
@@ -178,8 +177,8 @@ fn build(
     for (part, (mut body, tolerance)) in bodies.into_iter().enumerate() {
         let mut faces: Vec<_> = body.faces.iter_mut().map(|(face, _)| face).collect();
         for (id, note) in settle(&mut body.edges, &mut faces, body.closed, tolerance) {
-            report.healed.add(&note);
-            notes.push("edge healed", || places.of(id), note);
+            report.repaired.add(&note);
+            notes.push("edge repaired", || places.of(id), note);
         }
         model.parts[part].stated_edges = std::mem::take(&mut body.stated_edges);
         edges.push(body.edges);
@@ -202,8 +201,8 @@ fn build(
             Ok(mut built) => {
                 built.face.colour = colour;
                 for note in &built.notes {
-                    report.healed.add(note);
-                    notes.push("face healed", || places.of(id), note.clone());
+                    report.repaired.add(note);
+                    notes.push("face repaired", || places.of(id), note.clone());
                 }
                 for why in &built.lost {
                     notes.push(LOOP_LOST, || places.of(id), why.clone());
@@ -218,7 +217,7 @@ fn build(
     }
 }
 
-/// What the header says.
+/// The report of the header.
 fn header(file: &File<'_>) -> ImportReport {
     let schema = file.header("FILE_SCHEMA").and_then(|mut v| v.next()?.list()?.next()?.text());
     let system = file.header("FILE_NAME").and_then(|mut v| v.nth(5)?.text());

@@ -1,19 +1,20 @@
-//! How often things are drawn: an occurrence of the product structure once, whatever else mentions it.
+//! How often things are drawn: an occurrence of the product structure once, however often it is mentioned.
 //!
 //! ```text
-//!   NEXT_ASSEMBLY_USAGE_OCCURRENCE       stands where the first of these says; the others are not drawn besides
+//!   NEXT_ASSEMBLY_USAGE_OCCURRENCE       stands where the first of these puts it; the others add no copy
 //!     1  CONTEXT_DEPENDENT_SHAPE_REPRESENTATION of the occurrence
 //!     2  MAPPED_ITEM in the occurrence's own representation
 //!     3  MAPPED_ITEM or relationship with a transformation that puts the child's shape into the parent's
-//!     4  nothing: the parent's origin, told
+//!     4  nothing: the parent's origin, with a warning
 //!
 //!   drawn    products that no product holds, with everything below them
-//!   then     what hangs on no product: only bodies that no product has drawn, a body of two roots once
+//!   then     groups outside of products: only bodies that no product has drawn, a body of two roots once
 //! ```
 //!
-//! What 2 and 3 name are *mentions*. One goes with one occurrence: with one that stands at the same place, else with one that
-//! has no place yet, of the same name or the next. A mention that goes with none is a placement by itself. Representations of presentation (saved views)
-//! hold no mention, and the tessellated representations of a file whose products have a shape are drawn only as that shape.
+//! The placements of 2 and 3 are *mentions*. One belongs to one occurrence: to one that stands at the same place, else
+//! to one that has no place yet, of the same name or the next. A mention without an occurrence is a placement by
+//! itself. Representations of presentation (saved views) hold no mention. The tessellated representations of a file
+//! whose products have a shape are drawn only as that shape.
 //!
 //! Source: CAx-IF Recommended Practices for assembly structure, and for model styling and organization.
 
@@ -31,7 +32,7 @@ struct Use {
     groups: (u32, u32),
     /// Parent's representation and placement, once one is found.
     at: Option<(u32, Placement)>,
-    /// A mention goes with it.
+    /// A mention belongs to it.
     mentioned: bool,
 }
 
@@ -172,7 +173,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// One more place for an occurrence: it counts if it is the first.
+    /// Another place for an occurrence: it counts if it is the first.
     fn again(&self, found: &mut Use, (parent, mut placement): (u32, Placement)) {
         let Some((_, first)) = &mut found.at else {
             placement.ids.push(found.usage);
@@ -201,7 +202,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Places that no picture tells apart: axes to 1e-9, origins to that of their own size and 1e-6 mm.
+/// Places that no picture distinguishes: axes to 1e-9, origins to that of their own size and 1e-6 mm.
 fn same_place(a: DAffine3, b: DAffine3) -> bool {
     let size = a.translation.length().max(b.translation.length());
     a.matrix3.abs_diff_eq(b.matrix3, 1e-9) && (a.translation - b.translation).length() <= 1e-9 * size + 1e-6
@@ -217,7 +218,8 @@ pub(super) struct Roots {
 }
 
 impl Assembly {
-    /// Roots in front of what they hold: whatever a walk has not reached when its turn comes hangs in a cycle.
+    /// Roots before the groups that they hold: a group that the walk has not reached when its turn comes is part of a
+    /// cycle.
     pub fn roots(&self) -> Roots {
         let below = |open: &[u32]| {
             let placements = open.iter().filter_map(|g| self.groups.get(g)).flat_map(|g| &g.placements);
@@ -238,7 +240,7 @@ impl Assembly {
         Roots { products, others: free.into_iter().chain(held).collect() }
     }
 
-    /// Takes out tessellated representations beside products that have a shape; how many bodies those list.
+    /// Takes out tessellated representations beside products that have a shape; returns how many bodies those list.
     pub fn drop_copies(&mut self, tessellated: impl Fn(u32) -> bool) -> usize {
         let Roots { products, others } = self.roots();
         if !products.iter().any(|g| self.groups.get(g).is_some_and(|group| !group.bodies.is_empty())) {

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Solids and surface models are drawn whether or not a representation lists them, unless a Boolean expression names
-//! them. A shell is drawn by itself when nothing holds it, a face when no shell does, an expression or a primitive when
-//! no expression does: only files cut short have such.
+//! them. A shell is drawn by itself when nothing holds it, a face when no shell holds it, an expression or a primitive
+//! when no expression holds it. Such orphans occur only in files that were cut short.
 
 use super::body::{FACES, MODELS, SETS, SHELLS, SOLIDS};
 use super::csg::EXPRESSIONS;
@@ -33,7 +33,7 @@ impl Orphans {
     pub fn find(file: &File<'_>, listed: &BTreeSet<u32>) -> Self {
         let shape = |kind: &str| {
             let named = [&SOLIDS[..], &MODELS[..], &SETS[..], &SHELLS[..], &FACES[2..], &SWEPT[..]];
-            // solids of kinds that are not read hold their profiles all the same
+            // solids of unsupported kinds hold their profiles all the same
             kind.ends_with("REPRESENTATION")
                 || kind.ends_with("_SOLID")
                 || named.iter().any(|names| names.contains(&kind))
@@ -52,7 +52,7 @@ impl Orphans {
     }
 }
 
-/// Whatever an entity of these kinds names.
+/// The entities that entities of these kinds name.
 fn held(file: &File<'_>, holds: impl Fn(&str) -> bool) -> BTreeSet<u32> {
     let holders = file.kinds().filter(|k| holds(k)).flat_map(|kind| file.of_kind(kind));
     holders.filter_map(|id| Entity::find(file, id).ok()).flat_map(Entity::references).collect()

@@ -1,15 +1,14 @@
 //! Where one representation stands in another.
 //!
 //! ```text
-//!   REPRESENTATION_RELATIONSHIP('','',#r,#s)    which of them is the child, the products say
+//!   REPRESENTATION_RELATIONSHIP('','',#r,#s)    the products determine which is the child
 //!   ITEM_DEFINED_TRANSFORMATION('','',#a,#b)    each item belongs to the representation that lists it
 //!
 //!   child in parent:  M(item in parent) · M(item in child)⁻¹
 //! ```
 //!
-//! The standard wants the child and its item in front. Writers turn round the one, the other or both, so neither order
-//! tells anything about the other. Only items that both representations list, or none, are taken in the order of the
-//! relationship.
+//! The standard puts the child and its item first. Writers reverse either pair or both, so neither order determines the
+//! other. The order of the relationship counts only for items that both representations list, or neither.
 //!
 //! Source: ISO 10303-43 (representation structures), ISO 10303-44 (product structure).
 

@@ -1,4 +1,4 @@
-//! Layers, hidden entities and annotation: what a file states about showing its items.
+//! Layers, hidden entities and annotation: a file's statements on how its items are shown.
 //!
 //! ```text
 //!   PRESENTATION_LAYER_ASSIGNMENT('name','',(items))      an item is a styled item, a representation, or
@@ -19,7 +19,7 @@ use super::geometry::Ledger;
 use super::part21::File;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
-/// What a file hides, and its layers.
+/// The items that a file hides, and its layers.
 #[derive(Debug, Default)]
 pub(super) struct Presentation {
     hidden: HashSet<u32>,
@@ -60,12 +60,12 @@ impl Presentation {
         this
     }
 
-    /// The item is not to be drawn.
+    /// The item is hidden.
     pub fn hides(&self, id: u32) -> bool {
         self.hidden.contains(&id)
     }
 
-    /// The occurrence that a path leads to hides its body: `items` are the body and what lists it.
+    /// The occurrence that a path leads to hides its body: `items` are the body and the list that holds it.
     pub fn hides_in(&self, path: &[u32], items: [u32; 2]) -> bool {
         let hidden = |id: &u32| items.iter().any(|item| self.in_occurrence.contains(&(*id, *item)));
         !self.in_occurrence.is_empty() && path.iter().any(hidden)
@@ -107,7 +107,7 @@ fn styled(entity: Entity<'_>) -> Option<Fields<'_>> {
     own.or_else(|| entity.fields("OVER_RIDING_STYLED_ITEM", 1).ok())
 }
 
-/// What a styled item gives its style to; other items stand for themselves.
+/// The item that a styled item styles; other items are returned themselves.
 fn shown(file: &File<'_>, id: u32) -> u32 {
     Entity::find(file, id).ok().and_then(styled).and_then(|fields| fields.optional(1)).unwrap_or(id)
 }

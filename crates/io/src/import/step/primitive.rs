@@ -1,4 +1,4 @@
-//! Operands of Boolean expressions that are given by dimensions, and half-spaces.
+//! Operands of Boolean expressions by dimensions, and half-spaces.
 //!
 //! ```text
 //!   BLOCK('',axes,x,y,z)                          from the axes' origin
@@ -13,8 +13,8 @@
 //!   HALF_SPACE_SOLID('',surface,agreement)        .T.: the surface's normal points out of it
 //! ```
 //!
-//! A half-space of a sphere, cylinder or torus is what lies inside, or outside; the box around a BOXED_HALF_SPACE is only
-//! a help for searches. A conical surface has two sides to it and bounds no half-space.
+//! A half-space of a sphere, cylinder or torus is its inside, or its outside. The box around a BOXED_HALF_SPACE serves
+//! searches only. A conical surface has two nappes and bounds no half-space.
 //!
 //! Source: ISO 10303-42, 6.4.
 
@@ -27,7 +27,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 
-/// Names of operands that stand for themselves.
+/// Names of operands given by their own dimensions. Unbounded ones come last.
 pub(super) const PRIMITIVES: [&str; 13] = [
     "BLOCK",
     "RIGHT_ANGULAR_WEDGE",
@@ -44,10 +44,10 @@ pub(super) const PRIMITIVES: [&str; 13] = [
     "BOXED_HALF_SPACE",
 ];
 
-/// How many of them have an end.
+/// How many of them are bounded.
 pub(super) const BOUNDED: usize = 11;
 
-/// The intersection of shapes placed alike, or everything but that.
+/// The intersection of shapes placed alike, or its complement.
 #[derive(Debug)]
 pub(super) struct Exact {
     pub shapes: Vec<Shape>,
@@ -60,7 +60,7 @@ impl Geometry<'_> {
     pub fn primitive(&self, entity: Entity<'_>) -> Result<Exact, Fault> {
         let id = entity.id();
         let kind = PRIMITIVES.iter().copied().find(|k| entity.is(k)).ok_or_else(|| entity.not("a CSG primitive"))?;
-        // a complex instance keeps what is common to half-spaces apart
+        // a complex instance keeps the attributes common to half-spaces in a part of their own
         let fields = match kind {
             "BOXED_HALF_SPACE" => entity.fields("HALF_SPACE_SOLID", 1).or_else(|_| entity.fields(kind, 1))?,
             _ => entity.fields(kind, 1)?,
@@ -142,7 +142,7 @@ impl Geometry<'_> {
         }
     }
 
-    /// A convex solid by its corners; `sides` are those of each face, in order around it.
+    /// A convex solid by its corners; `sides` are the corners of each face, in order around it.
     fn polytope(&self, fields: Fields<'_>, sides: &[&[usize]]) -> Result<Exact, Fault> {
         let fault = |what| Fault::Value { id: fields.id, what };
         let corners = fields.references(0)?.map(|p| self.point(p?)).collect::<Result<Vec<_>, _>>()?;

@@ -13,14 +13,14 @@ use super::geometry::Ledger;
 use super::part21::File;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Which representations show which product definition.
+/// The product definition of each representation, and its reverse.
 #[derive(Debug, Default)]
 pub(super) struct Products {
     /// Representations by product definition, in file order.
     pub shapes: BTreeMap<u32, Vec<u32>>,
     /// Product definition of a representation.
     pub owner: BTreeMap<u32, u32>,
-    /// Representations of an assembly occurrence, which show no more than where it stands.
+    /// Representations of an assembly occurrence, which state only its place.
     pub usages: BTreeMap<u32, Vec<u32>>,
     /// Representations of an occurrence or an aspect (a hole, a datum, a validation property): they repeat solids and
     /// faces of the product's shape.
@@ -70,7 +70,7 @@ impl Products {
     pub fn of_usages(file: &File<'_>) -> BTreeSet<u32> {
         let mut products = Self::default();
         let of = |id| products.shape(file, id);
-        // what cannot be read is told where products are read
+        // faults are reported where products are read
         file.of_kind("SHAPE_DEFINITION_REPRESENTATION").map(of).for_each(|_| ());
         products.usages.into_values().flatten().collect()
     }
@@ -91,7 +91,7 @@ impl Occurrence {
         let entity = Entity::find(file, id)?;
         let fields = entity.fields("NEXT_ASSEMBLY_USAGE_OCCURRENCE", 0)?;
         let (parent, child) = (fields.reference(3)?, fields.reference(4)?);
-        // writers put what people call the occurrence into any of these
+        // writers put the occurrence's name into any of these
         let own = [fields.text(1), fields.text(5), fields.text(0)].into_iter().find(|n| !n.trim().is_empty());
         let name = own.or_else(|| Products::name(file, child)).unwrap_or_default();
         Ok(Self { parent, child, name })

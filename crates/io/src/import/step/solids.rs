@@ -1,4 +1,4 @@
-//! Boolean solids on their way into the model.
+//! Boolean solids between their expressions and the model.
 //!
 //! ```text
 //!   Expression ──operands of faces──▶ bodies, built with all others ──▶ parts ──┐

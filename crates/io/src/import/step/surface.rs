@@ -5,18 +5,17 @@
 //!                                      torus: minor + d          cone: r + d / cos a
 //! ```
 //!
-//! An offset of an elementary surface is one again, exactly, because `S_u × S_v` points out of them. A
-//! straight profile turned about a line parallel to it is a cylinder, and counts as one here. Offsets
-//! of other surfaces are not rational: they are fitted, and a fit that misses the tolerance is told with
-//! its error.
+//! An offset of an elementary surface is one again, exactly, because `S_u × S_v` points out of them. A straight profile
+//! turned about a line parallel to it is a cylinder, and counts as one here. Offsets of other surfaces are not
+//! rational: they are fitted, and a warning states the error of a fit that misses the tolerance.
 //!
-//! A radius below 0 means what the formula makes of it, with its parameters and its normal:
+//! A radius below 0 is put into the formula, which gives the points, the parameters and the normal:
 //!
 //! ```text
 //!   cylinder, cone   the same points, turned by half about z: the normal points outwards
 //!   sphere           the same points, mirrored in the centre: the normal points inwards
 //!   torus R < 0      the torus of -R whose tube runs the other way: the normal points into the tube, and of a
-//!                    TOROIDAL_SURFACE with -R < r out of its inner part, the lemon, which is what is meant
+//!                    TOROIDAL_SURFACE with -R < r out of its inner part, the lemon, as writers mean it
 //!   torus r < 0      the same points, by half a turn around the tube
 //! ```
 //!
@@ -214,7 +213,7 @@ impl Geometry<'_> {
     }
 }
 
-/// What is told of an offset whose edges lie on the other side of its basis.
+/// The warning of an offset whose edges lie on the other side of its basis.
 pub(in crate::import) const OTHER_SIDE: &str = "offset on the other side";
 pub(in crate::import) const OTHER_SIDE_HOW: &str = "its edges lie there, and so it is drawn";
 

@@ -1,4 +1,4 @@
-//! Solids that a plane area sweeps: their areas and ways. `brep::sweep` makes the faces.
+//! Solids that a plane area sweeps: the area and its motion. `brep::sweep` makes the faces.
 //!
 //! ```text
 //!   EXTRUDED_AREA_SOLID('',area,direction,depth)     EXTRUDED_FACE_SOLID('',face,direction,depth)

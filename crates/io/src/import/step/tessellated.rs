@@ -1,4 +1,4 @@
-//! Tessellated items (AP242): triangles that a file states itself.
+//! Tessellated items (AP242): triangles stated by the file.
 //!
 //! ```text
 //!   TESSELLATED_SOLID('',(items),link)   TESSELLATED_SHELL('',(items),link)   TESSELLATED_GEOMETRIC_SET('',(items))
@@ -10,10 +10,10 @@
 //!   strip 1 2 3 4 5: (1 2 3) (3 2 4) (3 4 5)        fan 1 2 3 4: (1 2 3) (1 3 4)
 //! ```
 //!
-//! Numbers count from 1 and name entries of `pnindex`, which name coordinates; without it they name
-//! coordinates. One normal is everybody's, else each point has its own, else there is none.
+//! Numbers count from 1 and name entries of `pnindex`, which name coordinates; without `pnindex` they name coordinates.
+//! A single normal serves all points; else each point has its own, or none has one.
 //!
-//! What is linked to an exact solid, shell or face only repeats that one, and is counted.
+//! An item that is linked to an exact solid, shell or face repeats it; it is counted, not drawn.
 //!
 //! Source: ISO 10303-42, 9 (tessellated shape representation); CAx-IF Recommended Practices for 3D
 //! Tessellated Geometry.

@@ -17,8 +17,8 @@ pub(super) struct Part {
     pub rows: Vec<Vec<DVec4>>,
 }
 
-/// The parts between breaks, and the largest gap in mm that was closed. Ends within `tolerance` mm of one
-/// another are joined: the first one counts. What has no such knot, or is no spline, comes back as it is.
+/// The parts between breaks, and the largest gap in mm that was closed. Ends within `tolerance` mm of one another are
+/// joined: the first one counts. A spline without such knots, or an invalid one, comes back unchanged.
 pub(super) fn mend(degree: usize, part: Part, tolerance: f64) -> (Vec<Part>, f64) {
     let (mut parts, mut closed) = (Vec::new(), 0f64);
     let mut rest = part;

@@ -17,15 +17,15 @@
 //!         UNCERTAINTY_MEASURE_WITH_UNIT('distance_accuracy_value',''))
 //! ```
 //!
-//! Each representation has its own context; two parts of one assembly may differ. What cannot be read is told and costs
-//! that one thing: the length unit, the angle unit or the tolerance.
+//! Each representation has its own context; two parts of one assembly may differ. An unreadable entry has a warning,
+//! and only its value is missing: the length unit, the angle unit or the tolerance.
 //!
 //! Source: ISO 10303-41, measure schema; ISO 10303-43, 4.4.
 
 use super::entity::{Entity, Fault, Fields};
 use super::part21::{File, Value};
 
-/// What the numbers of a representation mean.
+/// The units of a representation's numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Units {
     /// Millimetres in one unit of length.
@@ -41,7 +41,7 @@ pub(super) struct Units {
 /// Tolerance of a file that states none, in millimetres: what Open CASCADE assumes.
 const DEFAULT_TOLERANCE: f64 = 1e-4;
 
-/// Largest tolerance taken at its word, in millimetres; larger ones would merge features.
+/// Largest tolerance that is accepted, in millimetres; larger ones would merge features.
 const MAX_TOLERANCE: f64 = 0.1;
 
 /// Longest chain of conversions.
@@ -53,7 +53,7 @@ impl Default for Units {
     }
 }
 
-/// What a unit measures, of what is read here.
+/// The quantity of a unit, among those read here.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Length,
@@ -61,8 +61,8 @@ enum Kind {
 }
 
 impl Units {
-    /// Units of the context `#id`; what it does not state is millimetres and radians, and what cannot be read is told
-    /// to `note` with the entity that says it.
+    /// Units of the context `#id`. Missing units are millimetres and radians; `note` receives the fault of an
+    /// unreadable one, which names the entity.
     pub fn of_context(file: &File<'_>, id: u32, mut note: impl FnMut(&'static str, Fault)) -> Self {
         let mut units = Self::default();
         let context = match Entity::find(file, id) {
@@ -72,7 +72,7 @@ impl Units {
                 return units;
             }
         };
-        // a list that is none, and members that are no references
+        // a list that is no list, and members that are no references
         let members = |kind: &'static str, what: &'static str, note: &mut dyn FnMut(&'static str, Fault)| {
             let Ok(fields) = context.fields(kind, 2) else { return Vec::new() };
             let list = fields.references(0).map_err(|fault| note(what, fault)).into_iter().flatten();
@@ -116,7 +116,7 @@ fn tolerance(file: &File<'_>, measure: Entity<'_>) -> Result<Option<f64>, Fault>
     Ok(Some(fields.real(0)? * length(file, unit)?.0).filter(|t| *t > 0.0))
 }
 
-/// The fields of a measure with unit that are its value and its unit, whatever else it is.
+/// The value and the unit of a measure with unit, whatever its other types are.
 fn value_and_unit(measure: Entity<'_>) -> Result<Fields<'_>, Fault> {
     // a complex instance has them in the part MEASURE_WITH_UNIT, a simple one in front
     let simple = || {
@@ -128,7 +128,7 @@ fn value_and_unit(measure: Entity<'_>) -> Result<Fields<'_>, Fault> {
     fields.ok_or_else(|| measure.not("a measure with unit"))
 }
 
-/// What a unit measures: by its own types, else by the SI unit's name, else by what it is converted from.
+/// The quantity of a unit: by its own types, else by the SI unit's name, else by the unit that it is converted from.
 fn kind_of(file: &File<'_>, unit: Entity<'_>, depth: usize) -> Option<Kind> {
     if unit.is("LENGTH_UNIT") {
         return Some(Kind::Length);

@@ -72,12 +72,12 @@ struct Walk<'w> {
     visited: HashSet<u32>,
     /// Bodies placed on any path.
     drawn: HashSet<u32>,
-    /// Those of them that are not to be placed again.
+    /// Bodies among them that are not placed again.
     settled: HashSet<u32>,
 }
 
 impl Walk<'_> {
-    /// Visits what the roots before have not reached.
+    /// Visits everything that earlier roots have not reached.
     fn from(&mut self, roots: &[u32]) {
         for root in roots {
             if !self.visited.contains(root) {

@@ -1,4 +1,4 @@
-//! Expressions against Rust's own arithmetic, and what is wrong with bad ones.
+//! Expressions against Rust's own arithmetic, and the errors of bad ones.
 
 use super::*;
 use proptest::prelude::*;
@@ -143,7 +143,7 @@ proptest! {
         let _ = Equation::parse([&text, "u", "v"], &[]);
     }
 
-    /// What the scan lets through, the parser takes and evaluates.
+    /// The parser takes and evaluates every output of the scan.
     #[test]
     fn the_scan_misses_nothing(text in "([-+]?(u|v|2|sin\\(u\\)|\\(u[-+*/]v\\))[-+*/]){0,6}u") {
         let e = Equation::parse([&text, "u", "v"], &[]);

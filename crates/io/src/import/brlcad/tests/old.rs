@@ -120,7 +120,7 @@ fn places_and_colours() {
 
 /// What a damaged neighbour says, and what is left.
 #[test]
-fn damage_is_told() {
+fn damage_is_reported() {
     let region = format!("C N all 0 0 2 0 0 0 0 0 0 0\nM u box.s {STAY}\nM - ball.s {STAY}\n");
     let good = format!("{HEAD}{BOX}{BALL}{region}");
     // a line per record, from 3 on: box, ball, the combination and its members; a ball that nobody names is drawn

@@ -108,8 +108,8 @@ fn every_change_has_its_message() {
     one_change_one_message(&good, replaced, first, &changes);
 }
 
-/// Nothing says where a patch ends but its own numbers: a word that is none loses what follows it, a number
-/// that cannot be drawn its own patch only.
+/// Only its numbers say where a patch ends: a word in place of one loses all that follows, a number that cannot be
+/// drawn loses its own patch only.
 #[test]
 fn one_bad_patch_leaves_the_others() {
     let bad = TROUGH.replacen("-2 0 1", "-2 nan 1", 1);

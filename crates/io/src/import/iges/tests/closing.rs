@@ -96,7 +96,7 @@ fn a_loop_of_one_curve_is_there_whatever_its_gap() {
 }
 
 #[test]
-fn a_hole_that_is_a_point_is_told() {
+fn a_hole_that_is_a_point_is_reported() {
     let i = import(&[e(PLANE), e("106,1,2,0.,5.,5.,5.,5.;"), e("142,0,1,0,3,2;"), e("144,1,0,1,0,5;")]);
     // the curve itself is refused, and the face with it
     assert_eq!((i.model.face_count(), i.report.dropped.total()), (0, 1), "{:?}", i.warnings);

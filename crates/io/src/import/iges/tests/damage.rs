@@ -29,7 +29,7 @@ fn each_damage_names_what_it_costs() {
     one("192,9,11,2.,13;", "192,1.5,11,2.;", &side("#7: parameter 1 is not an integer"));
     one("192,9,11,2.,13; ", "192,11,11,2.,13;", &side("#11 is of type 123, not 116, a point"));
     one("510,7,1,1,15;", "510,7,9,1,15;", &side("#5: parameter 2 is not a count that its record can hold"));
-    // what has lost its owner is told as well, behind it
+    // entities that lost their owner have a warning too, after it
     let first = |from: &str, to: &str, wanted: &str| assert_eq!(after(from, to)[0], wanted, "{from} -> {to}");
     first("510,7,1,1,15;", "510,9,1,1,15;", &side("type 116 form 0 is not supported (#9)"));
     let body = |what: &str| format!("c.igs:66: #1: body left out: {what}");
@@ -135,9 +135,9 @@ fn subfigures_without_end() {
     assert!(own.warnings.iter().any(|w| w.message == "subfigure left out: #1 refers to itself"), "{:?}", own.warnings);
 }
 
-/// Thousands of subfigures, each in the next: as many are followed as can be, and it is told that there are more.
+/// Thousands of subfigures, each in the next: they are followed to the limit, and a warning says that there are more.
 #[test]
-fn deep_subfigures_are_told_as_deep() {
+fn deep_subfigures_are_reported_as_deep() {
     let mut all = vec![e("308,0,1Ha,0;")];
     for level in 0..5000 {
         let definition = 1 + 4 * level;
@@ -150,9 +150,9 @@ fn deep_subfigures_are_told_as_deep() {
     assert!(deep.warnings.iter().any(told), "{:?}", deep.warnings);
 }
 
-/// A line: nothing to draw, and the summary says what there is instead.
+/// A line: nothing to draw, and the summary names it.
 #[test]
-fn lines_are_told() {
+fn lines_are_reported() {
     let summary = import(&[e("110,0.,0.,0.,1.,0.,0.;")]).summary();
     assert_eq!(
         summary.to_string(),

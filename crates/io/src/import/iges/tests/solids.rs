@@ -68,7 +68,7 @@ fn trees_assemblies_and_instances() {
     assert!(i.warnings.is_empty() && i.model.parts.is_empty(), "{:?}", i.warnings);
     let heights: Vec<f64> = i.model.solids.iter().map(|s| s.bounds().min.z).collect();
     assert!(heights.len() == 2 && heights[0].abs() < 1e-9 && (heights[1] - 50.0).abs() < 1e-9, "{heights:?}");
-    // a tree that is none costs the solid, and says so
+    // an invalid tree costs the solid, with a warning
     for (tree, why) in [
         ("180,2,-1,3;", "#5: an operation lacks an operand"),
         ("180,2,-1,-3;", "#5: its operations do not join all operands"),
@@ -115,7 +115,7 @@ fn rectangular_arrays() {
 }
 
 #[test]
-fn arrays_that_cannot_be_are_told() {
+fn impossible_arrays_are_reported() {
     for (array, why) in [
         ("412,1,1.,0.,0.,0.,0,2,30.,40.,0.,0,0;", "#3: the array has no places, or too many"),
         ("412,1,1.,0.,0.,0.,100000,100000,30.,40.,0.,0,0;", "#3: the array has too many places"),
@@ -126,7 +126,7 @@ fn arrays_that_cannot_be_are_told() {
         let i = import(&[Entity { status: "00010000", ..e(SQUARE) }, e(array)]);
         assert!(i.model.instances.is_empty(), "{array}");
         let told = i.warnings.iter().any(|w| w.to_string().ends_with(&format!("#3: array left out: {why}")));
-        // an array of itself is used by it, so nothing begins there
+        // an array of itself is its own user, so nothing begins there
         assert!(told || why.is_empty(), "{array}: {:?}", i.warnings);
     }
 }
@@ -155,7 +155,7 @@ fn an_offset_is_drawn_where_its_edges_are() {
             .to_string()
             .ends_with("#3: offset on the other side: its edges lie there, and so it is drawn")
     );
-    // edges that lie on neither side leave it where it is stated, and are told
+    // edges that lie on neither side leave it where it is stated, with a warning
     let i = at(-0.5);
     assert!(
         i.report.gap > 1.4 && i.warnings.iter().all(|w| w.to_string().contains("lies 1.500e0 mm off")),
@@ -202,7 +202,7 @@ fn a_cone_whose_tip_lies_off_its_axis() {
         assert!(i.warnings.is_empty() == told.is_empty(), "{:?}", i.warnings);
         assert!(told.is_empty() || i.warnings.iter().any(|w| w.to_string().contains(told)), "{:?}", i.warnings);
     }
-    // as far beside it as the face shows, it is no tip
+    // farther off than the face shows, it is no tip
     let i = off(0.0, -0.5);
     assert_eq!(i.model.face_count(), 0);
     assert!(i.warnings.iter().any(|w| w.to_string().contains("no other loop or pole closes it")), "{:?}", i.warnings);

@@ -1,4 +1,4 @@
-//! Swept solids: what lies within them and what does not, by dimensions worked out by hand.
+//! Swept solids: points inside and outside, by dimensions worked out by hand.
 
 use super::solids::{Probe, holds};
 use super::{Entity, e, import};
@@ -83,7 +83,7 @@ fn a_swept_solid_is_a_closed_part() {
 }
 
 #[test]
-fn what_cannot_be_swept_is_told() {
+fn impossible_sweeps_are_reported() {
     let open = || e("106,1,3,0.,2.,0.,4.,0.,4.,2.;");
     let cases = [
         (open(), e("164,1,3.;"), "the curve that is swept is not closed"),
@@ -97,7 +97,7 @@ fn what_cannot_be_swept_is_told() {
         (e("110,2.,0.,0.,4.,0.,0.;"), e("162,1,1.,0.,0.,0.,1.,0.,0.;"), "the curve that is swept bounds no area"),
         (square(), e("162,1,1.5,0.,0.,0.,0.,1.,0.;"), "parameter 2 is not a share of a turn, above 0 and at most 1"),
         (square(), e("162,1,1.,3.,0.,0.,0.,1.,0.;"), "the axis crosses what turns"),
-        // which no vertex tells
+        // which shows at no vertex
         (e("100,0.,0.,0.,2.,0.,2.,0.;"), e("162,1,1.,0.,0.,0.,0.,1.,0.;"), "the axis crosses what turns"),
         (square(), e("162,1,1.,0.,0.,0.,0.,1.,1.;"), "the axis does not lie in the plane of what turns"),
         (open(), Entity { form: 1, ..e("162,1,1.,0.,0.,0.,0.,1.,0.;") }, "the curve that is swept is not closed"),

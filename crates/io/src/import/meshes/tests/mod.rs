@@ -16,7 +16,7 @@ fn refusal(bytes: &[u8], ending: &str) -> String {
     read(bytes, "t.x", ending, None).expect_err("no mesh").to_string()
 }
 
-/// Volume of all placed meshes: what their triangles enclose.
+/// The volume within all placed meshes.
 fn volume(model: &Model) -> f64 {
     let of = |mesh: &Mesh, place: glam::DAffine3| {
         let corners = (0..mesh.triangles().len()).map(|t| mesh.corners(t).map(|p| place.transform_point3(p)));
@@ -64,7 +64,7 @@ fn stl() {
     // VisCAM: the top bit, then five bits of red, green, blue
     let red = import(&binary_stl([0xFC00; 4]), "stl");
     assert_eq!(red.model.parts[0].meshes[0].colour, Some([1.0, 0.0, 0.0, 1.0]));
-    // Magics: a colour of the whole, and of those without the top bit their own, red lowest
+    // Magics: a colour for the whole; triangles without the top bit have their own, red lowest
     let mut magics = binary_stl([0x8000, 0x8000, 0x8000, 31]);
     magics[..10].copy_from_slice(b"COLOR=\x00\xFF\x00\xFF");
     let two = import(&magics, "stl");

@@ -93,7 +93,7 @@ fn a_smaller_range_cuts_the_surface() {
     assert_eq!(surface.jet(1.0, 0.0).point, DVec3::new(1.0, 0.0, 0.0));
     assert_eq!(surface.jet(3.0, 2.0).point, DVec3::new(3.0, 2.0, 0.0));
     let wide = import(&square("").replace("surf 0 4 0 4", "surf -1 4 0 4"));
-    assert_eq!(told(&wide), ["t.obj:18: face healed: range -1 4 beyond the domain 0 4"]);
+    assert_eq!(told(&wide), ["t.obj:18: face repaired: range -1 4 beyond the domain 0 4"]);
 }
 
 /// Catmull-Rom in u, power basis in v, against the sum of the bases.
@@ -131,7 +131,7 @@ fn mixed_bases() {
 fn loops_with_small_gaps_are_closed() {
     let gap = square("trim 0 4 1\n").replace("curv2 1 2 3 4 1\n", "vp 1.0001 1\ncurv2 1 2 3 4 5\n");
     let read = import(&gap);
-    assert!(told(&read)[0].contains("face healed: loop closed over a gap of 9.999"), "{:?}", told(&read));
+    assert!(told(&read)[0].contains("face repaired: loop closed over a gap of 9.999"), "{:?}", told(&read));
     let trim = &read.model.parts[0].faces[0].loops[0];
     let ends: Vec<_> = trim.curves().map(|c| (c.points[0].point(), c.points[c.degree()].point())).collect();
     assert!((0..ends.len()).all(|i| ends[i].1 == ends[(i + 1) % ends.len()].0));

@@ -12,7 +12,7 @@ fn import(text: &str) -> Import {
     obj(text.as_bytes(), "t.obj", None).expect("an OBJ file")
 }
 
-/// The warnings as they are told.
+/// The warnings as text.
 fn told(import: &Import) -> Vec<String> {
     import.warnings.iter().map(ToString::to_string).collect()
 }

@@ -75,7 +75,7 @@ fn colours_come_from_the_file_beside() {
 }
 
 #[test]
-fn what_says_nothing_of_surfaces_is_counted() {
+fn statements_without_surfaces_are_counted() {
     let read = import("v 0 0 0 1 1 1\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\ns 1\nf 1/1 2/2 3/1\np 1\nl 1 2\nfrobnicate\n");
     let expected = [
         "t.obj:10: statement not used: `frobnicate`, 1 times",

@@ -1,14 +1,14 @@
 //! Solids of facets as unions of convex cells.
 //!
 //! ```text
-//!   ┌───────┐            ┌─────┬─┐      A - B, B convex: what lies beyond the first plane of B, then of the rest
-//!   │  ┌─┐  │            │  ┌─┐│ │      what lies beyond the second, ...: convex pieces beside each other
+//!   ┌───────┐            ┌─────┬─┐      A - B, B convex: the part beyond the first plane of B, then of the rest
+//!   │  ┌─┐  │            │  ┌─┐│ │      the part beyond the second, ...: disjoint convex pieces
 //!   │  └─┘  │     ▶      ├──┴─┤│ │
 //!   └───────┘            └────┴┴─┘      A * B: A cut by every plane of B
 //! ```
 //!
-//! A cell that a cut leaves thinner than [`FLAT`] of its size is none. So nothing that is asked of cells can fail by
-//! rounding: there is no mesh that has to stay closed.
+//! A cell that a cut leaves thinner than [`FLAT`] of its size is dropped. No operation on cells can fail by rounding:
+//! no mesh has to stay closed.
 
 use super::Budget;
 use super::hull::{self, FLAT};
@@ -134,7 +134,7 @@ impl Cell {
         (facets.len() >= 4).then_some(Self { facets, bounds })
     }
 
-    /// The convex pieces of what lies outside of the other.
+    /// The convex pieces of the part outside of the other.
     pub fn without(&self, other: &Self, budget: &mut Budget) -> Result<Vec<Self>, String> {
         if apart(&self.bounds, &other.bounds) {
             return Ok(vec![self.clone()]);

@@ -5,8 +5,8 @@
 //!   INSERT ─▶ the runs of a BLOCK, scaled, turned, moved
 //! ```
 //!
-//! As in OpenSCAD, a layer that is asked for chooses among the entities outside of blocks, all of a block comes with its
-//! INSERT, the base point of a block is not looked at, and rows and columns are not repeated; the last two are told.
+//! As in OpenSCAD, a layer argument selects among the entities outside of blocks, a block comes whole with its INSERT,
+//! the base point of a block is ignored, and rows and columns are not repeated; a note reports the last two.
 
 use super::Region;
 use glam::{DAffine2, DVec2};
@@ -39,11 +39,11 @@ impl<'a> Entity<'a> {
     }
 }
 
-/// What stands in the sections of entities and of blocks.
+/// The entities of a drawing, and its blocks.
 #[derive(Default)]
 struct Drawing<'a> {
     entities: Vec<Entity<'a>>,
-    /// By name: the BLOCK itself, and what it holds.
+    /// By name: the BLOCK itself, and its entities.
     blocks: HashMap<&'a str, Vec<Entity<'a>>>,
 }
 
@@ -70,7 +70,7 @@ impl<'a> Drawing<'a> {
                     (_, "EOF") => return Ok(drawing),
                     (_, "ENDSEC") => section = "",
                     ("ENTITIES", _) => drawing.entities.push(entity),
-                    // what stands between blocks belongs to none
+                    // entities between blocks belong to none
                     ("BLOCKS", _) if kind == "BLOCK" || !block.is_empty() && kind != "ENDBLK" => block.push(entity),
                     _ => {}
                 }
@@ -87,7 +87,7 @@ impl<'a> Drawing<'a> {
     }
 }
 
-/// Runs of corners, and what of the drawing is not among them.
+/// Runs of corners, and notes on entities that are not among them.
 #[derive(Default)]
 struct Runs<'a> {
     all: Vec<(Vec<DVec2>, bool)>,
@@ -187,8 +187,8 @@ impl<'a> Runs<'a> {
     }
 }
 
-/// The region of a DXF file; `layer`: only what lies on it, all where it is empty; `segments` of a circle by its radius.
-/// With what is left out.
+/// The region of a DXF file, and notes on what is left out. `layer`: only the entities on it, all where it is empty;
+/// `segments` of a circle by its radius.
 pub(super) fn region(
     bytes: &[u8],
     layer: &str,

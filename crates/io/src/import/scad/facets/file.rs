@@ -11,7 +11,7 @@ use std::path::Path;
 /// Bytes of a file that is taken in.
 const MOST_BYTES: u64 = 1 << 30;
 
-/// What a file holds, and what of it is left out.
+/// The shape in a file, and notes on what is left out.
 pub(super) fn read(args: &Args<'_>, folder: Option<&Path>) -> Result<(Shape, Vec<String>), Fault> {
     let Some(Value::Text(file)) = args.get("file").filter(|v| !matches!(v, Value::Text(t) if t.is_empty())) else {
         return Err(args.fault("no file is named"));

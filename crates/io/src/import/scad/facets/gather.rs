@@ -12,7 +12,7 @@ use crate::model::Bounds;
 use glam::{DAffine2, DAffine3, DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// What the node does with its children.
+/// The operation on the children.
 #[derive(Clone, Debug)]
 enum Job {
     Boolean(Op),
@@ -73,7 +73,7 @@ pub(in crate::import::scad) struct Gather {
     children: Vec<Shape>,
     /// Children so far, of any kind.
     count: usize,
-    /// A child is nothing, where that makes the whole nothing.
+    /// A child is empty, where that makes the whole empty.
     void: bool,
     /// The first child, or every one, could not be made.
     lost: bool,
@@ -181,7 +181,7 @@ impl Gather {
         self.strangers
     }
 
-    /// What the node is.
+    /// The shape of the node.
     pub fn finish(mut self, budget: &mut Budget) -> Result<Made<Shape>, String> {
         self.lost &= self.children.is_empty() || self.job.needs_first();
         if self.lost {
@@ -217,7 +217,7 @@ impl Gather {
 }
 
 impl Job {
-    /// With one child missing nothing can be said of the whole.
+    /// Whether the node is lost with any of its children.
     fn needs_all(&self) -> bool {
         matches!(self, Self::Minkowski)
     }
@@ -227,7 +227,8 @@ impl Job {
     }
 }
 
-/// As OpenSCAD scales: by what is asked of each axis, and by the factor of the largest size where an axis is automatic.
+/// As OpenSCAD scales: by the stated size on each axis, and by the factor of the largest size where an axis is
+/// automatic.
 fn resized(bounds: Bounds, size: [f64; 3], auto: [bool; 3]) -> DVec3 {
     if bounds.min.cmpgt(bounds.max).any() {
         return DVec3::ONE;

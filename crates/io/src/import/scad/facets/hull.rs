@@ -6,8 +6,8 @@
 //!   ───a   b───  ▶  a──p──b
 //! ```
 //!
-//! Which facets a point sees is decided exactly, so that what goes is always one patch with one edge around it.
-//! Points that lie within [`FLAT`] of the hull so far do not move it: they are corners of its facets, but for rounding.
+//! Exact predicates decide which facets a point sees, so the removed facets are always one patch with one edge around
+//! it. A point within [`FLAT`] of the hull so far does not move it: it counts as lying in a facet.
 //!
 //! Sources: C. B. Barber, D. P. Dobkin, H. Huhdanpaa, *The Quickhull Algorithm for Convex Hulls*, 1996; predicates of
 //! J. R. Shewchuk, 1997.

@@ -7,7 +7,7 @@
 //!   Shape: Region (i_overlay) or Body (convex cells, meshes) ──placed──▶ Assembly: half-spaces, meshes
 //! ```
 //!
-//! Inside of such a node every node is evaluated when its last child is complete; outside, solids stay exact.
+//! Inside such a node every node is evaluated when its last child is complete; outside, solids stay exact.
 
 mod cells;
 mod dxf;
@@ -28,7 +28,7 @@ pub(super) use gather::Gather;
 pub(super) use region::Region;
 pub(super) use solid::{Body, Sweep, Triangles};
 
-/// What a node is.
+/// The shape of a node.
 #[derive(Clone, Debug)]
 pub(super) enum Shape {
     Flat(Region),

@@ -49,7 +49,7 @@ impl Reader<'_> {
 const MOST_CORNERS: usize = 64;
 
 impl Plate<'_> {
-    /// Outlines that cross or touch themselves: what an odd number of them holds.
+    /// The inside of outlines that cross or touch themselves, by the odd-even rule.
     pub(in crate::import::scad) fn crossed(
         &mut self,
         args: &Args<'_>,

@@ -1,4 +1,4 @@
-//! Parts of the plane bounded by straight sides, and what OpenSCAD does with them.
+//! Parts of the plane bounded by straight sides, and OpenSCAD's operations on them.
 //!
 //! ```text
 //!   offset by d:   each side moves out by d; between two sides that part a corner is filled
@@ -7,7 +7,7 @@
 //!             │              │                │
 //! ```
 //!
-//! Unions, intersections and differences are i_overlay's, on a grid of 64 bits: corners move by less than 1e-15 of the
+//! i_overlay makes unions, intersections and differences, on a grid of 64 bits: corners move by less than 1e-15 of the
 //! size.
 
 use super::{Budget, hull};
@@ -22,7 +22,7 @@ use std::f64::consts::TAU;
 /// Closed runs of corners.
 type Contours = Vec<Vec<[f64; 2]>>;
 
-/// What fills a corner between two sides that part.
+/// The shape of a corner between two sides that part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::import::scad) enum Join {
     /// An arc, of as many segments on a whole circle.
@@ -40,7 +40,7 @@ pub(in crate::import::scad) struct Region {
 }
 
 impl Region {
-    /// What the outlines hold: points that lie in an odd number of them, or that they run around.
+    /// The inside of outlines, by the odd-even or the non-zero rule.
     pub fn new(outlines: &[Vec<DVec2>], odd: bool) -> Self {
         let outlines: Contours = outlines.iter().map(|o| o.iter().map(DVec2::to_array).collect()).collect();
         let rule = if odd { FillRule::EvenOdd } else { FillRule::NonZero };

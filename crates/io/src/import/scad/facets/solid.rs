@@ -1,4 +1,4 @@
-//! Solids of facets: convex cells and closed meshes, whose union they are.
+//! Solids of facets: unions of convex cells and closed meshes.
 //!
 //! ```text
 //!   at ring j + 1   p2 ── q2      a region that is swept: its outline stands in every ring; between two rings a side
@@ -14,7 +14,7 @@ use crate::model::Bounds;
 use glam::{DAffine3, DVec2, DVec3};
 use std::collections::HashMap;
 
-/// Said of a mesh that bounds nothing.
+/// The message for a mesh that bounds nothing.
 pub(super) const OPEN: &str = "the faces do not close, so there is no inside";
 
 /// A part of a solid.

@@ -1,9 +1,9 @@
 //! Text: glyphs of the fonts that are installed, laid out and turned into outlines as OpenSCAD does.
 //!
 //! ```text
-//!        ┌─ ascent of what is written          size 10: an em of 10 · 100 / 72, so that capitals are
+//!        ┌─ ascent of the glyphs                size 10: an em of 10 · 100 / 72, so that capitals are
 //!   x────┼── baseline                          about 10 high
-//!        └─ descent                            curves: so many segments each as $fn, $fa, $fs ask for
+//!        └─ descent                            curves: segments by $fn, $fa, $fs
 //! ```
 //!
 //! Source: `FreetypeRenderer`, `DrawingCallback` and `TextNode` of OpenSCAD 2021.01.
@@ -33,7 +33,7 @@ pub(super) fn installed() -> &'static Database {
     })
 }
 
-/// The outlines of a text, and what is to be told of its font.
+/// The outlines of a text, and a note on its font.
 pub(super) fn text(args: &Args<'_>, fonts: &Database) -> Result<(Region, Option<String>), Fault> {
     let word = |name: &str, default: &str| match args.get(name) {
         Some(Value::Text(text)) if !text.is_empty() => text.clone(),
@@ -64,7 +64,7 @@ pub(super) fn text(args: &Args<'_>, fonts: &Database) -> Result<(Region, Option<
     Ok((region, note))
 }
 
-/// A face for `Family:style=Bold Italic`; another one, told, where there is none of that name.
+/// A face for `Family:style=Bold Italic`; another one, with a note, where there is none of that name.
 fn find(fonts: &Database, asked: &str) -> Result<(fontdb::ID, Option<String>), String> {
     let mut parts = asked.split(':');
     let family = parts.next().unwrap_or_default().trim();

@@ -1,7 +1,7 @@
 //! Every class of damage with the message that it must have, word for word.
 //!
-//! Text that is not the format's refuses the file. A node whose values are wrong is left out, and so is a difference that
-//! it is the first operand of.
+//! Text of another format refuses the file. A node with wrong values is left out, and so is a difference of which it is
+//! the first operand.
 
 use crate::import::damage::{one_change_one_message, outcome, primitives, replaced};
 use crate::import::{Facets, scad};

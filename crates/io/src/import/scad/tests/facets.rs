@@ -17,7 +17,7 @@ fn hulls() {
     // six sides, and a box around them
     assert_eq!(import.model.solids[0].primitives().len(), 1 + 7);
     assert!(import.warnings.is_empty());
-    // of a difference: only what is left counts
+    // of a difference: its hull counts only the remaining part
     let cut = "hull() { difference() { cube(size = 2); multmatrix([[1, 0, 0, 1], [0, 1, 0, -1], [0, 0, 1, -1], [0, 0, 0, 1]]) { cube(size = 4); } } }";
     same(cut, 2.5, |p| block(p, [0.0; 3], [1.0, 2.0, 2.0]));
     // in the plane
@@ -36,7 +36,7 @@ fn minkowski_sums() {
     same(&format!("minkowski() {{ {tube} cube(size = 1, center = true); }}"), 4.0, |p| {
         block(p, [-3.5, -3.5, -1.0], [3.5, 3.5, 1.0]).max(-block(p, [-1.5, -1.5, -9.0], [1.5, 1.5, 9.0]))
     });
-    // an operand that is left out leaves nothing that could be said of the sum
+    // a lost operand loses the sum
     let lost = import("minkowski() { cube(); frobnicate(); } cube();");
     assert!(lost.warnings.len() == 1 && lost.model.solids[0].primitives().len() == 1);
 }
@@ -86,7 +86,7 @@ fn what_is_resized_stays_exact() {
     assert_eq!((solid.primitives()[0].id, ball.report.nodes["sphere"]), (2, 1));
     let twice = import("resize(newsize = [4, 4, 4]) { resize(newsize = [1, 2, 3]) { cube(); %cube(); } } cube();");
     assert_eq!((twice.report.nodes["cube"], twice.warnings.len()), (2, 1));
-    // without children: what follows is told as ever
+    // without children: the nodes after it have their warnings
     assert_eq!(import("resize(newsize = [1, 1, 1]); %cube();").warnings.len(), 1);
     // in the plane
     same("linear_extrude(height = 1) { resize(newsize = [4, 2, 0]) { square(size = 1, center = true); } }", 3.0, |p| {
@@ -121,7 +121,7 @@ fn few_segments_turn_by_an_angle() {
 }
 
 #[test]
-fn dimensions_that_do_not_fit_are_told() {
+fn dimensions_that_do_not_fit_are_reported() {
     let mixed = import("hull() { cube(); square(); }");
     assert!(mixed.warnings[0].to_string().contains("mixed dimensions: `hull`: 1 children"), "{:?}", mixed.warnings);
     let told = |text: &str| import(text).warnings.iter().map(ToString::to_string).collect::<Vec<_>>();

@@ -4,7 +4,7 @@ use super::{block, import, same};
 use crate::model::Shape;
 use glam::DVec3;
 
-/// Warnings of what is left out.
+/// Warnings of nodes that are left out.
 fn told(text: &str) -> Vec<String> {
     import(text).warnings.iter().map(ToString::to_string).collect()
 }
@@ -55,7 +55,7 @@ fn the_rest_of_a_boolean_is_drawn_where_that_says_something() {
     same("union() { frobnicate() { sphere(r = 9); } cube(size = 2); }", 3.0, cube);
     same("difference() { cube(size = 2); frobnicate(); }", 3.0, cube);
     same("intersection() { cube(size = 2); frobnicate(); }", 3.0, cube);
-    // without what it is taken from, a difference is nothing, and a child of it that is lost is lost all the way up
+    // a difference without its first operand is lost, and a lost first child is lost all the way up
     for text in [
         "difference() { frobnicate(); cube(size = 2); }",
         "difference() { group() { color(\"red\") { frobnicate(); } } cube(size = 2); }",
@@ -64,7 +64,7 @@ fn the_rest_of_a_boolean_is_drawn_where_that_says_something() {
         let import = import(text);
         assert!(import.model.solids.is_empty() && import.warnings.len() == 1, "{text}");
     }
-    // what is read for its grammar alone tells nothing
+    // nodes that are only parsed give no warning
     assert!(told("*frobnicate(); cube();").is_empty());
     assert_eq!(told("frobnicate() { hull() { frobnicate(); } } cube();").len(), 1);
 }

@@ -35,7 +35,7 @@ fn a_volume_trims_and_is_not_drawn() {
 }
 
 #[test]
-fn what_cannot_cut_is_told_of() {
+fn parts_that_cannot_cut_are_reported() {
     let names = ["trim = \"shell\"", "trim = \"door\"", "section = { normal = [0, 0, 0] }", "section = { offset = 2 }"];
     let told = ["needs equations", "nothing is called `door`", "without length", "`normal` is missing"];
     for (text, message) in names.iter().zip(told) {

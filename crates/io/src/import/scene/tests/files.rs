@@ -1,4 +1,4 @@
-//! Other files: where they may be, and what becomes of them.
+//! Other files: where they may lie, and what the scene takes from them.
 
 use crate::import::{open, scene};
 use std::path::PathBuf;

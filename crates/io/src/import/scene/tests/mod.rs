@@ -1,4 +1,4 @@
-//! Scene files: what they make, and what they refuse and where.
+//! Scene files: the models that they make, and the errors with their places.
 
 mod cuts;
 mod errors;

@@ -24,7 +24,7 @@ const PLATE: &str = "[solid.plate]\nshape = \"block\"\nsize = [4, 4, 1]\ncolour 
 #[test]
 fn a_drilled_plate() {
     let import = import(PLATE);
-    // what the expression is made of is not drawn beside it
+    // operands are not drawn beside the solid
     assert_eq!(import.model.solids.len(), 1);
     for (at, expected) in [
         ([0.2, 0.2, 0.5], true),
@@ -142,7 +142,7 @@ fn profiles_are_cut_at_their_corners() {
     assert_eq!(import.model.parts.iter().map(|p| p.faces.len()).collect::<Vec<_>>(), [6, 3]);
 }
 
-/// Only what is named is seen through, and an opacity holds for all of it.
+/// Only named items are transparent, and an opacity holds for all of it.
 #[test]
 fn what_xray_names_is_seen_through() {
     let two =

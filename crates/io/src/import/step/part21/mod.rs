@@ -1,4 +1,4 @@
-//! ISO 10303-21: the text syntax of STEP files, and nothing of what the entities mean.
+//! ISO 10303-21: the text syntax of STEP files, without the meaning of entities.
 //!
 //! ```text
 //!   #12 = CIRCLE('',#7,2.5);
@@ -10,9 +10,8 @@
 //!   (1.,(2.,3.),$)    slots  [ List→5 | Real 1 | List→4 | Real 2 | Real 3 | Omitted ]    prefix order
 //! ```
 //!
-//! One flat arena of 16-byte slots in prefix order; a list knows where it ends. Names and strings are
-//! spans of the text. Cost: one pass over the bytes; memory at most 8 bytes a byte of text (`$,$,$`),
-//! about 2 in real files.
+//! One flat arena of 16-byte slots in prefix order; a list stores its end. Names and strings are spans of the text.
+//! Cost: one pass over the bytes; memory at most 8 bytes a byte of text (`$,$,$`), about 2 in real files.
 //!
 //! Source: ISO 10303-21:2016, clause 6 (tokens), 10 (data section), annex A; edition 1 for `&SCOPE`.
 
@@ -87,7 +86,7 @@ pub(super) struct File<'a> {
     kinds: HashMap<&'a str, Vec<u32>>,
 }
 
-/// Bytes in front of `ISO-10303-21` that are forgiven: marks of byte order, mail headers.
+/// Bytes allowed before `ISO-10303-21`: marks of byte order, mail headers.
 const PREAMBLE: usize = 4096;
 
 /// The text starts as a STEP file does.
@@ -97,13 +96,13 @@ pub(in crate::import) fn recognise(bytes: &[u8]) -> bool {
 }
 
 impl<'a> File<'a> {
-    /// For tests: nobody is told.
+    /// For tests: without progress.
     #[cfg(test)]
     pub fn parse(bytes: &'a [u8], name: &str, warnings: &mut Warnings) -> Result<Self, ImportError> {
         Self::parse_telling(bytes, name, warnings, &Options::default())
     }
 
-    /// Parses the text; bad records are skipped with a warning; tells how far it has come.
+    /// Parses the text, and reports progress; bad records are skipped with a warning.
     ///
     /// # Errors
     /// [`ImportError`] when the text is not STEP, has no data, or more bad records than good ones.
@@ -183,7 +182,7 @@ impl<'a> File<'a> {
         Places { bytes: self.bytes, records: self.records }
     }
 
-    /// Parameters in the whole file: a measure of how much it can honestly hold.
+    /// Parameters in the whole file: a measure of its content.
     pub fn slot_count(&self) -> usize {
         self.slots.len()
     }

@@ -1,4 +1,4 @@
-//! The scanner: bytes to records in one pass, without ever giving up on the rest of a file.
+//! The scanner: bytes to records in one pass. It never gives up on the rest of a file.
 //!
 //! A record that cannot be read is skipped: the scan resumes behind the next `;` that is followed by
 //! a new statement, looked for from the *start* of the bad record, because a quote that is never
@@ -12,11 +12,11 @@ use std::collections::HashMap;
 /// Deepest nesting of lists. Real files need 5.
 const MAX_DEPTH: usize = 64;
 
-/// Bad records that are looked at before a file with fewer good ones is given up.
+/// Bad records that are skipped before a file with fewer good ones is refused.
 const PATIENCE: usize = 1000;
 
-/// Bytes of text between two words about how far it is.
-const TOLD: usize = 1 << 20;
+/// Bytes of text between two reports of progress.
+const PROGRESS_BYTES: usize = 1 << 20;
 
 /// What is wrong with a record.
 type Bad = &'static str;
@@ -69,7 +69,7 @@ pub(super) fn scan<'a>(
     loop {
         s.blanks();
         let start = s.at;
-        if start >= told + TOLD {
+        if start >= told + PROGRESS_BYTES {
             told = start;
             tell(told);
         }
@@ -142,7 +142,7 @@ impl<'a> Scanner<'a, '_> {
         self.bytes.get(self.at).copied().unwrap_or(0)
     }
 
-    /// Skips white space and comments; a comment that is never closed is not one.
+    /// Skips white space and comments; a comment that is never closed runs to the end of the file.
     fn blanks(&mut self) {
         loop {
             match self.peek() {
@@ -151,7 +151,7 @@ impl<'a> Scanner<'a, '_> {
                 b'/' if self.bytes[self.at..].starts_with(b"/*") => match self.comment_end() {
                     Some(end) => self.at = end,
                     None => {
-                        // nothing behind can be trusted: the rest of the file is the comment
+                        // nothing after it can be read: the rest of the file is the comment
                         self.at = self.bytes.len();
                         return;
                     }
@@ -202,7 +202,7 @@ impl<'a> Scanner<'a, '_> {
         self.warnings.push("missing `;`", place, || "the statement before it is taken as complete".into());
     }
 
-    /// Skips to behind the next `;` (statements that hold nothing of interest).
+    /// Skips to behind the next `;` (statements that are ignored).
     fn statement_end(&mut self) -> Result<(), Bad> {
         let rest = &self.bytes[self.at..];
         self.at = rest.iter().position(|&b| b == b';').map_or(self.bytes.len(), |p| self.at + p + 1);
@@ -378,8 +378,8 @@ impl<'a> Scanner<'a, '_> {
         Ok(())
     }
 
-    /// `NAME(…)` as a parameter; `NaN` and `inf`, which some writers print, are not numbers here
-    /// either but keep the record readable.
+    /// `NAME(…)` as a parameter. `NaN` and `inf`, which some writers print, are no numbers here either, but the record
+    /// stays readable.
     fn typed(&mut self, depth: usize) -> Result<(), Bad> {
         let name = self.name()?;
         let word = &self.bytes[name.start as usize..name.end as usize];

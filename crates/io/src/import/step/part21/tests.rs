@@ -186,8 +186,8 @@ fn what_is_not_step_is_an_error() {
     assert!(matches!(error(b"ISO-10303-21;\nHEADER;\nENDSEC;"), ImportError::NoData { line: 3, .. }));
 }
 
-/// Linear time on what would make a scanner start over and over: unclosed comments and strings, records
-/// that go wrong at their end. 16 MB each; a quadratic scan would take hours.
+/// Linear time on input that could make a scanner start over and over: unclosed comments and strings, records that go
+/// wrong at their end. 16 MB each; a quadratic scan would take hours.
 #[test]
 fn nonsense_ends_soon() {
     for (unit, closing) in [

@@ -11,7 +11,7 @@
 //!
 //! Source: ISO 10303-21:2016, 6.4.3.
 
-/// Decodes what stands between the quotes; unknown escapes stay as they are.
+/// Decodes the text between the quotes; unknown escapes stay unchanged.
 pub(in crate::import::step) fn decode(raw: &[u8]) -> String {
     let mut bytes: Vec<u8> = Vec::with_capacity(raw.len());
     let push = |bytes: &mut Vec<u8>, c: char| bytes.extend_from_slice(c.encode_utf8(&mut [0; 4]).as_bytes());

@@ -179,7 +179,7 @@ fn exponential_assemblies_are_bounded() {
 
 /// A hundred thousand levels of one child each: no cycle, and not called one.
 #[test]
-fn deep_assemblies_are_told_as_deep() {
+fn deep_assemblies_are_reported_as_deep() {
     let chain = |levels: u32| {
         let mut data = TRIANGLE.to_owned();
         data += "#100=MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#18),#1);";

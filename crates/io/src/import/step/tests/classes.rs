@@ -52,7 +52,7 @@ fn every_change_has_its_message() {
             "swapped",
             "'',#40,#41,#34",
             "'',#41,#40,#34",
-            "good.step:57: #61: face healed: face #61: edge #48 runs against its stated sense",
+            "good.step:57: #61: face repaired: face #61: edge #48 runs against its stated sense",
             3,
         ),
         // cycles

@@ -1,4 +1,4 @@
-//! Boolean expressions: every operand by its exact dimensions, graphs of any form, and what each fault says.
+//! Boolean expressions: every operand by its exact dimensions, graphs of any form, and the message of each fault.
 
 use super::import;
 use crate::csg::{Node, Op, Tree};
@@ -16,7 +16,8 @@ const COMMON: &str = "#1=CARTESIAN_POINT('',(1.,2.,3.));#2=DIRECTION('',(1.,0.,0
     #23=(CONVERSION_BASED_UNIT('DEGREE',#22)NAMED_UNIT(*)PLANE_ANGLE_UNIT());\
     #24=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNIT_ASSIGNED_CONTEXT((#20,#23))REPRESENTATION_CONTEXT('',''));";
 
-/// Balls about the origin and about the axes' origin, those that `data` names: what nobody names is drawn by itself.
+/// Balls about the origin and about the axes' origin, where `data` refers to them: a ball without a reference is drawn
+/// by itself.
 fn balls(data: &str) -> String {
     let named = |id: u32| data.contains(&format!("#{id},")) || data.contains(&format!("#{id})"));
     let ball = |(id, centre): (u32, u32)| format!("#{id}=SPHERE('',2.,#{centre});");

@@ -66,7 +66,7 @@ fn what_a_cut_file_still_holds_is_drawn() {
     let (import, told) = without(&[63], None);
     assert_eq!(told, ["good.step: face left out: #63 does not exist"]);
     assert_eq!((import.model.face_count(), import.model.instances.len()), (2, 2));
-    // an entry of the shell that is none: what nothing lists is a group of its own, by its number
+    // an entry of the shell that is no reference: its face is unlisted, and a group of its own, by its number
     let import = step(GOOD.replace("(#61,#62,#63)", "(#61,$,#63)").as_bytes(), "good.step").unwrap();
     let told: Vec<_> = import.warnings.iter().map(ToString::to_string).collect();
     let expected = [
@@ -75,7 +75,7 @@ fn what_a_cut_file_still_holds_is_drawn() {
     ];
     assert_eq!(told, expected);
     assert_eq!(import.model.parts.iter().map(|p| p.faces.len()).collect::<Vec<_>>(), [1, 2]);
-    // the solid and what places it are gone
+    // the solid and its placement are gone
     let (import, told) = without(&[], Some(65));
     let expected = "good.step:60: #64: shell without body: drawn with the file's first units";
     assert_eq!(told, [truncated(60), expected.into()]);
@@ -131,7 +131,7 @@ fn sound_when(list: &[Damage]) {
     list.iter().for_each(|d| d.apply(&mut text));
     let Ok(import) = step(&text, "t.step") else { return };
     random::assert_sound(&import);
-    // a warning that stands for one loss says all of it
+    // a warning of one loss states its whole reason
     for (why, _) in import.report.dropped.iter().filter(|(_, count)| *count == 1) {
         assert!(import.warnings.iter().any(|w| w.message.contains(&why)), "{why}: {:?}", import.warnings);
     }

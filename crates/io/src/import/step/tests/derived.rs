@@ -1,4 +1,4 @@
-//! Curves and surfaces defined by others, and surfaces without loops: against numbers worked out by hand.
+//! Derived curves and surfaces, and surfaces without loops: against numbers worked out by hand.
 
 use super::shapes::{curve, near, with};
 use super::{import, wrap};
@@ -364,10 +364,10 @@ fn edges_of_a_loop_in_any_order() {
         assert!((area - 16.0).abs() < 1e-9, "{order}: {area}");
         let sorted = order != "#105,#115,#125,#135";
         assert_eq!(
-            found.report.healed.iter().any(|(what, _)| what == "the edges of a loop were put in order"),
+            found.report.repaired.iter().any(|(what, _)| what == "the edges of a loop were put in order"),
             sorted,
             "{:?}",
-            found.report.healed
+            found.report.repaired
         );
         assert_eq!(found.warnings.iter().any(|w| w.message.contains("put in order")), sorted);
     }

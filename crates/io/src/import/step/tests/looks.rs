@@ -1,4 +1,4 @@
-//! Layers, hidden items, annotation and curves: told, not drawn.
+//! Layers, hidden items, annotation and curves: reported, not drawn.
 
 use super::colours::SHAPE;
 use super::import;
@@ -37,7 +37,7 @@ fn hidden_items_are_counted_and_not_drawn() {
 }
 
 #[test]
-fn layers_are_told_with_the_number_of_their_items() {
+fn layers_are_reported_with_the_number_of_their_items() {
     let layers = "#80=PRESENTATION_LAYER_ASSIGNMENT('a','',(#16,#26));#81=PRESENTATION_LAYER_ASSIGNMENT('b','',(#18));\
         #82=PRESENTATION_LAYER_ASSIGNMENT('a','',(#17));#83=PRESENTATION_LAYER_ASSIGNMENT('c','',#17);";
     let found = read(layers);
@@ -48,7 +48,7 @@ fn layers_are_told_with_the_number_of_their_items() {
 }
 
 #[test]
-fn hidden_in_one_occurrence_only_is_told() {
+fn hidden_in_one_occurrence_only_is_reported() {
     let found = read(
         "#80=CONTEXT_DEPENDENT_OVER_RIDING_STYLED_ITEM('',(),#18,#31,(#72));#81=INVISIBILITY((#80));#82=INVISIBILITY((#999));",
     );

@@ -42,7 +42,7 @@ fn face_counts_of_a_folder() {
         eprintln!(
             "{name}: faces {} placed {} expected {expected:?}, {coloured} coloured, {} bodies, {} edges, {}, \
              {milliseconds:.0} ms, {:?} {:?} {:?}",
-            found.0, found.1, report.bodies, report.edges, model.unit, report.warnings, report.dropped, report.healed,
+            found.0, found.1, report.bodies, report.edges, model.unit, report.warnings, report.dropped, report.repaired,
         );
         warnings.iter().take(4).for_each(|warning| eprintln!("    {warning}"));
         let Some((faces, occurrences)) = expected else { continue };

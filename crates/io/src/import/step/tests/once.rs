@@ -51,7 +51,7 @@ fn tessellated_copies_are_one_mesh() {
     let found = case(text);
     assert_eq!((counts(&found), found.report.meshes), ((1, 0, vec![]), 1));
     assert_eq!(found.report.ignored["tessellated copies beside the products"], 1);
-    // a shell of its own in the representation that nobody refers to: a copy all the same
+    // a shell in the representation that nothing refers to: a copy all the same
     let own = text
         .replace("REPRESENTATION('',(#8)", "REPRESENTATION('',(#80)")
         .replace("ENDSEC;\nEND", "#80=TESSELLATED_SHELL('',(#7),$);\nENDSEC;\nEND");
@@ -83,14 +83,14 @@ fn mapped_items_are_the_occurrences_that_they_place() {
     let unlisted = text.replace("(#179,#189,#197)", "(#197)");
     let found = case(&unlisted);
     assert_eq!((counts(&found), span_x(&found)), ((2, 12, vec![]), (20.0, 60.0)));
-    // one mapped item short: the second occurrence has no place, and that is told
+    // one mapped item short: the second occurrence has no place, with a warning
     let short =
         text.replace("(#179,#189,#197)", "(#179,#197)").replace("REPRESENTATION('o1',(#189)", "REPRESENTATION('o1',()");
     let told = ["case.stp:197: #190: occurrence without placement: placed at the origin of its parent"];
     assert_eq!(counts(&case(&short)), (2, 12, told.map(str::to_owned).to_vec()));
 }
 
-/// The product `lid` in `box` once, by a relationship; `mention` says more.
+/// The product `lid` in `box` once, by a relationship; `mention` adds another one.
 fn stated_and(items: &str, mention: &str) -> Import {
     let data = [
         TRIANGLE,
@@ -130,7 +130,7 @@ fn an_occurrence_of_a_relationship_is_not_drawn_by_its_mapped_item_too() {
     assert!(near(at(&found, 1), place) && near(at(&found, 0), DVec3::X));
 }
 
-/// A group of a product that only a ring of others holds is drawn, and told.
+/// A group of a product that only a ring of others holds is drawn, with a warning.
 #[test]
 fn a_ring_beside_a_tree_is_not_lost() {
     let ring = "#100=MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#104),#1);#101=SHAPE_REPRESENTATION('',(#24),#1);\
@@ -157,7 +157,7 @@ fn the_body_of_a_feature_is_none_of_the_part() {
     let found = import(&[SHAPE, product].concat());
     assert_eq!(counts(&found), (1, 2, vec![]));
     assert_eq!(found.report.ignored["bodies of features"], 1);
-    // a file that has lost the part's own shape draws what it has
+    // a file that has lost the part's own shape draws the feature's
     let lost = SHAPE.replace("(#18),#1)", "(),#1)").replace("#18=SHELL_BASED_SURFACE_MODEL('',(#17));", "");
     let found = import(&[&lost, product].concat());
     assert!(found.warnings.iter().any(|w| w.to_string().contains("#165: body without")), "{:?}", found.warnings);

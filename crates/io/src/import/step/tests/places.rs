@@ -14,7 +14,7 @@ fn read(representations: &str, items: &str) -> Import {
     step(text.replace(stated, &format!("TRANSFORMATION('','',{items})")).as_bytes(), "case.stp").unwrap()
 }
 
-/// Where the child's origin stands, and what was told.
+/// The origin of the child, and the warnings.
 fn found(import: &Import) -> (DVec3, Vec<String>) {
     assert_eq!(import.model.instances.len(), 1);
     let told = import.warnings.iter().map(ToString::to_string).collect();
@@ -32,7 +32,7 @@ fn each_item_belongs_to_the_representation_that_lists_it() {
     }
 }
 
-/// An item that both list says nothing; the other one still does.
+/// If both list an item, the other item still decides.
 #[test]
 fn one_item_is_enough() {
     for (list, with) in [("(#177,#181)", "(#177,#181,#159)"), ("(#177,#181)", "(#177)")] {
@@ -45,9 +45,9 @@ fn one_item_is_enough() {
     }
 }
 
-/// Items that nobody lists follow the order of the relationship, which is told.
+/// Items that no representation lists follow the order of the relationship, with a warning.
 #[test]
-fn items_that_nobody_lists_are_told() {
+fn unlisted_items_are_reported() {
     let text = include_str!("cases/representations_swapped.stp").replace("(#177,#181)", "(#177)");
     let text = text.replace("(#159,#155)", "(#155)");
     for (representations, x) in [("#168,#182", 30.0), ("#182,#168", -30.0)] {
@@ -60,7 +60,7 @@ fn items_that_nobody_lists_are_told() {
     }
 }
 
-/// A relationship that no CONTEXT_DEPENDENT_SHAPE_REPRESENTATION owns: the products say which one is the child.
+/// A relationship that no CONTEXT_DEPENDENT_SHAPE_REPRESENTATION owns: the products determine the child.
 #[test]
 fn relationships_by_themselves_know_their_child() {
     for representations in ["#41,#40", "#40,#41"] {

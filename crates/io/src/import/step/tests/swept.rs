@@ -1,4 +1,4 @@
-//! Swept solids: what lies within them and what does not, by dimensions worked out by hand.
+//! Swept solids: points inside and outside, by dimensions worked out by hand.
 
 use super::csg::{holds, one, read, told};
 use super::import;
@@ -245,7 +245,7 @@ fn swept_solids_are_bodies_too() {
     assert_eq!((part.closed, part.faces.len(), found.model.instances.len()), (true, 7, 1));
 }
 
-/// The profile of a solid of a kind that is not read is no face of its own.
+/// The profile of a solid of an unsupported kind is no face of its own.
 #[test]
 fn a_profile_is_not_drawn_by_itself() {
     let face = "#99=FACE_SURFACE('',(#98),#63,.T.);#98=FACE_OUTER_BOUND('',#97,.T.);#97=POLY_LOOP('',(#71,#72,#73))";
@@ -258,7 +258,7 @@ fn a_profile_is_not_drawn_by_itself() {
 }
 
 #[test]
-fn what_cannot_be_swept_is_told() {
+fn impossible_sweeps_are_reported() {
     let pipe = |from: &str, to: &str| {
         assert!(PIPE.contains(from), "{from}");
         format!("SWEPT_DISK_SOLID('',#130,1.,$,$,$);{}", PIPE.replace(from, to))

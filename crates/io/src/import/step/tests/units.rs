@@ -8,7 +8,7 @@ use crate::import::step::units::Units;
 
 const RADIAN: &str = "#90=(NAMED_UNIT(*) PLANE_ANGLE_UNIT() SI_UNIT($,.RADIAN.));";
 
-/// Units of the context `#1`, and what was told.
+/// Units of the context `#1`, and the warnings.
 fn told(data: &str) -> (Units, Vec<String>) {
     let text = super::wrap(data);
     let file = File::parse(text.as_bytes(), "t", &mut Warnings::new("t")).unwrap();
@@ -109,7 +109,7 @@ fn an_inch_box_with_a_complex_uncertainty_is_an_inch_wide() {
     assert!((bounds.max - bounds.min - glam::DVec3::splat(25.4)).length() < 1e-9, "{bounds:?}");
 }
 
-/// What is unreadable costs itself alone.
+/// An unreadable unit costs itself alone.
 #[test]
 fn damage_in_a_context_costs_one_thing() {
     let good = format!(

@@ -6,7 +6,7 @@ use crate::import::scad::lex::Lexer;
 use fontdb::Database;
 use glam::DVec2;
 
-/// A TrueType font: 1000 units an em, `A` and whatever else is missing are the square, advance 800.
+/// A TrueType font: 1000 units an em; `A` and the missing glyph are the square, advance 800.
 fn font(family: &str) -> Vec<u8> {
     let be = |words: &[i32]| words.iter().flat_map(|w| (*w as i16).to_be_bytes()).collect::<Vec<u8>>();
     let name: Vec<u8> = family.encode_utf16().flat_map(u16::to_be_bytes).collect();
@@ -109,7 +109,7 @@ fn fonts_that_are_not_there_are_named() {
     assert!(error.contains("Liberation Sans` is not installed"), "{error}");
     let error = drawn("text = \"A\", size = nan)", &fonts("Liberation Sans")).unwrap_err();
     assert!(error.contains("not finite"), "{error}");
-    // a font that is cut off is none
+    // a font that is cut off is refused
     let whole = font("Liberation Sans");
     let mut cut = Database::new();
     cut.load_font_data(whole[..whole.len() / 2].to_vec());

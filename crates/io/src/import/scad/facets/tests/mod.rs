@@ -105,7 +105,7 @@ fn meshes_become_convex_cells() {
         let flat = (p.x < 3.0 && p.y < 1.0 || p.x < 1.0 && p.y < 3.0) && p.min_element() > 0.0 && p.z < 2.0;
         assert_eq!(inner(p), flat, "{p}");
     }
-    // a budget that is spent is told
+    // a spent budget is an error
     let error = cells::of_mesh(&mesh.points, &mesh.triangles, &mut Budget(5)).unwrap_err();
     assert!(error.contains("more facets"), "{error}");
     // a mesh that does not close has no inside
@@ -301,7 +301,7 @@ fn blocks_of_drawings() {
     let (region, _) = read(&blocks, &insert("TT", ""), "");
     near(region.area(), 6.0);
     assert_eq!(bounds(&region), [200.0, 100.0, 204.0, 103.0]);
-    // what is not as the file states it
+    // faults of the file, each with its note
     for (blocks, entity, note) in [
         (vec![block("T", 7, &triangle)], insert("T", ""), "the base point of the block \"T\""),
         (blocks.to_vec(), insert("T", "70\n3\n44\n9\n"), "the block \"T\" is drawn once"),

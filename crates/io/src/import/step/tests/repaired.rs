@@ -59,7 +59,7 @@ fn a_line_off_its_vertices_gives_way() {
     let told = told(&i);
     assert_eq!(told.len(), 1, "{told:?}");
     assert!(told[0].ends_with(
-        "#26: edge healed: its curve misses its vertices by 4.243e0 mm: they and its faces say where it runs"
+        "#26: edge repaired: its curve misses its vertices by 4.243e0 mm: they and its faces say where it runs"
     ));
     let faces = &i.model.parts[0].faces;
     assert!(faces.len() == 6 && i.report.gap < 1e-12, "{}", i.report.gap);
