@@ -232,25 +232,26 @@ impl Frame<'_> {
         if let Some(pass) = resolve {
             times.scope(cmd, "resolve", || stages.shading.record(self, cmd, pass));
         }
-        let behind = stages.transparency.as_ref().map(|layers| &layers.behind);
+        let behind = stages.transparency.as_ref().and_then(|layers| layers.behind_layers());
         let mut written = Access::COLOUR_WRITE;
-        if let (Some(contact), Some(resolved)) = (&stages.contact, behind.or(stages.unmixed())) {
-            times.scope(cmd, "ambient", || contact.record(self, cmd, resolved));
-            written = Access::COMPUTE_WRITE;
+        if let Some(resolved) = behind.or(stages.unmixed()) {
+            if let Some(contact) = &stages.contact {
+                times.scope(cmd, "ambient", || contact.record(self, cmd, resolved));
+                written = Access::COMPUTE_WRITE;
+            }
+            if let Some(smooth_borders) = &stages.smooth_borders {
+                let test = self.trim_test();
+                times.scope(cmd, "borders", || smooth_borders.record(self, cmd, resolved, written, &test));
+                written = Access::COMPUTE_WRITE;
+            }
         }
         if let Some(linear) = &stages.linear {
-            let (resolved, test) = (&linear.resolved, self.trim_test());
             match &stages.smooth_trims {
                 Some(smooth_trims) => {
-                    times.scope(cmd, "coverage", || smooth_trims.record(self, cmd, resolved, written, &test));
+                    let test = self.trim_test();
+                    times.scope(cmd, "coverage", || smooth_trims.record(self, cmd, &linear.resolved, written, &test));
                 }
-                None => {
-                    if let Some(smooth_borders) = &stages.smooth_borders {
-                        times.scope(cmd, "borders", || smooth_borders.record(self, cmd, resolved, written, &test));
-                        written = Access::COMPUTE_WRITE;
-                    }
-                    times.scope(cmd, "show", || linear.show(self, cmd, written));
-                }
+                None => times.scope(cmd, "show", || linear.show(self, cmd, written)),
             }
         }
         if let (Some(layers), Some(solids)) = (&stages.transparency, self.solids()) {

@@ -1,4 +1,5 @@
-// Pass `border_mix`: mixes pixels at borders from the colours around them. One thread for each pixel of the list.
+// Pass `border_mix`: mixes pixels at borders from the colours around them. In scenes with meshes or Boolean solids it
+// evaluates the patches only, and pass `border_mean` mixes. One thread for each pixel of the list.
 //
 //     ┌────────────┐    sixteen points of the pixel, each in a row and a column of its own. At each point, the sheets
 //     │·  A  ╲     │    visible in the nine pixels around are evaluated, by their exact surfaces and trims; the nearest
@@ -6,8 +7,8 @@
 //     │  ·     ╲  ·│
 //     └────────────┘    a sheet has the colour of the pixel that shows it
 //
-// A sheet is one side of a face as it is seen: a face that hides a part of itself has several. Meshes and Boolean
-// solids are those at the pixel's centre. The trim test is that of one way (trim.glsl).
+// A sheet is one side of a face as it is seen: a face that hides a part of itself has several. The trim test is that of
+// one way (trim.glsl).
 #include "scene.glsl"
 #include "view.glsl"
 
@@ -18,9 +19,9 @@ layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
 layout(binding = 8, rgba32f) readonly uniform image2D resolved; // linear colour, depth; UNSEEN for background
 #include "border_pixel.glsl"
 layout(scalar, binding = 9) buffer List { BorderPixel list[]; };
-layout(scalar, binding = 10) readonly buffer Dispatch { uvec3 dispatch; uint count; };
+layout(scalar, binding = 10) readonly buffer Grids { BorderGrids grids; };
 
-#define TRIM_BINDING 11
+#define TRIM_BINDING 12
 #include "trim.glsl"
 #ifdef WITHIN_VOLUME
 #define VOLUME_BINDING (TRIM_BINDING + TRIM_BUFFERS)
@@ -35,20 +36,13 @@ layout(scalar, binding = 10) readonly buffer Dispatch { uvec3 dispatch; uint cou
 #include "face_point.glsl"
 #include "unmixed.glsl"
 
-const uint POINTS = 16u;
+#include "border_seen.glsl"
+// BORDER_POINTS a pixel of the list: where others than patches are asked, too
+layout(scalar, binding = 11) writeonly buffer SeenPoints { BorderPoint seen_points[]; };
+
 const uint MOST_SHEETS = 4u;
-const uint AROUND = 9u; // pixels, the pixel itself in the middle
-const uint OWN = 4u;
-const uint NOBODY = 15u;
 // Required distance to the points, in pixels: far less than a sixteenth.
 const float CLOSE_PX = 0.02;
-
-// The pixel's points: Hammersley's.
-vec2 point_of(uint k) {
-    return (vec2(k, bitfieldReverse(k) >> 28) + 0.5) / float(POINTS) - 0.5;
-}
-
-ivec2 around(ivec2 at, uint n) { return at + ivec2(n % 3u, n / 3u) - 1; }
 
 // A sheet, as visible in the pixel `at`.
 struct Sheet {
@@ -103,33 +97,18 @@ bool jumps_to(ivec2 at, ivec2 step_, float own) {
     return abs(ahead) >= abs(back) && jumps(back, ahead, own);
 }
 
-// The pixel, of those whose bit is set, that is nearest to a point of the middle pixel; NOBODY if no bit is set.
-uint nearest_of(uint pixels, vec2 from) {
-    uint nearest = NOBODY;
-    float least = UNSEEN;
-    for (uint n = 0u; n < AROUND; ++n) {
-        vec2 way = vec2(n % 3u, n / 3u) - 1.0 - from;
-        float distance_ = dot(way, way);
-        if ((pixels >> n & 1u) == 0u || distance_ >= least) continue;
-        least = distance_;
-        nearest = n;
-    }
-    return nearest;
-}
-
 void main() {
     uint n = thread_number();
-    if (n >= count) return;
+    if (n >= grids.count) return;
     ivec2 at = pixel_of(list[n]);
     uvec2 own = imageLoad(visibility, at).xy;
     bool own_patch = !sees_nothing(own.x) && !sees_other(own.x);
-    float depths[POINTS];
-    uint shown[POINTS]; // a pixel around
     float own_depth = imageLoad(resolved, at).a;
-    bool other = !own_patch && own_depth < UNSEEN;
-    for (uint k = 0u; k < POINTS; ++k) {
-        depths[k] = other ? own_depth : UNSEEN;
-        shown[k] = other ? OWN : NOBODY;
+    float depths[BORDER_POINTS];
+    uint shown[BORDER_POINTS]; // a pixel around
+    for (uint k = 0u; k < BORDER_POINTS; ++k) {
+        depths[k] = UNSEEN;
+        shown[k] = NOBODY;
     }
     uint no_patch = 0u; // bits of pixels around
     uint met[MOST_SHEETS]; // face, and pixel around
@@ -156,20 +135,19 @@ void main() {
     // a separate loop: threads that run together find their sheets at different pixels
     for (uint n = 0u; n < met_count; ++n) {
         Sheet s = sheet_at(around(at, met_from[n]));
-        for (uint i = 0u; i < POINTS; ++i) {
+        for (uint i = 0u; i < BORDER_POINTS; ++i) {
             float depth = depth_at(s, vec2(at) + 0.5 + point_of(i));
             if (!(depth < depths[i])) continue;
             depths[i] = depth;
             shown[i] = met_from[n];
         }
     }
-    vec4 sum = vec4(0.0);
-    for (uint k = 0u; k < POINTS; ++k) {
-        uint from = shown[k];
-        if (from == NOBODY) from = nearest_of(no_patch, point_of(k));
-        if (from == NOBODY) from = OWN; // a gap between faces
-        sum += unmixed_at(around(at, from));
+    if (SCENE_HAS_MESHES_OR_SOLIDS) {
+        uint first = n * BORDER_POINTS;
+        for (uint k = 0u; k < BORDER_POINTS; ++k) seen_points[first + k] = BorderPoint(depths[k], shown[k]);
+        return;
     }
-    sum /= float(POINTS);
-    list[n].mean = uvec2(packHalf2x16(sum.rg), packHalf2x16(sum.ba));
+    vec4 sum = vec4(0.0);
+    for (uint k = 0u; k < BORDER_POINTS; ++k) sum += shown_at(at, k, shown[k], no_patch);
+    list[n].mean = packed_mean(sum);
 }

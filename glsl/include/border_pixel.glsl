@@ -1,10 +1,17 @@
-// A pixel at a border, in the list of passes `border_find`, `border_mix` and `border_write`. Needs `frame`.
+// A pixel at a border, in the list of passes `border_find` to `border_write`. Needs `frame`.
 #ifndef BORDER_PIXEL_GLSL
 #define BORDER_PIXEL_GLSL
 
 struct BorderPixel {
     uint pixel; // column, row << 16
     uvec2 mean; // linear colour times opacity, and opacity: four halves
+};
+
+// How many pixels the list has, and the grids of the next passes: of a thread a pixel, and of a thread a point.
+struct BorderGrids {
+    uvec3 pixels;
+    uint count;
+    uvec3 points;
 };
 
 ivec2 pixel_of(BorderPixel border) { return ivec2(border.pixel & 0xffffu, border.pixel >> 16); }

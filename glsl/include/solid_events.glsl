@@ -67,53 +67,12 @@ const uint RESUME_BEFORE = 0x80000000u;
 // Whether some leaf is a shell; the code for shells is compiled in only then.
 layout(constant_id = 13) const bool SOLIDS_HAVE_SHELLS = true;
 
-// Whether lists of items that rays are followed through come after the union's.
-layout(constant_id = 14) const bool SOLIDS_ARE_FOLLOWED = false;
-
 #include "crossing.glsl"
 #include "leaf_span.glsl"
+#include "solid_walk.glsl"
 
 layout(location = 0) out uvec2 visible;
 layout(location = 1) out uint operand_uv; // of a spline face, in scenes with spline operands
-
-const uint NOBODY = 0xffffffffu;
-
-// Number of stored spans; those of further leaves are computed in every scan.
-const uint KEPT = 12u;
-
-// The purpose of a scan.
-const uint SEARCH = 0u; // the next event
-const uint OWNER = 1u;  // whether flipping leaf `asked` changes the solid before or behind t
-const uint SIDE = 2u;   // the side of leaf `asked` that ends at t
-
-// The first positive leaf, and the first subtracted leaf, whose spans begin or end at depth t.
-struct Candidates {
-    uint positive;
-    uint negative;
-};
-
-// One scan over the tile's leaves.
-struct Walk {
-    uint at;        // behind depth t
-    uint at_before; // in front of it
-    float next;     // the next depth at which a leaf that the walk behind t tests begins or ends
-    Candidates found;
-    uint candidates;
-};
-
-// Adds leaf i of the tile at depth t; leaf `other` is flipped, and candidates start after `after`.
-void meet(inout Walk walk, uint i, TileLeaf here, Crossing c, uint other, uint after) {
-    if (i == walk.at) {
-        walk.at = c.inside != (i == other) ? here.in_exit : here.out_exit;
-        bool shut = walk.at == EXIT_FALSE && (here.leaf & TILE_LEAF_GATE) != 0u;
-        walk.next = shut ? c.next : min(walk.next, c.next);
-    }
-    if (i == walk.at_before) walk.at_before = c.before != (i == other) ? here.in_exit : here.out_exit;
-    if (i < after || !c.ends) return;
-    ++walk.candidates;
-    if ((here.of & LEAF_NEGATIVE) != 0u) walk.found.negative = min(walk.found.negative, i);
-    else walk.found.positive = min(walk.found.positive, i);
-}
 
 void main() {
     uint pixel = pixel_in_band(frame, uvec2(gl_FragCoord.xy));
@@ -124,138 +83,40 @@ void main() {
         if (resume_point == 0u) discard;
     }
 #endif
-    uint n = tile_in_band(frame, uvec2(gl_FragCoord.xy));
-    uint first = min(word_at(tile_starts, n), frame.tile_leaf_capacity);
-    uint end = min(word_at(tile_starts, n + 1u), frame.tile_leaf_capacity);
-    if (SOLIDS_ARE_FOLLOWED) {
-        while (end > first && leaf_number(tile_leaf_at(tile_leaves, end - 1u)) >= frame.followed_leaf) --end;
-    }
-    uint entry = word_at(tile_entries, first_of_band(frame) + n);
-    if (entry == EXIT_FALSE) discard;
-    Ray ray = eye_ray(frame, gl_FragCoord.xy);
-    uint first_fragment = SOLIDS_HAVE_SHELLS ? fragment_starts[pixel] : 0u;
-    uint fragment_count = SOLIDS_HAVE_SHELLS ? fragment_counts[pixel] : 0u;
-    Span kept[KEPT];
-    uint purpose = SEARCH;
-    uint asked = NOBODY;
-    uint after = 0u;        // candidates from here on
-    uint fallback = NOBODY;
-    bool negatives = false; // the candidates are the subtracted leaves
-    uint side = 0u;
-    uint word = SEEN_SOLID;
-    operand_uv = 0u;
-    float t = frame.near;
-    bool before = true; // the near plane cuts the solid: what is inside there is not entered
+    Meets meets = leaves_at(uvec2(gl_FragCoord.xy));
+    if (meets.entry == EXIT_FALSE) discard;
+    meets.first_fragment = SOLIDS_HAVE_SHELLS ? fragment_starts[pixel] : 0u;
+    meets.fragment_count = SOLIDS_HAVE_SHELLS ? fragment_counts[pixel] : 0u;
+    Progress p = begin_walk();
 #ifdef FACE_IS_FOUND
     uvec2 face = imageLoad(found, ivec2(gl_FragCoord.xy)).xy;
     if (face.x == 0u) discard;
-    t = uintBitsToFloat(face.y);
-    before = false;
+    p.t = uintBitsToFloat(face.y);
+    p.before = false;
 #else
     if (nth > 0u) {
-        before = (resume_point & RESUME_BEFORE) != 0u;
-        t = uintBitsToFloat(resume_point & ~RESUME_BEFORE);
+        p.before = (resume_point & RESUME_BEFORE) != 0u;
+        p.t = uintBitsToFloat(resume_point & ~RESUME_BEFORE);
     }
-    float begun = t;
-    bool begun_before = before;
+    float begun = p.t;
+    bool begun_before = p.before;
 #endif
-    // four events a leaf, at most as many tests of owners, and one for the side
-    uint most = 8u * (end - first) + 2u * fragment_count + 4u;
-    bool done = false;
-    bool passed = false; // the far plane
-    uint two = min(end - first, 1u) + 1u;
-    for (uint scan = 0u; scan < most && !done; ++scan) {
-        // the spans of [first, known) are stored, those of [from, to) computed: all at first, later those that are not
-        // stored, and that of leaf `asked`, to find its side
-        bool tells = purpose == SIDE;
-        uint from = tells ? asked : scan == 0u ? first : min(first + KEPT, end);
-        uint to = !tells ? end : asked == NOBODY ? from : asked + 1u;
-        uint known = tells ? first : from;
-        Walk walk = Walk(entry, entry, NEVER, Candidates(NOBODY, NOBODY), 0u);
-        for (uint i = first; i < known; ++i) {
-            TileLeaf here = tile_leaf_at(tile_leaves, i);
-            Crossing c;
-            uint last;
-            if (SOLIDS_HAVE_SHELLS && (here.of & LEAF_SHELL) != 0u) {
-                c = crossing_of(here.of >> LEAF_FLAG_BITS, t, first_fragment, fragment_count, last);
-            } else {
-                c = crossing_of(kept[i - first], t);
-            }
-            meet(walk, i, here, c, purpose == OWNER ? asked : NOBODY, after);
-        }
-        for (uint i = from; i < to; ++i) {
-            TileLeaf here = tile_leaf_at(tile_leaves, i);
-            Crossing c;
-            if (SOLIDS_HAVE_SHELLS && (here.of & LEAF_SHELL) != 0u) {
-                uint last;
-                c = crossing_of(here.of >> LEAF_FLAG_BITS, t, first_fragment, fragment_count, last);
-                if (tells) {
-                    Fragment f = fragment_at(fragments, last);
-                    side = f.what;
-                    word = (f.shell & FRAGMENT_PATCH) != 0u ? SEEN_OPERAND : SEEN_SOLID;
-                    operand_uv = f.uv;
-                }
-            } else {
-                Span s = leaf_span(here.of, ray.o, ray.d, t, side);
-                if (i - first < KEPT) kept[i - first] = s;
-                c = crossing_of(s, t);
-            }
-            meet(walk, i, here, c, purpose == OWNER ? asked : NOBODY, after);
-        }
-        // a driver that has ended a loop ends all later loops, too, including this one of two steps; the scan is then
-        // invalid
-        uint steps = 0u;
-        for (uint i = 0u; i < two; ++i) ++steps;
-        if (steps != two) break;
-        bool inside = walk.at == EXIT_TRUE;
-        if (purpose == SIDE) {
-            done = true;
-        } else if (purpose == OWNER) {
-            // the owner is the first leaf that by itself changes the solid, in front of the event or behind it
-            uint other = negatives ? walk.found.negative : walk.found.positive;
-            if (!inside || walk.at_before == EXIT_TRUE) {
-                purpose = SIDE;
-            } else if (other != NOBODY) {
-                asked = other;
-                after = other + 1u;
-            } else if (!negatives) {
-                negatives = true;
-                asked = NOBODY; // again from the first leaf, for subtracted leaves
-                after = first;
-            } else {
-                asked = fallback;
-                purpose = SIDE;
-            }
-        } else if (inside && !before) {
-            asked = min(walk.found.positive, walk.found.negative);
-            if (walk.found.positive != NOBODY) asked = walk.found.positive;
-            fallback = asked;
-            after = asked + 1u;
-            negatives = walk.found.positive == NOBODY;
-            purpose = walk.candidates > 1u ? OWNER : SIDE;
-        } else {
-            if (walk.next >= frame.far) {
-                passed = true;
-                break;
-            }
-            before = inside;
-            t = walk.next;
-        }
-    }
-    bool ended = done || passed;
+    follow(p, meets, eye_ray(frame, gl_FragCoord.xy));
+    bool ended = p.done || p.passed;
 #ifdef FACE_IS_FOUND
     if (!ended) atomicAdd(counters.clamps, 1u);
 #else
     // resume from the event of the last valid scan, if it is farther on
-    bool goes_on = !ended && (t > begun || t == begun && before != begun_before);
+    bool goes_on = !ended && (p.t > begun || p.t == begun && p.before != begun_before);
     if (goes_on) atomicMax(counters.ray_segments, nth + 1u);
-    if (ray_segments > 1u) resume_points[pixel] = goes_on ? floatBitsToUint(t) | (before ? RESUME_BEFORE : 0u) : 0u;
+    if (ray_segments > 1u) resume_points[pixel] = goes_on ? floatBitsToUint(p.t) | (p.before ? RESUME_BEFORE : 0u) : 0u;
     if (goes_on && nth + 1u == ray_segments && is_most == 0u) atomicOr(counters.failed, FAILED_RAY_SEGMENTS);
     else if (!ended && (!goes_on || nth + 1u == ray_segments)) atomicAdd(counters.clamps, 1u);
 #endif
-    if (!done) discard;
-    visible = uvec2(word | side, floatBitsToUint(t));
-    gl_FragDepth = reversed_depth(frame, t) / (frame.perspective != 0u ? t : 1.0);
+    if (!p.done) discard;
+    operand_uv = p.operand_uv;
+    visible = uvec2(p.word | p.side, floatBitsToUint(p.t));
+    gl_FragDepth = reversed_depth(frame, p.t) / (frame.perspective != 0u ? p.t : 1.0);
 }
 
 #endif

@@ -29,7 +29,8 @@ layout(scalar, binding = 8) readonly buffer FragmentStarts { uint fragment_start
 layout(scalar, binding = 9) readonly buffer FragmentCounts { uint fragment_counts[]; };
 layout(binding = 10) uniform usamplerBuffer fragments;
 layout(scalar, binding = 11) buffer CountersBuffer { Counters counters; };
-layout(binding = 12, rgba32f) readonly uniform image2D behind; // linear colour, depth; UNSEEN for background
+layout(binding = 12, rgba32f) readonly uniform image2D behind; // linear colour, depth; for background UNSEEN, or less an
+// opacity if it is mixed with what is beside it (pass `border_write`)
 // of spline operands
 layout(scalar, binding = 13) readonly buffer Views { View views[]; };
 layout(scalar, binding = 14) readonly buffer FaceInstances { FaceInstance face_instances[]; };
@@ -183,7 +184,8 @@ void main() {
     uint first_fragment = SOLIDS_HAVE_SHELLS ? fragment_starts[pixel] : 0u;
     uint fragment_count = SOLIDS_HAVE_SHELLS ? fragment_counts[pixel] : 0u;
     vec4 under = FOLLOWED_FOR == FOR_THICKNESS ? vec4(0.0, 0.0, 0.0, UNSEEN) : imageLoad(behind, ivec2(gl_FragCoord.xy));
-    float stop = under.a;
+    bool mixed = under.a < 0.0;
+    float stop = mixed ? UNSEEN : under.a;
 
     vec3 sum = vec3(0.0); // of layers
     float rest = 1.0;     // transparency of all layers so far
@@ -418,8 +420,13 @@ void main() {
     }
     float alpha = 1.0; // of the colours behind
     bool nothing = stop >= UNSEEN;
-    if (nothing) under.rgb = frame.background.rgb;
-    if (nothing) alpha = max(frame.background.a, 0.0);
+    if (mixed) {
+        alpha = -under.a;
+        under.rgb /= alpha;
+    } else if (nothing) {
+        alpha = max(frame.background.a, 0.0);
+        under.rgb = frame.background.rgb;
+    }
     float opacity = 1.0 - rest * (1.0 - alpha);
     if (opacity == 0.0 && frame.background.a < 0.0) discard;
     vec3 colour = opacity > 0.0 ? (sum + rest * alpha * under.rgb) / opacity : under.rgb;

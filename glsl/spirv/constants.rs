@@ -37,22 +37,28 @@ pub mod border_cells {
     pub const BORDER_COLUMNS: f32 = 128.0;
 }
 pub mod border_find {
+    pub const FACET: u32 = 0xfffffffe;
     pub const GROUP: u32 = 64;
     pub const LANES: i32 = 64;
     pub const OTHER: u32 = 0xffffffff;
+    pub const POINTS: u32 = 16;
     pub const ROWS: i32 = 16;
 }
 pub mod border_mix {
-    pub const AROUND: u32 = 9;
     pub const CLOSE_PX: f32 = 0.02;
     pub const MOST_SHEETS: u32 = 4;
-    pub const NOBODY: u32 = 15;
-    pub const OWN: u32 = 4;
-    pub const POINTS: u32 = 16;
 }
 pub mod border_pixel {
     pub const JUMP_OF_CLIMB: f32 = 0.5;
     pub const JUMP_PX: f32 = 2.0;
+}
+pub mod border_seen {
+    pub const AROUND: u32 = 9;
+    pub const BORDER_POINTS: u32 = 16;
+    pub const NOBODY: u32 = 15;
+    pub const OWN: u32 = 4;
+    pub const ROWS_OF_FIRST: u32 = 0x50c84f2a;
+    pub const ROWS_OF_LAST: u32 = 0x6b1e73d9;
 }
 pub mod bound {
     pub const DEPTH_SHARE: f32 = 1.5;
@@ -179,6 +185,14 @@ pub mod gap_surface {
     pub const RADIUS_OF_INSIDE: u32 = 1;
     pub const RADIUS_OF_OUTSIDE: u32 = 2;
 }
+pub mod mesh_walk {
+    pub const MOST_CROSSED: u32 = 32;
+    pub const NO_TRIANGLE: u32 = 0xffffffff;
+    pub const WALK_GONE: u32 = 1;
+    pub const WALK_MET: u32 = 0;
+    pub const WALK_TOO_FAR: u32 = 2;
+    pub const WEIGHT_ROUNDING: f32 = 1e-5;
+}
 pub mod on_pixel {
     pub const ON_PIXEL_PX: f32 = 0.05;
 }
@@ -286,12 +300,7 @@ pub mod solid_cst {
     pub const WALK: u32 = 1;
 }
 pub mod solid_events {
-    pub const KEPT: u32 = 12;
-    pub const NOBODY: u32 = 0xffffffff;
-    pub const OWNER: u32 = 1;
     pub const RESUME_BEFORE: u32 = 0x80000000;
-    pub const SEARCH: u32 = 0;
-    pub const SIDE: u32 = 2;
 }
 pub mod solid_layers {
     pub const BOX: f32 = 1e-6;
@@ -311,6 +320,13 @@ pub mod solid_rects {
 pub mod solid_sheet {
     pub const NO_LEAF: u32 = 0xffffffff;
     pub const SPLINE_SHEET: u32 = 0xc0000000;
+}
+pub mod solid_walk {
+    pub const KEPT: u32 = 12;
+    pub const NO_LEAF: u32 = 0xffffffff;
+    pub const OWNER: u32 = 1;
+    pub const SEARCH: u32 = 0;
+    pub const SIDE: u32 = 2;
 }
 pub mod solids {
     pub const EXIT_FALSE: u32 = 0xfffffffe;

@@ -1,4 +1,14 @@
 // Written by build.rs from the shaders: what they read is what Rust writes.
+const _: () = assert!(core::mem::offset_of!(crate::abi::BorderGrids, pixels) == 0);
+const _: () = assert!(core::mem::offset_of!(crate::abi::BorderGrids, count) == 12);
+const _: () = assert!(core::mem::offset_of!(crate::abi::BorderGrids, points) == 16);
+const _: () = assert!(core::mem::size_of::<crate::abi::BorderGrids>() == 28);
+const _: () = assert!(core::mem::offset_of!(crate::abi::BorderPixel, pixel) == 0);
+const _: () = assert!(core::mem::offset_of!(crate::abi::BorderPixel, mean) == 4);
+const _: () = assert!(core::mem::size_of::<crate::abi::BorderPixel>() == 12);
+const _: () = assert!(core::mem::offset_of!(crate::abi::BorderPoint, depth) == 0);
+const _: () = assert!(core::mem::offset_of!(crate::abi::BorderPoint, shown) == 4);
+const _: () = assert!(core::mem::size_of::<crate::abi::BorderPoint>() == 8);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Cell, box_min) == 0);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Cell, speed_u) == 12);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Cell, box_max) == 16);

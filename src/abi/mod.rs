@@ -1,10 +1,11 @@
 //! The structures that Rust and GLSL share, in scalar layout. Twins of `glsl/include/scene.glsl`,
-//! `view.glsl`, `edges.glsl`, `exact.glsl`, `solids.glsl`, `tiles.glsl` and `sun.glsl`; the build asserts every offset and stride
+//! `view.glsl`, `border_pixel.glsl`, `border_seen.glsl`, `edges.glsl`, `exact.glsl`, `solids.glsl`, `tiles.glsl` and `sun.glsl`; the build asserts every offset and stride
 //! against the compiled shaders.
 
 // the GLSL states the meaning and units of the fields; the build compares both
 #![allow(missing_docs)]
 
+mod borders;
 mod edges;
 mod exact;
 mod frame;
@@ -13,6 +14,7 @@ mod scene;
 mod solids;
 mod sun;
 
+pub use borders::*;
 pub use edges::*;
 pub use exact::*;
 pub use frame::*;

@@ -1,6 +1,5 @@
 //! The stages that a scene needs: passes, made with the scene, and buffers, made for pictures of one size.
 
-use super::antialiasing::border_mix::BorderMix;
 use super::antialiasing::coverage::Coverage;
 use super::antialiasing::samples::{self, MoreSamples};
 use super::antialiasing::smooth_borders::{self, SmoothBorders};
@@ -40,7 +39,7 @@ pub(crate) struct Passes {
     linear: Option<Arc<linear::Passes>>,
     contact: Option<Arc<contact::Passes>>,
     smooth_trims: Option<Arc<Coverage>>,
-    smooth_borders: Option<Arc<BorderMix>>,
+    smooth_borders: Option<Arc<smooth_borders::Passes>>,
     edges: Option<Arc<edges::Passes>>,
 }
 
@@ -65,7 +64,7 @@ impl Passes {
         let over = || {
             let transparency = transparency::Passes::new(device, data, formats)?;
             let smooth_trims = smooth_trims::pass(device, data, formats)?;
-            let smooth_borders = smooth_borders::pass(device, data, test)?;
+            let smooth_borders = smooth_borders::Passes::new(device, data, test)?;
             let edges = edges::Passes::new(device, data, formats, test)?;
             Ok::<_, GpuError>((transparency, smooth_trims, smooth_borders, edges))
         };

@@ -78,10 +78,11 @@ pub enum Smooth {
     /// [`TrimWay::Exact`](super::TrimWay::Exact). Other settings that exclude it give
     /// [`RenderError::SmoothTrims`](crate::renderer::RenderError::SmoothTrims).
     Trims,
-    /// Borders of faces, including silhouettes and folds, by sixteen points of each pixel at a border. At each point,
-    /// the surfaces visible in the surrounding pixels are evaluated exactly. A mesh or Boolean solid is smooth where a
-    /// face in front of it ends, not along its own borders. Pictures with several samples, transparency or highlights
-    /// stay as they are.
+    /// Borders of faces, meshes and Boolean solids, including silhouettes, folds and creases, by sixteen points of each
+    /// pixel at a border. At each point, the faces and meshes visible in the surrounding pixels are evaluated exactly,
+    /// and so is the whole Boolean expression. Solids cut from meshes or spline parts are smooth only where a face or
+    /// mesh in front of them ends. Transparent things keep their rough outlines; what is opaque behind them is smooth.
+    /// Pictures with several samples stay as they are.
     Borders,
 }
 

@@ -320,6 +320,9 @@ impl SceneData {
             data.push_instance(&instance, origin, 0..0, 0);
             data.meshes.push_outward(mesh, origin, data.instances.len() as u32 - 1);
         }
+        if data.smooths_borders() {
+            data.meshes.find_neighbours();
+        }
         data.isolated = isolated.map_or_else(Vec::new, |isolated| isolated.meshes);
         data.push_operands(trim);
         if !data.links.is_empty() {

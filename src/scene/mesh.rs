@@ -6,6 +6,7 @@
 //! ```
 
 use super::face::{DEFAULT_COLOUR, pack_colour};
+use super::neighbours::neighbours;
 use crate::abi;
 use crate::math::octahedral;
 use crate::model::{Mesh, Model};
@@ -22,6 +23,8 @@ pub(crate) struct Meshes {
     pub positions: Vec<[f32; 3]>,
     /// Indices into `positions`.
     pub triangles: Vec<[u32; 3]>,
+    /// Three for each triangle, if borders are smooth ([`neighbours`](super::neighbours)).
+    pub neighbours: Vec<u32>,
     /// Octahedral normals, one a corner of a triangle; empty for meshes without normals.
     pub normals: Vec<u32>,
     /// The corners of each mesh's triangles, and the mesh's range of `instances`.
@@ -58,6 +61,11 @@ impl Meshes {
     /// Adds a mesh of which only outer faces are drawn.
     pub(super) fn push_outward(&mut self, mesh: &Mesh, origin: DVec3, instance: u32) {
         self.push(mesh, origin, true, &[instance]);
+    }
+
+    /// Finds which triangles share sides.
+    pub(super) fn find_neighbours(&mut self) {
+        self.neighbours = neighbours(&self.positions, &self.triangles, &self.meshes);
     }
 
     fn push(&mut self, mesh: &Mesh, origin: DVec3, solid: bool, placed: &[u32]) {

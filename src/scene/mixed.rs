@@ -9,16 +9,22 @@ impl SceneData {
         self.smooth == Smooth::Trims && self.has_patches && self.trim_way() == Some(TakenWay::Exact)
     }
 
-    /// Pass `border_mix` mixes pixels at the borders of faces. The scene has patches, one sample a pixel, and no
-    /// layers.
+    /// Pass `border_write` mixes pixels at borders. The scene has something that points are asked for, and one sample a
+    /// pixel.
     pub(crate) fn smooths_borders(&self) -> bool {
-        let alone = self.samples == Samples::One && !self.is_layered;
-        self.smooth == Smooth::Borders && self.has_patches && alone
+        let alone = self.samples == Samples::One;
+        let asked = self.has_patches || self.has_meshes() || self.has_smooth_solids();
+        self.smooth == Smooth::Borders && asked && alone
+    }
+
+    /// The scene has Boolean solids that points are asked for: all operands have equations.
+    pub(crate) fn has_smooth_solids(&self) -> bool {
+        self.solids.kinds().is_some() && self.solids.shell_leaves.is_empty()
     }
 
     /// Pass `resolve` draws linear colours and depths for later passes. In scenes with layers it draws them into the
     /// image behind the layers instead.
     pub(crate) fn is_mixed(&self) -> bool {
-        self.smooths_trims() || self.smooths_borders() || self.ambient.is_some() && !self.is_layered
+        self.smooths_trims() || !self.is_layered && (self.smooths_borders() || self.ambient.is_some())
     }
 }

@@ -32,6 +32,7 @@ mod kept;
 mod link;
 mod mesh;
 mod mixed;
+mod neighbours;
 mod operand_edges;
 mod parts;
 mod picking;

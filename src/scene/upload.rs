@@ -105,6 +105,8 @@ pub(crate) struct MeshBuffers {
     pub instances: Buffer,
     pub positions: Buffer,
     pub triangles: Buffer,
+    /// Of the triangles; `None` where no borders are smooth.
+    pub neighbours: Option<Buffer>,
     pub normals: Buffer,
     /// Corners of triangles, and mesh instances, of each draw.
     pub draws: Vec<(Range<u32>, Range<u32>)>,
@@ -289,6 +291,9 @@ impl Scene {
                         instances: persistent(&mut uploads, cmd, "mesh instances", &m.instances)?,
                         positions: persistent(&mut uploads, cmd, "mesh positions", &m.positions)?,
                         triangles: persistent(&mut uploads, cmd, "mesh triangles", &m.triangles)?,
+                        neighbours: (!m.neighbours.is_empty())
+                            .then(|| persistent(&mut uploads, cmd, "mesh neighbours", &m.neighbours))
+                            .transpose()?,
                         normals: persistent(&mut uploads, cmd, "mesh normals", &m.normals)?,
                         draws: m.draws.clone(),
                         outward: m.outward,

@@ -7,6 +7,8 @@
 use crate::edges::{blocks, contrast_errors, coverage_errors, covered, root_mean_square};
 use crate::shapes;
 use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, watched_with};
+use crate::watched::limited;
+use selvedge::gpu::LowerLimits;
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, TrimWay};
 use selvedge_check::Tracer;
@@ -55,8 +57,21 @@ fn borders_are_as_the_frame_sixteen_times_as_large() {
         let on = |bit: usize| if (i + 1) & bit != 0 { 0.9 } else { 0.1 };
         face.colour = Some([on(1), on(2), on(4), 1.0]);
     }
-    // of the last one half is a Boolean solid, which is rough by itself
-    for (model, bound) in [(cube, 0.2), (shapes::cylinder(), 0.25), (shapes::wave(), 0.25), (shapes::beside(), 0.7)] {
+    let ground = shapes::solids::solid(
+        "A - B",
+        vec![shapes::solids::block([-1.0; 3], [1.0, 1.0, 0.4]), shapes::solids::ball(0.9, 0.6)],
+    );
+    let models = [
+        (cube, 0.2),
+        (shapes::cylinder(), 0.25),
+        (shapes::wave(), 0.25),
+        // a face and a mesh, a mesh that hides itself, one of many facets, and a Boolean solid
+        (shapes::beside(), 0.25),
+        (shapes::whole_mesh("torus", shapes::torus_mesh(24)), 0.25),
+        (shapes::whole_mesh("ball", shapes::ball_mesh(5)), 0.25),
+        (ground, 0.25),
+    ];
+    for (model, bound) in models {
         for camera in [perspective(&model, SIZE), orthographic(&model, SIZE)] {
             let mut fine = watched_with(&model, settings(Smooth::None, TrimWay::Auto));
             let blocks = blocks(&mut fine, &camera);
@@ -72,8 +87,8 @@ fn borders_are_as_the_frame_sixteen_times_as_large() {
 }
 
 /// All images but the colour are the same with and without smooth borders, bit for bit. So is the colour of pixels that
-/// see nothing, as their eight neighbours do, and of pixels whose neighbours see the same face in a nearly straight
-/// slope.
+/// see nothing, as their eight neighbours do, and of pixels whose neighbours see the same face, in one colour where it is
+/// that of a mesh or a solid, which have creases, and in a nearly straight slope.
 #[test]
 fn nothing_else_changes() {
     let (width, height) = (SIZE.0 as usize, SIZE.1 as usize);
@@ -84,6 +99,8 @@ fn nothing_else_changes() {
             [Smooth::None, Smooth::Borders].map(|smooth| draw(&shape.model, settings(smooth, TrimWay::Exact), &camera));
         let same_colour = Picture { colour: before.colour.clone(), stats: before.stats.clone(), ..after.clone() };
         assert_identical(&before, &same_colour, shape.name);
+        let has_creases =
+            !shape.model.solids.is_empty() || shape.model.parts.iter().any(|part| !part.meshes.is_empty());
         let straight = |i: usize| {
             [1, width - 1, width, width + 1].iter().all(|way| {
                 let [a, b] = [before.depth[i - way], before.depth[i + way]].map(|depth| depth - before.depth[i]);
@@ -96,7 +113,8 @@ fn nothing_else_changes() {
             let same = around.into_iter().all(|face| face == before.face[i]);
             // placed copies share the number of a face, so models with several are left out
             let one = before.face[i] == 0 || shape.model.instances.len() == 1 && straight(i);
-            if same && one {
+            let even = (0..9).all(|k| before.colour[(y + k / 3 - 1) * width + x + k % 3 - 1] == before.colour[i]);
+            if same && one && (even || !has_creases) {
                 alone += 1;
                 on_faces += usize::from(before.face[i] != 0);
                 assert_eq!(before.colour[i], after.colour[i], "{}: pixel {x} {y}", shape.name);
@@ -121,10 +139,45 @@ fn only_smooth_borders_have_what_they_need() {
             .count()
     };
     let smooth = settings(Smooth::Borders, TrimWay::Auto);
-    // four passes, the image, the list and its dispatch
+    // four passes, the image, the list and its grids
     assert_eq!(of_borders(&shapes::plate(), smooth), 7);
     assert_eq!(of_borders(&shapes::wave(), smooth), 7);
     assert_eq!(of_borders(&shapes::plate(), settings(Smooth::None, TrimWay::Auto)), 0);
     assert_eq!(of_borders(&shapes::plate(), SceneSettings { samples: Samples::Four, ..smooth }), 0);
-    assert_eq!(of_borders(&shapes::solids::holes(2), smooth), 0);
+    // no patches, but a mesh or a solid, the mean of the points, and these
+    let mesh = shapes::whole_mesh("ball", shapes::ball_mesh(1));
+    assert_eq!(of_borders(&shapes::solids::holes(2), smooth), 9);
+    assert_eq!(of_borders(&mesh, smooth), 9);
+    assert_eq!(of_borders(&mesh, settings(Smooth::None, TrimWay::Auto)), 0);
+    // a face and a mesh
+    assert_eq!(of_borders(&shapes::beside(), smooth), 10);
+}
+
+/// Less room than a list of the whole picture takes: rows of it one after another, the same bit for bit.
+#[test]
+fn bands_make_the_same_picture() {
+    let size = (500, 80);
+    let solid = shapes::solids::holes(2);
+    let mesh = shapes::whole_mesh("torus", shapes::torus_mesh(24));
+    // bytes that hold 40 rows, of which a band takes 32
+    for (model, bytes) in [
+        (shapes::plate(), 12 * 500 * 40),
+        (shapes::beside(), 128 * 500 * 40),
+        (mesh, 128 * 500 * 40),
+        (solid, 128 * 500 * 40),
+    ] {
+        let camera = perspective(&model, size);
+        let smooth = settings(Smooth::Borders, TrimWay::Exact);
+        let mut in_bands = limited(LowerLimits { storage_range: Some(bytes), ..LowerLimits::NONE });
+        in_bands.upload_with(&model, smooth).unwrap();
+        let banded = render(&mut in_bands, &camera);
+        let pixels = in_bands.objects().iter().filter(|name| *name == "border pixels").count();
+        assert_eq!(pixels, 2, "{}: as many lists", model.name);
+        assert_silent(in_bands);
+        let whole = draw(&model, smooth, &camera);
+        assert_identical(&whole, &banded, &model.name);
+        let rough = draw(&model, settings(Smooth::None, TrimWay::Exact), &camera);
+        let mixed = whole.colour.iter().zip(&rough.colour).filter(|(a, b)| a != b).count();
+        assert!(mixed > 200, "{}: {mixed} pixels are mixed", model.name);
+    }
 }

@@ -99,7 +99,7 @@ pub struct EdgeArgs {
     /// Samples of each pixel's colour, 1, 4 or 8: smooth edges, at about as many times the cost
     #[arg(long, value_name = "N", default_value = "1")]
     pub samples: Samples,
-    /// Borders that are smooth in pictures of one sample: borders, of all faces; trims, of trimmed faces, by the area
+    /// Borders that are smooth in pictures of one sample: borders, of everything; trims, of trimmed faces, by the area
     /// that they cover of a pixel, with the exact way to trim; or none
     #[arg(long, value_name = "none|trims|borders")]
     smooth: Option<Smooth>,

@@ -1,4 +1,5 @@
-//! Pass `border_mix`: pixels at the borders of faces are mixed from the colours around them.
+//! Passes `border_find`, `border_mix` and `border_write`: pixels at the borders of faces are mixed from the colours around
+//! them.
 //!
 //! ```text
 //!   visibility, resolved ──find──▶ list of pixels ──mix──▶ their means ──write──▶ resolved
@@ -7,57 +8,87 @@
 //!        │·  A  ╲     │    there, by its exact point and its trims?
 //!        │    ·  ╲  B │
 //!        └────────────┘
+//!
+//!   scenes with meshes or Boolean solids:  list ──mix, border_mesh, border_solid──▶ points ──border_mean──▶ means
 //! ```
 //!
-//! Reads: everything that the bindings name but what it writes. Writes: `find`: `list` and `dispatch`; `mix`: `list`;
-//! `write`: `resolved`, at pixels of the list.
+//! Reads: everything that the bindings name but what it writes. Writes: `find`: `list`; `mix`: the means of `list`, or
+//! `points`; `write`: `resolved`, at pixels of the list.
 //!
 //! Where a border is straight and pixels around see both of its sides, the share of sixteen points is within 0.14 of
 //! the share of the area, and within 0.03 on average over all straight lines.
 
+use crate::abi;
 use crate::bindings::{Placed, Primitives};
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource};
 use crate::shaders::{self, BORDER_MIX_PLAIN, TrimTest, constant};
+use std::mem::offset_of;
+use std::ops::Range;
 
 /// Columns and rows of the picture that a workgroup of the first step looks for borders in.
 const PART: [u32; 2] = [62, 16];
 
-/// Of the list: a pixel and its mean.
-pub(crate) type BorderPixel = [u32; 3];
-
-/// Words of the dispatch: a grid, and how many pixels the list has.
-pub(crate) type Dispatch = [u32; 4];
+/// Points of a pixel.
+pub(crate) const POINTS: u32 = abi::constants::border_seen::BORDER_POINTS;
 
 /// What scenes differ in.
 pub(crate) struct Kinds<'a> {
     /// How faces are trimmed; `None` where none is.
     pub test: Option<&'a TrimTest>,
+    pub patches: bool,
     pub rational: bool,
     pub fine: bool,
     /// The scene has things that are no patches.
     pub others: bool,
+    /// Some operand of its solids has no equations.
+    pub shells: bool,
+    /// Layers are drawn over the means.
+    pub layered: bool,
     /// Most general kind of surface of the volume that trims the scene.
     pub volume: Option<u32>,
 }
 
-/// The pass, in its three steps.
+/// The passes.
 pub(crate) struct BorderMix {
     find: Kernel,
-    mix: Kernel,
+    /// Of scenes with patches.
+    mix: Option<Kernel>,
     write: Kernel,
 }
 
-/// Its buffers and images.
+/// A list of pixels, and the grids of passes over it.
+#[derive(Clone, Copy)]
+pub(crate) struct ListBindings<'a> {
+    /// [`BorderPixel`](abi::BorderPixel)s.
+    pub pixels: &'a Buffer,
+    /// [`BorderGrids`](abi::BorderGrids); zero before.
+    pub grids: &'a Buffer,
+}
+
+impl<'a> ListBindings<'a> {
+    /// The arguments of a thread a pixel.
+    pub(super) fn of_pixels(&self) -> (&'a Buffer, u64) {
+        (self.grids, offset_of!(abi::BorderGrids, pixels) as u64)
+    }
+
+    /// The arguments of a thread a point.
+    pub(super) fn of_points(&self) -> (&'a Buffer, u64) {
+        (self.grids, offset_of!(abi::BorderGrids, points) as u64)
+    }
+}
+
+/// Their buffers and images.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub placed: Placed<'a>,
     pub visibility: &'a Image,
+    pub others: &'a Image,
     /// Linear colour and depth.
     pub resolved: &'a Image,
-    pub list: &'a Buffer,
-    /// A [`Dispatch`]; zero before.
-    pub dispatch: &'a Buffer,
+    pub list: ListBindings<'a>,
+    /// [`POINTS`] [`BorderPoint`](abi::BorderPoint)s a pixel of the list; in scenes with meshes or Boolean solids.
+    pub points: Option<&'a Buffer>,
     /// What the trim test reads, in its order.
     pub trim: &'a [Resource<'a>],
     /// The volume that trims the scene; `None` where there is none.
@@ -71,6 +102,8 @@ impl BorderMix {
             return Ok(None);
         };
         let others = (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(kinds.others));
+        let shells = (constant::SOLIDS_HAVE_SHELLS, u32::from(kinds.shells));
+        let layered = (constant::KEEPS_DEPTH, u32::from(kinds.layered));
         let of_patches = [
             others,
             (constant::SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
@@ -81,39 +114,42 @@ impl BorderMix {
         let way = kinds.test.map_or("no trims", |test| test.way);
         let volume = if kinds.volume.is_some() { ", within a volume" } else { "" };
         let shader = if kinds.volume.is_some() { within } else { alone };
+        let mix = || Kernel::new(device, &format!("border mix ({way}{volume})"), shader, &constants);
         Ok(Some(Self {
-            find: Kernel::new(device, "border find", &shaders::BORDER_FIND_COMP, &[others])?,
-            mix: Kernel::new(device, &format!("border mix ({way}{volume})"), shader, &constants)?,
-            write: Kernel::new(device, "border write", &shaders::BORDER_WRITE_COMP, &[])?,
+            find: Kernel::new(device, "border find", &shaders::BORDER_FIND_COMP, &[others, shells])?,
+            mix: kinds.patches.then(mix).transpose()?,
+            write: Kernel::new(device, "border write", &shaders::BORDER_WRITE_COMP, &[layered])?,
         }))
     }
 
-    /// Lists the pixels at borders.
-    pub(crate) fn find(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
-        let (width, height) = b.visibility.size();
-        let resources = [
-            b.frame.into(),
-            b.placed.items.into(),
-            b.visibility.into(),
-            b.resolved.into(),
-            b.list.into(),
-            b.dispatch.into(),
-        ];
-        self.find.record_grid(cmd, &resources, [width.div_ceil(PART[0]), height.div_ceil(PART[1]), 1]);
+    /// Lists the pixels at borders of some rows.
+    pub(crate) fn find(&self, cmd: &Commands<'_>, b: &Bindings<'_>, rows: Range<u32>) {
+        let width = b.visibility.size().0;
+        let images = [b.visibility.into(), b.others.into(), b.resolved.into()];
+        let lists = [b.list.pixels.into(), b.list.grids.into()];
+        let resources: Vec<_> =
+            [b.frame.into(), b.placed.items.into()].into_iter().chain(images).chain(lists).collect();
+        let of_rows: Vec<u8> = [rows.start, rows.end].into_iter().flat_map(u32::to_ne_bytes).collect();
+        self.find.bind(cmd, &resources, &of_rows);
+        cmd.dispatch_grid([width.div_ceil(PART[0]), rows.len().div_ceil(PART[1] as usize) as u32, 1]);
     }
 
-    /// One thread a pixel of the list.
+    /// One thread a pixel of the list; nothing in scenes without patches.
     pub(crate) fn mix(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
-        let images = [b.visibility.into(), b.resolved.into(), b.list.into(), b.dispatch.into()];
+        let Some(mix) = &self.mix else { return };
+        // the shader has the points in every scene, and writes them only where there are some
+        let points = b.points.unwrap_or(b.list.pixels);
+        let images = [b.visibility.into(), b.resolved.into()];
+        let lists = [b.list.pixels.into(), b.list.grids.into(), points.into()];
         let placed = [b.frame.into()].into_iter().chain(b.placed.resources());
         let volume = b.volume.iter().flat_map(Primitives::resources);
-        let resources: Vec<_> = placed.chain(images).chain(b.trim.iter().copied()).chain(volume).collect();
-        self.mix.record_indirect(cmd, &resources, (b.dispatch, 0));
+        let resources: Vec<_> = placed.chain(images).chain(lists).chain(b.trim.iter().copied()).chain(volume).collect();
+        mix.record_indirect(cmd, &resources, b.list.of_pixels());
     }
 
     /// One thread a pixel of the list.
-    pub(crate) fn write(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
-        let resources = [b.frame.into(), b.list.into(), b.dispatch.into(), b.resolved.into()];
-        self.write.record_indirect(cmd, &resources, (b.dispatch, 0));
+    pub(crate) fn write(&self, cmd: &Commands<'_>, frame: &Buffer, list: ListBindings<'_>, resolved: &Image) {
+        let resources = [frame.into(), list.pixels.into(), list.grids.into(), resolved.into()];
+        self.write.record_indirect(cmd, &resources, list.of_pixels());
     }
 }

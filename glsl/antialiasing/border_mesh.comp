@@ -1,0 +1,5 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `border_mesh`.
+#include "border_mesh.glsl"
