@@ -136,7 +136,8 @@ impl Buffer {
 
     /// Writes `data` at `offset` bytes. The GPU must not be using the buffer.
     ///
-    /// # Panics If the buffer is not mapped, or `data` does not fit.
+    /// # Panics
+    /// If the buffer is not mapped, or `data` does not fit.
     pub fn write<T: Pod>(&mut self, offset: u64, data: &[T]) {
         let bytes: &[u8] = bytemuck::cast_slice(data);
         let (start, end) = (offset as usize, offset as usize + bytes.len());

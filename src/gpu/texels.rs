@@ -59,7 +59,8 @@ pub struct TexelBuffer {
 impl TexelBuffer {
     /// Views `buffer`.
     ///
-    /// # Errors [`GpuError::TooLarge`] if the buffer has more texels than the device can address, [`GpuError::Vulkan`].
+    /// # Errors
+    /// [`GpuError::TooLarge`] if the buffer has more texels than the device can address, [`GpuError::Vulkan`].
     pub fn new(device: &Device, buffer: Buffer, texel: Texel) -> Result<Self, GpuError> {
         let (format, bytes) = (texel.format(), texel.bytes());
         let limit = u64::from(device.limits().max_texel_buffer_elements) * bytes;

@@ -100,7 +100,8 @@ impl EdgeSettings {
 
     /// Checks that the settings can be drawn.
     ///
-    /// # Errors [`BadEdges`].
+    /// # Errors
+    /// [`BadEdges`].
     pub fn check(&self) -> Result<(), BadEdges> {
         for width in [self.width, self.thin_width, self.section_width] {
             if !(0.0..=Self::MOST_WIDTH).contains(&width) {
