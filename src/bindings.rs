@@ -10,7 +10,7 @@
 //!   sun            sun, its tiles, …, primitives, leaves' centres, counts  glsl/include/sun.glsl
 //! ```
 
-use crate::gpu::{Buffer, Resource, TexelBuffer};
+use crate::gpu::{Buffer, Image, Resource, TexelBuffer};
 use crate::shaders::constant;
 
 /// Number of the sun's bindings, after all others of a pass: `glsl/include/sun.glsl`. They include the primitives that
@@ -93,5 +93,25 @@ impl<'a> Primitives<'a> {
     pub(crate) fn resources(&self) -> [Resource<'a>; 4] {
         let [sides, surfaces, places] = [self.leaf_surfaces, self.surfaces, self.surface_places].map(Resource::from);
         [self.leaves.into(), sides, surfaces, places]
+    }
+}
+
+/// Boolean solids, for passes that ask whether a point is seen: `glsl/include/edge_seen.glsl`.
+#[derive(Clone, Copy)]
+pub(crate) struct SeenSolids<'a> {
+    /// (u, v) of spline faces that bound operands.
+    pub operand_uv: &'a Image,
+    pub leaf_surfaces: &'a TexelBuffer,
+    pub surface_places: &'a TexelBuffer,
+    /// Of operands that are meshes: meshes, triangles, positions.
+    pub meshes: [&'a Buffer; 3],
+}
+
+impl<'a> SeenSolids<'a> {
+    /// In binding order.
+    pub(crate) fn resources(&self) -> [Resource<'a>; 6] {
+        let [meshes, triangles, positions] = self.meshes.map(Resource::from);
+        let (sides, places) = (self.leaf_surfaces.into(), self.surface_places.into());
+        [self.operand_uv.into(), sides, places, meshes, triangles, positions]
     }
 }

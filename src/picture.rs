@@ -335,7 +335,8 @@ pub struct Picture {
     /// Number of the edge whose line covers at least a tenth of the pixel; 0 without a line. Edges are numbered from 1,
     /// in the order of [`Model::parts`](crate::model::Model::parts); within a part first
     /// [`Edges::edges`](crate::model::Edges::edges), then [`Edges::of_meshes`](crate::model::Edges::of_meshes), whether
-    /// drawn or not. 0 everywhere without [`SceneSettings::edges`].
+    /// drawn or not. 4294967295 is the outline of a curved face, 4294967294 a line of a Boolean solid. 0 everywhere
+    /// without [`SceneSettings::edges`].
     pub edge: Vec<u32>,
     /// Index into [`Model::parts`](crate::model::Model::parts), plus 1; 0 for background, Boolean solids and
     /// transparent parts.

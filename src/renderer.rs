@@ -11,7 +11,7 @@
 //! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the GPU can count (the
 //! trim table, the list of sub-patches) may be too small for a new view: the report of that frame says `complete:
 //! false`, and the next `record` into its slot makes them larger. A view from very near is resolved by what is cut out of
-//! the model for it: [`Renderer::prepare`].
+//! the model for it: [`Renderer::prepare`]. Instances change, and models come and go, between frames: [`Renderer::add`].
 
 mod centres;
 mod constants;
@@ -21,6 +21,7 @@ mod failure;
 mod history;
 mod instances;
 mod load;
+mod models;
 mod pick;
 mod report;
 mod slot;
@@ -42,11 +43,12 @@ use crate::frame::{Frame, Near, Passes, Stages, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Load, TexelBuffer, Uploads};
 use crate::model::{Camera, Model};
 use crate::picture::{FrameSettings, PoolBytes};
-use crate::scene::{Cut, Picking, Scene, SceneData, Write};
+use crate::scene::{Array, Cut, Joinable, Picking, Scene, SceneData, Write};
 pub use crate::scene::{EditError, Hit, InstanceError, UndrawnEdges, UndrawnSolid, trim_way};
 use ash::vk;
 pub use error::RenderError;
 use history::History;
+pub use models::{ModelId, RemoveError};
 use pick::SlotPick;
 pub use report::FrameReport;
 use slot::Slot;
@@ -107,6 +109,14 @@ struct Loaded {
     moved: bool,
     /// What the frame before left; `None`: its buffers are gone.
     history: Option<History>,
+    /// What its stages' buffers have room for, models that were added included.
+    room: Counts,
+    /// How models join it; `None` where they do not.
+    joinable: Option<Joinable>,
+    /// Faces and triangles of removed models, which are still in its arrays.
+    gone: u64,
+    /// It was cut out of the model for a view.
+    is_cut: bool,
     /// It may be trimmed exactly, where a view needs too much of the table.
     may_be_exact: bool,
     /// What it was cut by, where it may be.
@@ -132,6 +142,7 @@ enum Retired {
     Uploads(Uploads),
     Buffer(Buffer),
     TexelBuffer(TexelBuffer),
+    Array(Array),
 }
 
 impl Renderer {
@@ -238,12 +249,15 @@ impl Renderer {
         let edited = loaded.moved || !loaded.edits.is_empty();
         let history = History::after(loaded.history, view, table, edited, loaded.counts.hides);
         slot.write(&self.device, loaded, input, &self.formats, &history)?;
-        let new = if loaded.scene.is_none() { Some(Scene::record(&cmd, &loaded.data)?) } else { None };
-        loaded.edits.extend(std::mem::take(&mut loaded.changes).into_values());
-        let scene = loaded.scene.as_ref().or(new.as_ref().map(|(scene, _)| scene));
+        let mut new = if loaded.scene.is_none() { Some(Scene::record(&cmd, &loaded.data)?) } else { None };
+        pick::make_room(self.pick, &mut slot.pick, &self.device)?;
+        let scene = loaded.scene.as_mut().or(new.as_mut().map(|(scene, _)| scene));
         let (Some(scene), Some(stages)) = (scene, &loaded.stages) else { unreachable!("made above") };
+        let writes = loaded.edits.iter().chain(loaded.changes.values());
+        let edits = writes.clone().next().map(|_| Frame::edit(&cmd, scene, writes)).transpose()?;
+        // nothing fails from here on: larger arrays are in the scene
+        let scene = &*scene;
         let (Some(views), Some(in_sight)) = (&slot.views, &slot.in_sight) else { unreachable!("written above") };
-        let edits = (!loaded.edits.is_empty()).then(|| Frame::edit(&cmd, scene, &loaded.edits)).transpose()?;
         let keep = input.settings.background.is_none();
         let own = self.viewport.as_ref().zip(input.targets.corner);
         let pairs = own.map(|(viewport, corner)| (viewport.pairs(&input.targets), corner));
@@ -296,12 +310,16 @@ impl Renderer {
             rectangle::end(&cmd, pairs, *corner);
         }
         let Some(source) = &self.source else { unreachable!("it was loaded") };
-        pick::record(self.pick, &mut slot.pick, (&self.device, &cmd, &frame), (source, loaded, input))?;
+        pick::record(self.pick, &mut slot.pick, (&cmd, &frame), (source, &loaded.picking, input));
         // only now: a frame that was not recorded left nothing
         self.pick = None;
-        slot.edit_bytes = edits.as_ref().map_or(0, Uploads::staging_bytes);
-        slot.retired.extend(edits.map(Retired::Uploads));
+        slot.edit_bytes = edits.as_ref().map_or(0, |(uploads, _)| uploads.staging_bytes());
+        if let Some((uploads, replaced)) = edits {
+            slot.retired.push(Retired::Uploads(uploads));
+            slot.retired.extend(replaced.into_iter().map(Retired::Array));
+        }
         loaded.edits.clear();
+        loaded.changes.clear();
         if let Some((scene, uploads)) = new {
             slot.retired.push(Retired::Uploads(uploads));
             loaded.scene = Some(scene);
@@ -369,8 +387,8 @@ impl Renderer {
             _ => loaded.capacities,
         };
         let capacities = capacities.for_picture(loaded.counts, size, ranges)?;
-        let suffice = loaded.stages.as_ref().is_some_and(|stages| stages.suffice(capacities, size));
-        let make = || Stages::new(&self.device, &loaded.passes, loaded.counts, capacities, size);
+        let suffice = loaded.stages.as_ref().is_some_and(|stages| stages.suffice(loaded.counts, capacities, size));
+        let make = || Stages::new(&self.device, &loaded.passes, loaded.room, capacities, size);
         let made = (!suffice).then(make).transpose()?;
         // layers of faces are recorded, not stored: more of them may be seen in the same buffers
         if made.is_some() || loaded.capacities != capacities {

@@ -65,10 +65,15 @@ pub struct TrimTest {
     pub within: Option<Within>,
     /// Pass `border_mix`, without and with a volume; `None` if the way smooths no borders.
     pub border_mix: Option<[&'static Shader; 2]>,
+    /// Fragment shader of pass `edge_line`, and within a volume; `None`: [`EDGE_LINE_PLAIN`], which trusts no trimmed face.
+    pub edge_line: Option<[&'static Shader; 2]>,
 }
 
 /// Pass `border_mix` for scenes without trims, without and with a volume.
 pub static BORDER_MIX_PLAIN: [&Shader; 2] = [&BORDER_MIX_PLAIN_COMP, &BORDER_MIX_PLAIN_VOLUME_COMP];
+
+/// Fragment shader of pass `edge_line` of scenes without trims, and within a volume.
+pub static EDGE_LINE_PLAIN: [&Shader; 2] = [&EDGE_LINE_PLAIN_FRAG, &EDGE_LINE_PLAIN_VOLUME_FRAG];
 
 /// Shaders of scenes that a volume trims: `glsl/include/volume.glsl`.
 #[derive(Clone, Copy, Debug)]
@@ -87,6 +92,7 @@ pub static TRIM_TABLE: TrimTest = TrimTest {
     gap_fill: &GAP_FILL_TABLE_COMP,
     within: Some(Within { visibility: &VISIBILITY_TABLE_VOLUME_FRAG, gap_fill: &GAP_FILL_TABLE_VOLUME_COMP }),
     border_mix: Some([&BORDER_MIX_TABLE_COMP, &BORDER_MIX_TABLE_VOLUME_COMP]),
+    edge_line: Some([&EDGE_LINE_TABLE_FRAG, &EDGE_LINE_TABLE_VOLUME_FRAG]),
 };
 /// Cells with lists of arcs.
 pub static TRIM_EXACT: TrimTest = TrimTest {
@@ -96,6 +102,7 @@ pub static TRIM_EXACT: TrimTest = TrimTest {
     gap_fill: &GAP_FILL_EXACT_COMP,
     within: Some(Within { visibility: &VISIBILITY_EXACT_VOLUME_FRAG, gap_fill: &GAP_FILL_EXACT_VOLUME_COMP }),
     border_mix: Some([&BORDER_MIX_EXACT_COMP, &BORDER_MIX_EXACT_VOLUME_COMP]),
+    edge_line: Some([&EDGE_LINE_EXACT_FRAG, &EDGE_LINE_EXACT_VOLUME_FRAG]),
 };
 
 /// No test.
@@ -107,6 +114,7 @@ pub static TRIM_UNTRIMMED: TrimTest = TrimTest {
     gap_fill: &BASELINE_GAP_FILL_UNTRIMMED_COMP,
     within: None,
     border_mix: None,
+    edge_line: None,
 };
 
 /// Bisection of monotone pieces.
@@ -118,6 +126,7 @@ pub static TRIM_BISECT: TrimTest = TrimTest {
     gap_fill: &BASELINE_GAP_FILL_BISECT_COMP,
     within: None,
     border_mix: None,
+    edge_line: None,
 };
 
 /// Trim textures.
@@ -129,6 +138,7 @@ pub static TRIM_TEXTURE: TrimTest = TrimTest {
     gap_fill: &BASELINE_GAP_FILL_TEXTURE_COMP,
     within: None,
     border_mix: None,
+    edge_line: None,
 };
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("model", &["csg", "math", "spline"]),
     ("trim", &["math", "spline", "model"]),
     ("construct", &["math", "spline", "model", "trim"]),
-    ("edges", &["math", "spline", "model"]),
+    ("edges", &["math", "silhouette", "spline", "trim", "model"]),
     ("silhouette", &["math", "spline"]),
     ("csg", &[]),
     // selvedge-io
@@ -74,6 +74,7 @@ const RECORDS: &[&str] = &[
     "src/frame/common/mod.rs",
     "src/frame/common/scan.rs",
     "src/frame/edges/mod.rs",
+    "src/frame/edges/solid_lines.rs",
     "src/frame/gaps/mod.rs",
     "src/frame/occlusion/mod.rs",
     "src/frame/shading/contact.rs",

@@ -14,6 +14,7 @@
 #include "scene.glsl"
 #include "view.glsl"
 #include "edges.glsl"
+#include "shells.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
@@ -23,6 +24,14 @@ layout(binding = 9, r32ui) uniform uimage2D lines;
 layout(scalar, binding = 10) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
 layout(scalar, binding = 11) readonly buffer Triangles { uint triangles[]; };
 layout(scalar, binding = 12) readonly buffer Positions { vec3 positions[]; };
+
+// in scenes without Boolean solids not read
+layout(binding = 13, r32ui) readonly uniform uimage2D operand_uv;
+layout(binding = 14) uniform usamplerBuffer leaf_surfaces;
+layout(binding = 15) uniform samplerBuffer surface_places;
+layout(scalar, binding = 16) readonly buffer OperandMeshes { OperandMesh operand_meshes[]; };
+layout(scalar, binding = 17) readonly buffer OperandTriangles { uint operand_triangles[]; };
+layout(scalar, binding = 18) readonly buffer OperandPositions { vec3 operand_positions[]; };
 
 layout(scalar, push_constant) uniform Push { float half_px; } push;
 
@@ -39,6 +48,7 @@ bool is_own_face(FaceInstance fi) { return fi == own_face; }
 
 bool is_own_triangle(uint instance, uint triangle) { return false; }
 
+const bool OWN_PATCHES_HIDE = true;
 #include "edge_seen.glsl"
 
 // At a fold the sheet bends away from its tangent plane at once.
@@ -63,6 +73,8 @@ const float SAME_PLACE = 0.05;
 uvec2 patch_seen(ivec2 at) {
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(frame.size)))) return uvec2(0u);
     uvec2 seen = imageLoad(visibility, at).xy;
+    if (SOLIDS_HAVE_PATCHES && sees_nothing(seen.x)) seen = imageLoad(others, at).xy;
+    if (SOLIDS_HAVE_PATCHES && sees_operand(seen.x)) return uvec2(seen_item(seen.x) + 1u, imageLoad(operand_uv, at).x);
     return sees_nothing(seen.x) || sees_other(seen.x) ? uvec2(0u) : uvec2(seen_item(seen.x) + 1u, seen.y);
 }
 

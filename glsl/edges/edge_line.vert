@@ -9,7 +9,7 @@ layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 11) readonly buffer Chords { Chord chords[]; };
 
 layout(scalar, push_constant) uniform Push {
-    vec2 half_px; // of lines: full, thin
+    vec3 half_px; // of lines: full, thin
     uint hidden;  // 1: hidden ones are drawn, too
 } push;
 
@@ -25,7 +25,7 @@ void main() {
     float size = length(along);
     along = size > 0.0 ? along / size : vec2(1.0, 0.0);
     vec2 across = vec2(-along.y, along.x);
-    float reach = push.half_px[c.style] + 0.5 + ROUNDED_PX;
+    float reach = push.half_px[c.style & EDGE_STYLE] + 0.5 + ROUNDED_PX;
     // two triangles: 0 1 2, 2 1 3
     const uint CORNERS[6] = uint[](0u, 1u, 2u, 2u, 1u, 3u);
     uint corner = CORNERS[gl_VertexIndex];

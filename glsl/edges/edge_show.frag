@@ -49,8 +49,8 @@ void main() {
         out_colour.rgb = max(mixed - behind.rgb * (1.0 - opacity), 0.0);
     }
     if (!HAS_EDGE_IMAGE) return;
-    uint number = FOLD_NUMBER;
-    if ((line & LINE_CHORD) != LINE_FOLD) {
+    uint number = (line & LINE_CHORD) == LINE_SOLID ? SOLID_NUMBER : FOLD_NUMBER;
+    if ((line & LINE_CHORD) < LINE_SOLID) {
         number = edge_lines[edge_pieces[edge_items[chords[line & LINE_CHORD].item].piece].edge].number;
     }
     out_edge = covered >= EDGE_COVERS ? number : 0u;

@@ -10,7 +10,11 @@
 // own face belongs to the edge if the point is within `slack` of its tangent plane. Where two sheets meet at a fold,
 // this moves the end of a line across the fold by a quarter of the slack. Needs placed.glsl, patch.glsl, refine.glsl,
 // visible.glsl, edges.glsl, `frame`, buffers `MeshInstance mesh_instances[]`, `uint triangles[]`, `vec3 positions[]`,
-// and functions `bool is_own_face(FaceInstance)` and `bool is_own_triangle(uint instance, uint triangle)`.
+// `OperandMesh operand_meshes[]`, `uint operand_triangles[]`, `vec3 operand_positions[]`, `uimage2D operand_uv`,
+// `usamplerBuffer leaf_surfaces`, `samplerBuffer surface_places`, functions `bool is_own_face(FaceInstance)` and
+// `bool is_own_triangle(uint instance, uint triangle)`, and the constant `OWN_PATCHES_HIDE`: whether patches of own faces
+// are compared here, and not in edge_covered.glsl. With SOLIDS_BY_DEPTH, what is named of operands and solids' sides is not
+// needed: they are compared by their depth in the picture.
 #ifndef EDGE_SEEN_GLSL
 #define EDGE_SEEN_GLSL
 
@@ -20,6 +24,11 @@ const float POINT_ROUNDING = 1e-6;
 const float ARRIVED_PX = 0.05;
 
 layout(constant_id = 27) const bool SCENE_HAS_MESHES = false;
+layout(constant_id = 17) const bool SOLIDS_HAVE_PATCHES = false;
+layout(constant_id = 29) const bool SCENE_HAS_SOLIDS = false;
+
+#include "solids.glsl"
+#include "shells.glsl"
 
 // A point of an edge: its place in the picture, and relative to the eye (right, down, ahead).
 struct EdgePoint {
@@ -48,20 +57,24 @@ float own_slack(vec3 point, View view, vec2 slack) {
     return slack.x * pixel + slack.y * stretch + POINT_ROUNDING * point.z;
 }
 
-bool is_before_patch(EdgePoint e, uvec2 seen) {
+// How far the point lies before the tangent plane at a sample of a surface.
+float before_sheet(vec3 point, Sample s, View view) {
+    vec3 du = seen_from_eye(to_pixel(view, vec4(s.jet.du, 0.0)));
+    vec3 dv = seen_from_eye(to_pixel(view, vec4(s.jet.dv, 0.0)));
+    return before_plane(point, seen_from_eye(s.q), cross(normalize(du), normalize(dv)));
+}
+
+bool is_before_patch(EdgePoint e, uvec2 seen, bool own_hides) {
     uint item = seen_item(seen.x);
     FaceInstance fi = face_instance_at(face_instance_of(item));
     Face face = face_at(fi.face);
     Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
     View view = view_at(fi.instance);
     Sample s = refine(patch_, view, unpack_uv(seen.y), e.pixel);
-    vec3 on = seen_from_eye(s.q);
-    vec3 du = seen_from_eye(to_pixel(view, vec4(s.jet.du, 0.0)));
-    vec3 dv = seen_from_eye(to_pixel(view, vec4(s.jet.dv, 0.0)));
-    float before = before_plane(e.place, on, cross(normalize(du), normalize(dv)));
-    if (is_own_face(fi)) return !(before < -own_slack(e.place, view, e.slack));
+    float before = before_sheet(e.place, s, view);
+    if (is_own_face(fi)) return !own_hides || !(before < -own_slack(e.place, view, e.slack));
     // the sheet ends before the edge, at a fold; or it has no tangent plane
-    if (!(length(s.miss) <= ARRIVED_PX) || isnan(before)) return e.place.z <= on.z;
+    if (!(length(s.miss) <= ARRIVED_PX) || isnan(before)) return e.place.z <= s.q.z;
     return before >= -POINT_ROUNDING * e.place.z;
 }
 
@@ -87,8 +100,46 @@ float solid_depth(ivec2 at, uint like, float none) {
     return seen.x == like ? uintBitsToFloat(seen.y) : none;
 }
 
-// Boolean solids: the side's depth, and its slope from neighbouring pixels with the same side.
+#ifndef SOLIDS_BY_DEPTH
+
+// A plane that is a side of a Boolean solid: `plane` is seen from the eye.
+bool is_before_side(EdgePoint e, vec4 plane) {
+    vec3 p = e.place.x * frame.right - e.place.y * frame.up + e.place.z * frame.forward;
+    float towards = frame.perspective != 0u ? -plane.w : -dot(plane.xyz, frame.forward);
+    return (dot(plane.xyz, p) - plane.w) * sign(towards) >= -POINT_ROUNDING * e.place.z;
+}
+
+// A triangle of an operand.
+bool is_before_operand(EdgePoint e, uint triangle) {
+    uint from = 0u;
+    uint end = uint(operand_meshes.length());
+    while (end - from > 1u) {
+        uint middle = (from + end) / 2u;
+        if (operand_meshes[middle].first_triangle <= triangle) from = middle;
+        else end = middle;
+    }
+    View view = view_at(operand_meshes[from].instance);
+    vec3 a = operand_positions[operand_triangles[3u * triangle]];
+    vec3 ab = operand_positions[operand_triangles[3u * triangle + 1u]] - a;
+    vec3 ac = operand_positions[operand_triangles[3u * triangle + 2u]] - a;
+    vec3 b = seen_from_eye(to_pixel(view, vec4(ab, 0.0)));
+    vec3 c = seen_from_eye(to_pixel(view, vec4(ac, 0.0)));
+    float before = before_plane(e.place, seen_from_eye(to_pixel(view, vec4(a, 1.0))), cross(normalize(b), normalize(c)));
+    return !(before < -POINT_ROUNDING * e.place.z);
+}
+
+#endif
+
+// Other sides of Boolean solids: the side's depth, and its slope from neighbouring pixels with the same side.
 bool is_before_solid(EdgePoint e, ivec2 at, uvec2 seen) {
+#ifndef SOLIDS_BY_DEPTH
+    if (SCENE_HAS_SOLIDS && sees_solid(seen.x) && seen_side(seen.x) < frame.side_count) {
+        uint side = side_word(leaf_surfaces, seen_side(seen.x));
+        if ((side & SIDE_PLANE) != 0u) return is_before_side(e, place_at(surface_places, side >> SIDE_SHIFT));
+    } else if (SCENE_HAS_SOLIDS && sees_solid(seen.x)) {
+        return is_before_operand(e, seen_side(seen.x) - frame.side_count);
+    }
+#endif
     float depth = uintBitsToFloat(seen.y);
     vec2 step_ = e.pixel - (vec2(at) + 0.5);
     // linear in the picture: the depth in a parallel view, else its inverse
@@ -111,8 +162,13 @@ bool is_seen(EdgePoint e, ivec2 at) {
     if (SCENE_HAS_MESHES_OR_SOLIDS && sees_nothing(seen.x)) seen = imageLoad(others, at).xy;
     if (sees_nothing(seen.x)) return true;
     if (SCENE_HAS_MESHES && sees_mesh(seen.x)) return is_before_mesh(e, seen);
+#ifndef SOLIDS_BY_DEPTH
+    if (SOLIDS_HAVE_PATCHES && sees_operand(seen.x)) {
+        return is_before_patch(e, uvec2(seen.x, imageLoad(operand_uv, at).x), true);
+    }
+#endif
     if (sees_other(seen.x)) return is_before_solid(e, at, seen);
-    return is_before_patch(e, seen);
+    return is_before_patch(e, seen, OWN_PATCHES_HIDE);
 }
 
 #endif

@@ -37,6 +37,9 @@ struct Chord {
 
 const uint EDGE_FULL = 0u; // the full width of lines
 const uint EDGE_THIN = 1u;
+const uint EDGE_BOLD = 2u; // outlines of sections
+const uint EDGE_STYLE = 3u;
+const uint EDGE_NEAR = 4u; // beside it: drawn only where a pixel around sees a face of its own
 
 // In the list of own faces: the number of a triangle instead of a face.
 const uint OWN_TRIANGLE = 0x80000000u;
@@ -46,10 +49,28 @@ const uint LINE_SEEN = 0x80000000u;
 const uint LINE_COVERAGE = 24u;
 const float LINE_STEPS = 127.0;
 const uint LINE_CHORD = 0xffffffu;
-// In place of a chord: the outline of a curved face.
+// In place of a chord: the outline of a curved face, and a line of a Boolean solid. Chords have numbers below these.
 const uint LINE_FOLD = LINE_CHORD;
-// Its number in the image `edge`.
+const uint LINE_SOLID = 0xfffffeu;
+// Their numbers in the image `edge`.
 const uint FOLD_NUMBER = 0xffffffffu;
+const uint SOLID_NUMBER = 0xfffffffeu;
+
+// Which lines of Boolean solids are drawn: bits.
+const uint LINES_SHARP = 1u;
+const uint LINES_SMOOTH = 2u;      // thin, of smooth transitions
+const uint LINES_SMOOTH_FULL = 4u; // or as wide as others
+const uint LINES_FOLDS = 8u;
+
+// Where what is seen changes between two centres: style << 16 | share of the way.
+const uint CHANGE_STYLE = 16u;
+const float CHANGE_SHARES = 65535.0;
+const uint LINE_NONE = 0u;
+const uint LINE_FULL = 1u;
+const uint LINE_THIN = 2u;
+const uint LINE_BOLD = 3u;
+// Half of the widest line of a Boolean solid: drivers end loops over more pixels.
+const float MOST_HALF_PX = 100.0;
 
 // Share of the pixel covered by a line whose middle has this distance from the pixel's centre: exact for lines along
 // columns or rows.

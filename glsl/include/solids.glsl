@@ -88,6 +88,7 @@ const uint LEAF_ELSEWHERE = 16u;     // belongs to an item that rays are followe
 const uint LEAF_PLANES = 32u;        // its last sides are planes
 const uint LEAF_ROUNDS = 64u;        // its first sides are not planes
 const uint LEAF_FLAG_BITS = 7u;
+const uint LEAF_CAP = 128u; // the cut of a section; not in lists of tiles
 
 // In place of a surface's number: the plane of one triangle alone, with the triangle's number.
 const uint OWN_PLANE = 0x80000000u;

@@ -91,7 +91,7 @@ void main() {
         uint out_exit = fold(leaf.out_exit, i + 1u, end);
         tile_leaves[i].in_exit = in_exit;
         tile_leaves[i].out_exit = out_exit;
-        tile_leaves[i].of = leaf.first << LEAF_FLAG_BITS | leaf.flags;
+        tile_leaves[i].of = leaf.first << LEAF_FLAG_BITS | leaf.flags & (1u << LEAF_FLAG_BITS) - 1u;
         if (at < frame.followed_leaf) {
             if (reach <= i) tile_leaves[i].leaf = at | TILE_LEAF_GATE; // no exit leads past it
             if (in_exit != EXIT_FALSE) reach = max(reach, in_exit);

@@ -76,6 +76,10 @@ pub mod coverage {
 pub mod depth_pyramid {
     pub const SQUARE: u32 = 4;
 }
+pub mod edge_covered {
+    pub const COVERS_OWN_OFF: f32 = 7.0;
+    pub const COVERS_PX: f32 = 0.01;
+}
 pub mod edge_divide {
     pub const EDGE_HALVES: u32 = 0xffffffff;
     pub const EDGE_HALVINGS: u32 = 22;
@@ -106,14 +110,30 @@ pub mod edge_show {
     pub const EDGE_COVERS: f32 = 0.1;
 }
 pub mod edges {
+    pub const CHANGE_SHARES: f32 = 65535.0;
+    pub const CHANGE_STYLE: u32 = 16;
+    pub const EDGE_BOLD: u32 = 2;
     pub const EDGE_FULL: u32 = 0;
+    pub const EDGE_NEAR: u32 = 4;
+    pub const EDGE_STYLE: u32 = 3;
     pub const EDGE_THIN: u32 = 1;
     pub const FOLD_NUMBER: u32 = 0xffffffff;
+    pub const LINES_FOLDS: u32 = 8;
+    pub const LINES_SHARP: u32 = 1;
+    pub const LINES_SMOOTH: u32 = 2;
+    pub const LINES_SMOOTH_FULL: u32 = 4;
+    pub const LINE_BOLD: u32 = 3;
     pub const LINE_CHORD: u32 = 0xffffff;
     pub const LINE_COVERAGE: u32 = 24;
+    pub const LINE_FULL: u32 = 1;
+    pub const LINE_NONE: u32 = 0;
     pub const LINE_SEEN: u32 = 0x80000000;
+    pub const LINE_SOLID: u32 = 0xfffffe;
     pub const LINE_STEPS: f32 = 127.0;
+    pub const LINE_THIN: u32 = 2;
+    pub const MOST_HALF_PX: f32 = 100.0;
     pub const OWN_TRIANGLE: u32 = 0x80000000;
+    pub const SOLID_NUMBER: u32 = 0xfffffffe;
 }
 pub mod exact {
     pub const ARC_LAST: u32 = 8;
@@ -263,6 +283,17 @@ pub mod sizes {
     pub const MOST_NUMBERED: u32 = 0x80000000;
     pub const SCAN_BLOCK: u32 = 1024;
 }
+pub mod solid_change {
+    pub const CHANGE_END: u32 = 3;
+    pub const CHANGE_FOLD: u32 = 2;
+    pub const CHANGE_MEET: u32 = 1;
+    pub const CHANGE_NONE: u32 = 0;
+    pub const CHANGE_SMOOTH: u32 = 4;
+    pub const CHANGE_STEPS: u32 = 9;
+    pub const ON_SIDE_PX: f32 = 0.5;
+    pub const SAME_SHEET_PX: f32 = 0.5;
+    pub const SMOOTH_COSINE: f32 = 0.99984770;
+}
 pub mod solid_cst {
     pub const OWN: u32 = 0;
     pub const SIDE: u32 = 2;
@@ -286,6 +317,10 @@ pub mod solid_layers {
 pub mod solid_rects {
     pub const MARGIN_PX: f32 = 0.5;
 }
+pub mod solid_sheet {
+    pub const NO_LEAF: u32 = 0xffffffff;
+    pub const SPLINE_SHEET: u32 = 0xc0000000;
+}
 pub mod solid_walk {
     pub const KEPT: u32 = 12;
     pub const NO_LEAF: u32 = 0xffffffff;
@@ -296,6 +331,7 @@ pub mod solid_walk {
 pub mod solids {
     pub const EXIT_FALSE: u32 = 0xfffffffe;
     pub const EXIT_TRUE: u32 = 0xffffffff;
+    pub const LEAF_CAP: u32 = 128;
     pub const LEAF_ELSEWHERE: u32 = 16;
     pub const LEAF_FALLS: u32 = 4;
     pub const LEAF_FLAG_BITS: u32 = 7;

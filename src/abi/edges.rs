@@ -1,6 +1,6 @@
 //! Lines along edges. Twins of `glsl/include/edges.glsl`.
 
-pub use crate::abi::constants::edges::{EDGE_FULL, EDGE_THIN, OWN_TRIANGLE};
+pub use crate::abi::constants::edges::{EDGE_BOLD, EDGE_FULL, EDGE_NEAR, EDGE_THIN, OWN_TRIANGLE, SOLID_NUMBER};
 use bytemuck::{Pod, Zeroable};
 
 /// A rational Bézier piece of an edge.

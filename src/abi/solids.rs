@@ -4,9 +4,9 @@ pub use crate::abi::constants::shells::NO_PLANE;
 #[cfg(any(test, feature = "baselines"))]
 pub use crate::abi::constants::shells::{FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_SKIRT, FRAGMENT_WITHIN};
 pub use crate::abi::constants::solids::{
-    EXIT_FALSE, EXIT_TRUE, LEAF_ELSEWHERE, LEAF_FALLS, LEAF_FLAG_BITS, LEAF_NEGATIVE, LEAF_PLANES, LEAF_ROUNDS,
-    LEAF_SHELL, LEAF_UNBOUNDED, OWN_PLANE, SIDE_MORE, SIDE_NEGATIVE, SIDE_PLANE, SIDE_SHIFT, SURFACE_PLANE,
-    SURFACE_QUADRIC, SURFACE_TORUS,
+    EXIT_FALSE, EXIT_TRUE, LEAF_CAP, LEAF_ELSEWHERE, LEAF_FALLS, LEAF_FLAG_BITS, LEAF_NEGATIVE, LEAF_PLANES,
+    LEAF_ROUNDS, LEAF_SHELL, LEAF_UNBOUNDED, OWN_PLANE, SIDE_MORE, SIDE_NEGATIVE, SIDE_PLANE, SIDE_SHIFT,
+    SURFACE_PLANE, SURFACE_QUADRIC, SURFACE_TORUS,
 };
 pub use crate::abi::constants::tiles::{BLOCK, LEAF_RUN, TILE};
 #[cfg(any(test, feature = "baselines"))]
@@ -50,7 +50,7 @@ pub struct Leaf {
 impl Leaf {
     /// One word with its first side, or its shell's number, and its flags.
     pub fn own(&self) -> u32 {
-        self.first << LEAF_FLAG_BITS | self.flags
+        self.first << LEAF_FLAG_BITS | self.flags & ((1 << LEAF_FLAG_BITS) - 1)
     }
 }
 

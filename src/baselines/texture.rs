@@ -23,7 +23,8 @@ use crate::twin;
 
 /// Bytes of all textures of a view, without a limit.
 ///
-/// # Errors The model cannot be drawn.
+/// # Errors
+/// The model cannot be drawn.
 pub fn wanted_bytes(model: &Model, camera: &Camera, eighths: u32) -> Result<f64, UndrawnSolid> {
     let baseline = SceneOptions { trim: Some(TrimMethod::Texture { eighths }), ..SceneOptions::default() };
     let data = SceneData::new(model, SceneRequest { baseline, ..SceneRequest::default() })?;

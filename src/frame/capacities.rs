@@ -39,6 +39,20 @@ impl Capacities {
         }
     }
 
+    /// The same with at least the first guess for a scene of more parts.
+    pub(crate) fn for_more(self, counts: Counts, draw_vertices: u32) -> Self {
+        let (had, first) = (self, Self::first(counts, draw_vertices));
+        let tessellation = tessellation::Capacities {
+            sub_patches: had.tessellation.sub_patches.max(first.tessellation.sub_patches),
+            draws: had.tessellation.draws.max(first.tessellation.draws),
+        };
+        let trim = trim::Capacities {
+            rows: had.trim.rows.max(first.trim.rows),
+            intercepts: had.trim.intercepts.max(first.trim.intercepts),
+        };
+        Self { tessellation, trim, ..had }
+    }
+
     /// See [`solids::Capacities::expecting`].
     pub(crate) fn expecting(self, crossings: u64, counts: Counts) -> Self {
         Self { solids: self.solids.expecting(crossings, counts), ..self }

@@ -99,6 +99,31 @@ impl Counts {
         }
     }
 
+    /// What grows when a model joins the scene.
+    fn sizes(&mut self) -> [&mut u32; 8] {
+        let Self { items, cells, bins, wide_strips, curves, face_instances, triangles, mesh_instances, .. } = self;
+        [items, cells, bins, wide_strips, curves, face_instances, triangles, mesh_instances]
+    }
+
+    /// With those of a model that joins the scene: parts, and nothing that the scene has none of.
+    pub(crate) fn and(mut self, mut more: Self) -> Self {
+        let pairs = self.sizes().into_iter().zip(more.sizes());
+        pairs.for_each(|(sum, more)| *sum = sum.saturating_add(*more));
+        self.views_all |= more.views_all;
+        self
+    }
+
+    /// With half as much again of all that grows.
+    pub(crate) fn with_spare(mut self) -> Self {
+        self.sizes().into_iter().for_each(|size| *size = size.saturating_add(*size / 2));
+        self
+    }
+
+    /// Buffers that were made for `room` hold as much.
+    pub(crate) fn fits(mut self, mut room: Self) -> bool {
+        self.sizes().into_iter().zip(room.sizes()).all(|(size, room)| size <= room)
+    }
+
     /// The crossings of rays with operands are stored.
     pub(crate) fn has_fragments(self) -> bool {
         self.shells > 0 && !self.blister

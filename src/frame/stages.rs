@@ -65,7 +65,8 @@ impl Passes {
             let transparency = transparency::Passes::new(device, data, formats)?;
             let smooth_trims = smooth_trims::pass(device, data, formats)?;
             let smooth_borders = smooth_borders::Passes::new(device, data, test)?;
-            Ok::<_, GpuError>((transparency, smooth_trims, smooth_borders, edges::Passes::new(device, data, formats)?))
+            let edges = edges::Passes::new(device, data, formats, test)?;
+            Ok::<_, GpuError>((transparency, smooth_trims, smooth_borders, edges))
         };
         let ((gaps, over), (solids, (patches, pictures))) = rayon::join(
             || rayon::join(gaps, over),
@@ -96,7 +97,8 @@ impl Passes {
 
 /// The stages of a frame that the scene needs, for pictures of one size.
 pub(crate) struct Stages {
-    /// The capacities for which they were made.
+    /// What they were made for.
+    counts: Counts,
     capacities: Capacities,
     size: (u32, u32),
     pub(super) common: Common,
@@ -130,6 +132,7 @@ impl Stages {
         let scanned = scanned.fold(solids::buffers::scanned(room), u32::max);
         let p = passes;
         Ok(Self {
+            counts,
             capacities,
             size,
             common: Common::new(room, &p.common, scanned)?,
@@ -150,9 +153,9 @@ impl Stages {
         })
     }
 
-    /// Whether they suffice for a picture of this size.
-    pub(crate) fn suffice(&self, capacities: Capacities, size: (u32, u32)) -> bool {
-        self.size == size && self.capacities.takes_as_much(capacities)
+    /// They suffice for a scene with so much, and for a picture of this size.
+    pub(crate) fn suffice(&self, counts: Counts, capacities: Capacities, size: (u32, u32)) -> bool {
+        self.size == size && counts.fits(self.counts) && self.capacities.takes_as_much(capacities)
     }
 
     /// Linear colour and depth, if a later pass mixes the colour from them.

@@ -93,7 +93,8 @@ impl Access {
 }
 
 impl From<Access> for ImageAccess {
-    /// # Panics If its parts need different layouts: an image is in one layout at a time.
+    /// # Panics
+    /// If its parts need different layouts: an image is in one layout at a time.
     fn from(access: Access) -> Self {
         let layout = access.layout();
         Self { access, layout: layout.unwrap_or_else(|| panic!("{access:?} is not one access of an image")) }

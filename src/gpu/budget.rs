@@ -32,7 +32,8 @@ struct Room {
 }
 
 impl Heaps {
-    /// # Safety `physical` belongs to `instance`, which outlives the value.
+    /// # Safety
+    /// `physical` belongs to `instance`, which outlives the value.
     pub(super) unsafe fn new(instance: &ash::Instance, physical: vk::PhysicalDevice, most: Option<u64>) -> Self {
         // SAFETY: the caller's promise.
         let (memory, extensions) = unsafe {

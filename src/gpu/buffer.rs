@@ -26,6 +26,7 @@ pub struct BufferInfo<'a> {
 pub struct Buffer {
     handle: vk::Buffer,
     bytes: u64,
+    usage: vk::BufferUsageFlags,
     name: String,
     // declared in the order of destruction
     memory: Memory,
@@ -78,7 +79,7 @@ impl Buffer {
         })?;
         device.set_name(handle, info.name);
         let registration = device.register(info.name, memory.bytes());
-        Ok(Self { handle, bytes, name: info.name.to_owned(), memory, registration })
+        Ok(Self { handle, bytes, usage: info.usage, name: info.name.to_owned(), memory, registration })
     }
 
     /// A [`STORAGE`](Self::STORAGE) buffer in device memory.
@@ -95,6 +96,16 @@ impl Buffer {
     /// See [`Buffer::new`].
     pub fn indirect(device: &Device, pool: Pool, name: &str, bytes: u64) -> Result<Self, GpuError> {
         Self::new(device, &BufferInfo { name, bytes, usage: Self::INDIRECT, pool, location: MemoryLocation::Device })
+    }
+
+    /// A buffer in device memory of the same name, usage and pool, of another size and with undefined contents.
+    ///
+    /// # Errors
+    /// See [`Buffer::new`].
+    pub(crate) fn of_size(&self, bytes: u64) -> Result<Self, GpuError> {
+        let (name, usage, pool) = (self.name.as_str(), self.usage, self.pool());
+        let info = BufferInfo { name, bytes, usage, pool, location: MemoryLocation::Device };
+        Self::new(self.registration.device(), &info)
     }
 
     /// The Vulkan buffer.
@@ -125,7 +136,8 @@ impl Buffer {
 
     /// Writes `data` at `offset` bytes. The GPU must not be using the buffer.
     ///
-    /// # Panics If the buffer is not mapped, or `data` does not fit.
+    /// # Panics
+    /// If the buffer is not mapped, or `data` does not fit.
     pub fn write<T: Pod>(&mut self, offset: u64, data: &[T]) {
         let bytes: &[u8] = bytemuck::cast_slice(data);
         let (start, end) = (offset as usize, offset as usize + bytes.len());

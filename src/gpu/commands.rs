@@ -55,7 +55,8 @@ impl<'a> Commands<'a> {
 
     /// Replaces the push constants of the pipeline bound last.
     ///
-    /// # Panics If their size is not the pipeline's.
+    /// # Panics
+    /// If their size is not the pipeline's.
     pub fn push_constants(&self, pipeline: &Pipeline, bytes: &[u8]) {
         assert_eq!(bytes.len(), pipeline.push_bytes() as usize, "push constants of `{}`", pipeline.name());
         if !bytes.is_empty() {

@@ -100,8 +100,9 @@ pub(crate) type Rewriting = fn(&[u32]) -> Vec<u32>;
 impl Device {
     /// Borrows the host's device.
     ///
-    /// # Safety The handles are valid and belong together as [`HostDevice`] states, and stay so until the last clone of
-    /// this value and everything made from it is dropped.
+    /// # Safety
+    /// The handles are valid and belong together as [`HostDevice`] states, and stay so until the last clone of this value
+    /// and everything made from it is dropped.
     pub unsafe fn new(host: HostDevice<'_>) -> Self {
         // SAFETY: the caller's promise.
         unsafe { Self::limited(host, LowerLimits::NONE) }

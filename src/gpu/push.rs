@@ -77,7 +77,8 @@ impl Descriptor {
 
 /// Pushes the resources of `pipeline` in binding order.
 ///
-/// # Panics If their number or kinds differ from the pipeline's bindings.
+/// # Panics
+/// If their number or kinds differ from the pipeline's bindings.
 pub(crate) fn resources(cmd: &Commands<'_>, pipeline: &Pipeline, resources: &[Resource<'_>]) {
     let bindings = (0u32..).zip(pipeline.bindings()).filter_map(|(i, b)| Some((i, b, b.descriptor_type()?)));
     let bindings: Vec<_> = bindings.collect();

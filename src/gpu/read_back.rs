@@ -23,14 +23,16 @@ impl ReadBack {
 
     /// Records the copy of the first `bytes` of `from`, which is in [`Access::TRANSFER_READ`].
     ///
-    /// # Panics If they do not fit.
+    /// # Panics
+    /// If they do not fit.
     pub fn record(&self, cmd: &Commands<'_>, from: &Buffer, bytes: u64) {
         self.record_nth(cmd, from, bytes, 0);
     }
 
     /// The same, after `nth` copies of the same size.
     ///
-    /// # Panics If they do not fit.
+    /// # Panics
+    /// If they do not fit.
     pub fn record_nth(&self, cmd: &Commands<'_>, from: &Buffer, bytes: u64, nth: u64) {
         cmd.copy(from, 0, &self.buffer, nth * bytes, bytes);
         barrier::buffers(cmd, &[(&self.buffer, Access::TRANSFER_WRITE, Access::HOST_READ)]);
@@ -46,7 +48,8 @@ impl ReadBack {
     /// Records the copies of one pixel of each image, of `bytes` bytes, one after another. The images are in layout
     /// `GENERAL`; a barrier from [`Access::TRANSFER_READ`] must precede their next use.
     ///
-    /// # Panics If they do not fit.
+    /// # Panics
+    /// If they do not fit.
     pub fn record_pixels(&self, cmd: &Commands<'_>, from: &[&Image], at: (u32, u32), bytes: u64) {
         for (nth, image) in (0..).zip(from) {
             cmd.copy_pixel(image, at, &self.buffer, (nth * bytes, bytes));
@@ -56,7 +59,8 @@ impl ReadBack {
 
     /// The first `count` values in place, after the fence.
     ///
-    /// # Panics If the buffer is shorter.
+    /// # Panics
+    /// If the buffer is shorter.
     pub fn slice<T: Pod>(&self, count: usize) -> &[T] {
         let Some(mapped) = self.buffer.mapped() else { panic!("`{}` is not mapped", self.buffer.name()) };
         bytemuck::cast_slice(&mapped[..count * size_of::<T>()])
@@ -64,7 +68,8 @@ impl ReadBack {
 
     /// A copy of the first `count` values, after the fence.
     ///
-    /// # Panics If the buffer is shorter.
+    /// # Panics
+    /// If the buffer is shorter.
     pub fn values<T: Pod>(&self, count: usize) -> Vec<T> {
         self.slice(count).to_vec()
     }

@@ -50,6 +50,7 @@ impl Texel {
 #[derive(Debug)]
 pub struct TexelBuffer {
     view: vk::BufferView,
+    texel: Texel,
     // declared after the view of it
     buffer: Buffer,
     device: Device,
@@ -58,7 +59,8 @@ pub struct TexelBuffer {
 impl TexelBuffer {
     /// Views `buffer`.
     ///
-    /// # Errors [`GpuError::TooLarge`] if the buffer has more texels than the device can address, [`GpuError::Vulkan`].
+    /// # Errors
+    /// [`GpuError::TooLarge`] if the buffer has more texels than the device can address, [`GpuError::Vulkan`].
     pub fn new(device: &Device, buffer: Buffer, texel: Texel) -> Result<Self, GpuError> {
         let (format, bytes) = (texel.format(), texel.bytes());
         let limit = u64::from(device.limits().max_texel_buffer_elements) * bytes;
@@ -69,7 +71,12 @@ impl TexelBuffer {
         // SAFETY: the buffer belongs to this device.
         let view =
             unsafe { device.raw().create_buffer_view(&create, None) }.named("vkCreateBufferView", buffer.name())?;
-        Ok(Self { view, buffer, device: device.clone() })
+        Ok(Self { view, texel, buffer, device: device.clone() })
+    }
+
+    /// See [`Buffer::of_size`].
+    pub(crate) fn of_size(&self, bytes: u64) -> Result<Self, GpuError> {
+        Self::new(&self.device, self.buffer.of_size(bytes)?, self.texel)
     }
 
     /// See [`Buffer::write`].

@@ -84,14 +84,16 @@ impl Timestamps {
 
     /// Times and labels the commands of `record`.
     ///
-    /// # Panics If the frame has more scopes than [`new`](Self::new) allows.
+    /// # Panics
+    /// If the frame has more scopes than [`new`](Self::new) allows.
     pub fn scope<R>(&mut self, cmd: &Commands<'_>, name: &str, record: impl FnOnce() -> R) -> R {
         self.measure(cmd, name, false, record)
     }
 
     /// As [`scope`](Self::scope), with statistics, for a scope that draws. Not within `rendering`.
     ///
-    /// # Panics If the frame has more scopes than [`new`](Self::new) allows.
+    /// # Panics
+    /// If the frame has more scopes than [`new`](Self::new) allows.
     pub fn drawing<R>(&mut self, cmd: &Commands<'_>, name: &str, record: impl FnOnce() -> R) -> R {
         self.measure(cmd, name, true, record)
     }

@@ -29,7 +29,9 @@ impl Uploads {
         usage: vk::BufferUsageFlags,
         data: &[T],
     ) -> Result<Buffer, GpuError> {
-        let (bytes, usage) = (size_of_val(data) as u64, usage | vk::BufferUsageFlags::TRANSFER_DST);
+        // read when a larger one takes its place
+        let copied = vk::BufferUsageFlags::TRANSFER_DST | vk::BufferUsageFlags::TRANSFER_SRC;
+        let (bytes, usage) = (size_of_val(data) as u64, usage | copied);
         let buffer =
             Buffer::new(cmd.device(), &BufferInfo { name, bytes, usage, pool, location: MemoryLocation::Device })?;
         self.write(cmd, &buffer, 0, data)?;

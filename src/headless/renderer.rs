@@ -5,11 +5,12 @@ use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
 use crate::gpu::{Device, GpuError, LowerLimits};
 use crate::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use crate::picture::{FrameSettings, Outputs, Picture, SceneSettings};
-use crate::renderer::{EditError, Hit, InstanceError, RenderError, Renderer, TargetFormats};
+use crate::renderer::{EditError, Hit, InstanceError, ModelId, RemoveError, RenderError, Renderer, TargetFormats};
 use crate::scene::SceneRequest;
 use ash::vk;
 use glam::DAffine3;
 use std::mem::ManuallyDrop;
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -174,6 +175,33 @@ impl HeadlessRenderer {
     /// When no model was uploaded.
     pub fn set_selected(&mut self, instance: usize, highlight: Option<Colour>) -> Result<(), InstanceError> {
         self.renderer.set_selected(instance, highlight)
+    }
+
+    /// Adds a model to the scene: see [`Renderer::add`].
+    ///
+    /// # Errors
+    /// [`HeadlessError::Gpu`]; the scene is as it was.
+    ///
+    /// # Panics
+    /// When no model was uploaded.
+    pub fn add(&mut self, model: &Model) -> Result<ModelId, HeadlessError> {
+        Ok(self.renderer.add(model)?)
+    }
+
+    /// Removes a model that was added: see [`Renderer::remove`].
+    ///
+    /// # Errors
+    /// [`RemoveError`]; the scene is as it was.
+    pub fn remove(&mut self, id: ModelId) -> Result<(), RemoveError> {
+        self.renderer.remove(id)
+    }
+
+    /// Where the instances of an added model are: see [`Renderer::instances_of`].
+    ///
+    /// # Errors
+    /// [`RemoveError`].
+    pub fn instances_of(&self, id: ModelId) -> Result<Range<usize>, RemoveError> {
+        self.renderer.instances_of(id)
     }
 
     /// Lets the next picture read back what it shows at a pixel: see [`Renderer::pick`].

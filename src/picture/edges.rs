@@ -20,6 +20,9 @@ pub struct EdgeSettings {
     pub width: f64,
     /// Width of thin lines, likewise.
     pub thin_width: f64,
+    /// Width of the outlines of sections, likewise: where a cut of a closed part or of a Boolean solid meets the rest, or
+    /// ends.
+    pub section_width: f64,
     /// Linear colour and opacity.
     pub colour: Colour,
     /// Linear colour and opacity of hidden lines.
@@ -27,7 +30,8 @@ pub struct EdgeSettings {
 }
 
 impl Default for EdgeSettings {
-    /// All edges, 1.25 pixels wide and nearly black; thin lines along tangent edges; no hidden lines, no silhouettes.
+    /// All edges, 1.25 pixels wide and nearly black; thin lines along tangent edges, outlines of sections twice as wide; no
+    /// hidden lines, no silhouettes.
     fn default() -> Self {
         Self {
             which: EdgeChoice::All,
@@ -36,6 +40,7 @@ impl Default for EdgeSettings {
             hidden: false,
             width: 1.25,
             thin_width: 0.6,
+            section_width: 2.5,
             colour: [0.012, 0.013, 0.016, 1.0],
             hidden_colour: [0.012, 0.013, 0.016, 0.35],
         }
@@ -71,6 +76,8 @@ pub enum TangentEdges {
 pub(crate) enum LineStyle {
     Full,
     Thin,
+    /// The outline of a section.
+    Bold,
 }
 
 /// Settings out of range.
@@ -93,15 +100,22 @@ impl EdgeSettings {
 
     /// Checks that the settings can be drawn.
     ///
-    /// # Errors [`BadEdges`].
+    /// # Errors
+    /// [`BadEdges`].
     pub fn check(&self) -> Result<(), BadEdges> {
-        for width in [self.width, self.thin_width] {
+        for width in [self.width, self.thin_width, self.section_width] {
             if !(0.0..=Self::MOST_WIDTH).contains(&width) {
                 return Err(BadEdges::Width(width));
             }
         }
         let bad = [self.colour, self.hidden_colour].into_iter().find(|c| !c.iter().all(|x| (0.0..=1.0).contains(x)));
         bad.map_or(Ok(()), |colour| Err(BadEdges::Colour(colour)))
+    }
+
+    /// The width of sections' outlines beside lines of another width, as much wider as here; at most
+    /// [`MOST_WIDTH`](Self::MOST_WIDTH).
+    pub fn wider(&self, width: f64) -> f64 {
+        (width * self.section_width / self.width).min(Self::MOST_WIDTH)
     }
 
     /// The line along an edge of this kind, if any.

@@ -21,7 +21,7 @@ pub enum Style {
     Isophotes = 4,
     /// White, a little darker on surfaces turned from the viewer: a background for lines.
     Technical = 5,
-    /// Mean curvature of the exact surface, half the sum of the principal ones: blue where it is hollow towards the eye, red
+    /// Mean curvature of the exact surface, half the sum of the principal ones: blue where it is hollow as seen, red
     /// where it bulges. [`FrameSettings::curvature_range`](super::FrameSettings::curvature_range) is the end of the
     /// scale. Needs [`SceneSettings::curvature`](super::SceneSettings::curvature). Triangles and
     /// transparent surfaces are grey.

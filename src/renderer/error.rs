@@ -28,6 +28,9 @@ pub enum RenderError {
     /// The model cannot be drawn.
     #[error("model: {0}")]
     Model(#[from] ModelError),
+    /// An added model has [`Model::trim`](crate::model::Model::trim).
+    #[error("a model with a volume that trims it cannot be added: the volume would trim the whole scene")]
+    AddedVolume,
     /// The model, or what this view needs of it.
     #[error(transparent)]
     TooMany(#[from] TooMany),

@@ -51,8 +51,8 @@ impl Renderer {
     pub(super) fn reload(&mut self) -> Result<(), RenderError> {
         self.device.alive()?;
         let (true, Some(source)) = (self.stale, &mut self.source) else { return Ok(()) };
-        source.forget();
         let loaded = Loaded::new(&self.device, self.formats, source, (None, source.request), &|_| ())?;
+        source.is_whole();
         self.replace(loaded);
         self.stale = false;
         Ok(())

@@ -73,7 +73,8 @@ impl Renderer {
             panic!("upload a model before changing it")
         };
         let model = &source.model;
-        let mut placed = model.instances.get(nth).ok_or(InstanceError::NoSuchInstance(nth))?.clone();
+        let living = model.instances.get(nth).filter(|_| !source.models.is_free(nth));
+        let mut placed = living.ok_or(InstanceError::NoSuchInstance(nth))?.clone();
         let mut shown = source.shown[nth];
         loaded.data.may_change(nth, moves)?;
         change(&mut placed, &mut shown);

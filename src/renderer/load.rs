@@ -17,7 +17,7 @@ use crate::frame::counts::Counts;
 use crate::gpu::Device;
 use crate::model::{Camera, Model};
 use crate::picture::{SceneSettings, Smooth, TakenWay, TrimWay};
-use crate::scene::{Cut, DeepZoomUpload, SceneData, SceneRequest, Told};
+use crate::scene::{Cut, DeepZoomUpload, Joinable, SceneData, SceneRequest, Told};
 use std::sync::Arc;
 
 impl Renderer {
@@ -170,18 +170,21 @@ impl Loaded {
             data_of = data(request.exact())?;
         }
         let mut data = data_of;
+        let is_cut = cut.is_some();
         data.has_numbers = formats.outputs.has_numbers();
         if let Some(edges) = request.edges {
             match &cut {
                 None => data.find_edges(whole, edges)?,
                 Some(cut) => data.find_edges_of_cut(whole, cut, edges)?,
             }
+            data.find_edges_of_operands(whole)?;
         }
         let picking = match &cut {
             None => data.picking(whole, |_, face| face),
             Some(cut) => data.picking(&cut.model, |part, face| cut.face_of(part, face)),
         };
         data.show(&whole.instances, &source.shown);
+        let joinable = if is_cut { None } else { Joinable::of(&data, whole, request) };
         let counts = Counts::of(&data);
         counts.check(Ranges::of(device).quads)?;
         let passes = Passes::new(device, &data, formats.of_passes())?;
@@ -194,6 +197,10 @@ impl Loaded {
             picking: Arc::new(picking),
             scene: None,
             stages: None,
+            room: counts,
+            joinable,
+            gone: 0,
+            is_cut,
             edits: Vec::new(),
             changes: Default::default(),
             moved: false,

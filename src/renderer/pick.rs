@@ -5,7 +5,7 @@
 //! ```
 
 use super::source::Source;
-use super::{FrameInput, Loaded, Renderer};
+use super::{FrameInput, Renderer};
 use crate::frame::Frame;
 use crate::frame::pick::PICK_BYTES;
 use crate::gpu::{Commands, Device, GpuError, ReadBack};
@@ -58,7 +58,7 @@ impl Renderer {
     /// of them.
     ///
     /// `None`: the frame was recorded without a call of [`pick`](Self::pick), the pixel shows the background or lies beside
-    /// the picture, another model was uploaded since, or the device is lost.
+    /// the picture, another model was uploaded or one was removed since, or the device is lost.
     pub fn picked(&self, slot: usize) -> Option<Hit> {
         let slot = &self.slots[slot];
         let pick = slot.pick.as_ref().filter(|_| slot.recorded && !self.device.is_lost())?;
@@ -77,23 +77,27 @@ impl Asked {
     }
 }
 
+/// Makes what the next frame's pixel is read back to, where the host wants one.
+pub(super) fn make_room(at: Option<(u32, u32)>, slot: &mut Option<SlotPick>, device: &Device) -> Result<(), GpuError> {
+    if at.is_some() && slot.is_none() {
+        *slot = Some(SlotPick { words: ReadBack::new(device, "pick (read back)", PICK_BYTES)?, asked: None });
+    }
+    Ok(())
+}
+
 /// Records the copies, where the host wants some of this frame.
 pub(super) fn record(
     at: Option<(u32, u32)>,
     slot: &mut Option<SlotPick>,
-    (device, cmd, frame): (&Device, &Commands<'_>, &Frame<'_>),
-    (source, loaded, input): (&Source, &Loaded, &FrameInput<'_>),
-) -> Result<(), GpuError> {
-    slot.iter_mut().for_each(|slot| slot.asked = None);
+    (cmd, frame): (&Commands<'_>, &Frame<'_>),
+    (source, picking, input): (&Source, &Arc<Picking>, &FrameInput<'_>),
+) {
+    let Some(slot) = slot else { return };
+    slot.asked = None;
     let (width, height) = input.camera.size;
-    let Some(at) = at.filter(|(x, y)| *x < width && *y < height) else { return Ok(()) };
-    let slot = match slot {
-        Some(slot) => slot,
-        none => none.insert(SlotPick { words: ReadBack::new(device, "pick (read back)", PICK_BYTES)?, asked: None }),
-    };
+    let Some(at) = at.filter(|(x, y)| *x < width && *y < height) else { return };
     frame.pick(cmd, at, &slot.words);
     let transforms = source.model.instances.iter().map(|instance| instance.transform).collect();
-    let (camera, picking) = (*input.camera, Arc::clone(&loaded.picking));
+    let (camera, picking) = (*input.camera, Arc::clone(picking));
     slot.asked = Some(Asked { at, camera, picking, transforms, upload: source.upload });
-    Ok(())
 }

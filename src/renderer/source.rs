@@ -6,6 +6,7 @@
 //!               ╰───── edits, and changes of instances ───────────╯
 //! ```
 
+use super::models::Models;
 use crate::model::{Camera, Model};
 use crate::scene::{DeepZoom, DeepZoomUpload, SceneRequest, Shown};
 use std::sync::Arc;
@@ -18,7 +19,9 @@ pub(crate) struct Source {
     pub(super) shown: Vec<Shown>,
     /// Told from those of other models.
     pub(super) upload: u64,
-    deep_zoom: DeepZoom,
+    /// Those that were added to it.
+    pub(super) models: Models,
+    pub(super) deep_zoom: DeepZoom,
     /// What this camera sees is loaded.
     approached: Option<Camera>,
 }
@@ -27,15 +30,15 @@ impl Source {
     /// Of a model that has been checked.
     pub(super) fn new(model: Arc<Model>, request: SceneRequest) -> Self {
         let shown = vec![Shown::default(); model.instances.len()];
-        let deep_zoom = DeepZoom::new(&model);
-        Self { model, request, shown, upload: 0, deep_zoom, approached: None }
+        let (models, deep_zoom) = (Models::new(&model), DeepZoom::new(&model));
+        Self { model, request, shown, upload: 0, models, deep_zoom, approached: None }
     }
 
     /// The same, not loaded yet, with another request.
     #[cfg(feature = "headless")]
     pub(crate) fn with(&self, request: SceneRequest) -> Self {
-        let shown = self.shown.clone();
-        Self { shown, ..Self::new(Arc::clone(&self.model), request) }
+        let (shown, models) = (self.shown.clone(), self.models.clone());
+        Self { shown, models, ..Self::new(Arc::clone(&self.model), request) }
     }
 
     /// The settings that it was uploaded with.
@@ -58,6 +61,13 @@ impl Source {
     pub(super) fn forget(&mut self) {
         self.approached = None;
         self.deep_zoom.forget();
+    }
+
+    /// All of it is loaded.
+    pub(super) fn is_whole(&mut self) {
+        self.approached = None;
+        self.deep_zoom.hold_whole();
+        self.models.bounds = self.model.control_bounds();
     }
 
     /// An instance changed; what is loaded changed with it.

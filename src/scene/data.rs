@@ -86,7 +86,7 @@ pub(crate) struct SceneData {
     #[cfg(feature = "baselines")]
     pub untested: bool,
     /// The way to trim that the request names or the model's size suggests.
-    way: Option<TakenWay>,
+    pub(super) way: Option<TakenWay>,
     /// Samples of each pixel.
     pub samples: Samples,
     /// The borders that are smoothed.
@@ -149,12 +149,26 @@ impl SceneData {
     pub(crate) fn telling(model: &Model, request: SceneRequest, told: Told<'_>) -> Result<Self, UndrawnSolid> {
         // an edit would change where cuts save tests
         let extent = if request.editable { f64::INFINITY } else { model.control_bounds().diagonal() };
-        Self::of(model, model, (request, told), |_, scale| extent / scale)
+        Ok(Self::of(model, model, (request, told), |_, scale| extent / scale)?.complete())
+    }
+
+    /// Of a model that joins a scene of this extent, which may have occlusion culling ([`join`](Self::join)).
+    pub(super) fn joining(model: &Model, request: SceneRequest, extent: f64) -> Result<Self, UndrawnSolid> {
+        Self::of(model, model, (request, &|_| ()), |_, scale| extent / scale)
+    }
+
+    /// With nothing that a scene of these parts alone does not read.
+    fn complete(mut self) -> Self {
+        if !self.hides() {
+            self.outside = Vec::new();
+        }
+        self
     }
 
     /// The arrays of a cut for a close view. The shadows are those of the whole model.
     pub(crate) fn cut_from(whole: &Model, cut: &Cut, request: impl Into<SceneRequest>) -> Result<Self, UndrawnSolid> {
-        let mut data = Self::of(whole, &cut.model, (request.into(), &|_| ()), |part, _| cut.extents[part])?;
+        let data = Self::of(whole, &cut.model, (request.into(), &|_| ()), |part, _| cut.extents[part])?;
+        let mut data = data.complete();
         for source in data.sources.iter_mut().filter(|source| source[1] > 0) {
             *source = cut.source_of(source[1] as usize - 1, whole);
         }
@@ -164,7 +178,7 @@ impl SceneData {
     /// The arrays of a model whose patches are not split.
     #[cfg(any(test, feature = "baselines"))]
     pub(crate) fn uncut(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
-        Self::of(model, model, (settings.into(), &|_| ()), |_, _| f64::INFINITY)
+        Ok(Self::of(model, model, (settings.into(), &|_| ()), |_, _| f64::INFINITY)?.complete())
     }
 
     /// `extent` gets a part and the scale of its largest copy, and returns the extent of [`Trimming`].
@@ -197,7 +211,8 @@ impl SceneData {
         let isolated = nearest.then(|| Isolated::of(&model.solids, model.coincidence())).transpose()?.flatten();
         let union = isolated.as_ref().map_or(&model.solids, |isolated| &isolated.rest);
         let lists = items.map_or_else(|| Lists::union(union), |items| Lists::of(items, all));
-        let solids = SolidData::new(&lists, model.coincidence(), settings.solids)?;
+        let mut solids = SolidData::new(&lists, model.coincidence(), settings.solids)?;
+        solids.mark_cuts(&whole.cuts);
         // a part that a volume cuts open casts no shadow: the shadow would be that of the uncut part
         let is_cut = model.trim.is_some();
         let sun = settings.sun.map(|towards| match is_whole {
@@ -318,9 +333,6 @@ impl SceneData {
         } else {
             data.cones.resize(data.patches.len(), [0.0; 4]);
         }
-        if !data.hides() {
-            data.outside = Vec::new();
-        }
         data.sources.resize(data.instances.len(), [0; 2]);
         data.trimmed = Trimmed::by_table(&data);
         data.boxes = boxes(&data);
@@ -350,7 +362,12 @@ impl SceneData {
     /// The scene has occlusion culling: enough patches, one sample a pixel, and patches other than those of operands,
     /// which rays cross whether or not they are hidden.
     pub(crate) fn hides(&self) -> bool {
-        self.items.len() >= FEWEST_HIDDEN && !self.has_operands && self.samples == Samples::One
+        self.hides_with(0)
+    }
+
+    /// The same with so many more items.
+    pub(super) fn hides_with(&self, more: usize) -> bool {
+        self.items.len() + more >= FEWEST_HIDDEN && !self.has_operands && self.samples == Samples::One
     }
 
     /// Some mesh is placed.
@@ -363,35 +380,10 @@ impl SceneData {
         self.has_patches || self.has_meshes()
     }
 
-    /// Frees the arrays that are on the GPU; the placements and centres stay.
-    pub(crate) fn drop_uploaded(&mut self) {
-        let (placements, boxes) = (std::mem::take(&mut self.placements), std::mem::take(&mut self.boxes));
-        let solids = std::mem::take(&mut self.solids).centres_only();
-        let volume = self.volume.take().map(SolidData::centres_only);
-        let edit = self.edit.take();
-        let sun = self.sun.take().map(SunData::directions_only);
-        let trimmed = self.trimmed.take();
-        let (hidden, live) = (std::mem::take(&mut self.hidden), std::mem::take(&mut self.live));
-        let casts_shadows = self.casts_shadows;
-        *self = Self {
-            placements,
-            boxes,
-            hidden,
-            live,
-            casts_shadows,
-            trimmed,
-            solids,
-            volume,
-            edit,
-            sun,
-            ..Self::default()
-        };
-    }
-
     /// Places the operands of Boolean solids without equations like parts, after the parts.
     fn push_operands(&mut self, trim: Trimming) {
-        let operands = std::mem::take(&mut self.solids.operands);
-        for operand in &operands {
+        let mut operands = std::mem::take(&mut self.solids.operands);
+        for operand in &mut operands {
             let first = self.faces.len();
             let cuts = Cuts::of(operand.faces());
             for face in operand.faces() {
@@ -410,6 +402,7 @@ impl SceneData {
             let transform = operand.primitive.transform;
             let instance = Instance { part: 0, transform, colour: None, name: String::new() };
             let number = self.instances.len() as u32;
+            operand.placed = Some((number, first));
             self.push_instance(&instance, operand.origin, faces, operand.shell);
             for mesh in operand.meshes.clone() {
                 self.solids.operand_meshes[mesh].instance = number;

@@ -13,7 +13,7 @@ use super::data::SceneData;
 use super::deep_zoom::KnownEdges;
 use crate::abi;
 use crate::model::{Edges, Model, Part};
-use crate::picture::{EdgeSettings, LineStyle};
+use crate::picture::{EdgeChoice, EdgeSettings, LineStyle};
 use glam::{DAffine3, DVec3, DVec4};
 use rayon::prelude::*;
 
@@ -65,9 +65,15 @@ impl SceneData {
         Ok(())
     }
 
-    /// Some line is drawn along an edge or a silhouette.
+    /// Some line is drawn along an edge or a silhouette, or on a Boolean solid.
     pub(crate) fn has_lines(&self) -> bool {
-        let has = |edges: &EdgeData| !edges.items.is_empty() || edges.settings.silhouettes && self.has_patches;
+        let has_solids = self.solids.kinds().is_some();
+        let has = |edges: &EdgeData| {
+            let EdgeSettings { which, silhouettes, .. } = edges.settings;
+            !edges.items.is_empty()
+                || silhouettes && (self.has_patches || has_solids)
+                || which != EdgeChoice::None && has_solids
+        };
         self.edges.as_ref().is_some_and(has)
     }
 }
@@ -127,7 +133,7 @@ impl EdgeData {
         for (edge, number) in edges.edges.iter().zip(number..) {
             let Some(style) = self.settings.style(edge.kind) else { continue };
             let own = edge.uses.iter().map(|u| (first_face + u.face) as u32).collect();
-            self.push_line(number, style, own, edges.deviation);
+            self.push_line(number, style, own, edges.deviation, 0);
             for span in &edge.curve {
                 self.push_piece(&span.piece.points, origin);
             }
@@ -137,20 +143,27 @@ impl EdgeData {
             let Some(style) = self.settings.style(edge.kind) else { continue };
             let triangle =
                 |&(mesh, nth): &(usize, usize)| abi::OWN_TRIANGLE | (of.first_triangles[part][mesh] + nth as u32);
-            self.push_line(number, style, edge.triangles.iter().map(triangle).collect(), 0.0);
+            self.push_line(number, style, edge.triangles.iter().map(triangle).collect(), 0.0, 0);
             self.push_piece(&edge.ends.map(|p| p.extend(1.0)), origin);
         }
     }
 
     /// Adds an edge with its own faces, as keys or triangles. It lies at most `off` from these faces, in units of the
-    /// part.
-    pub(super) fn push_line(&mut self, number: u32, style: LineStyle, own: Vec<u32>, off: f64) {
+    /// part. `flags`: 0, or [`EDGE_NEAR`](abi::EDGE_NEAR).
+    pub(super) fn push_line(&mut self, number: u32, style: LineStyle, own: Vec<u32>, off: f64, flags: u32) {
         let style = match style {
             LineStyle::Full => abi::EDGE_FULL,
             LineStyle::Thin => abi::EDGE_THIN,
+            LineStyle::Bold => abi::EDGE_BOLD,
         };
         let first_own = self.own_faces.len() as u32;
-        self.lines.push(abi::EdgeLine { number, style, first_own, own_count: own.len() as u32, off: off as f32 });
+        self.lines.push(abi::EdgeLine {
+            number,
+            style: style | flags,
+            first_own,
+            own_count: own.len() as u32,
+            off: off as f32,
+        });
         self.own_faces.extend(own);
     }
 

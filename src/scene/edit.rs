@@ -93,16 +93,30 @@ pub(crate) struct EditPatch {
 }
 
 /// An array of the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum EditTarget {
     Patches,
-    Cells,
-    Curves,
-    CurvePoints,
+    Outside,
+    Cones,
+    Points,
+    Links,
+    Faces,
+    FaceInstances,
     /// The instances of placed parts.
     Instances,
-    /// An array of [`ExactScene::all`](super::ExactScene::all), by number.
+    Items,
+    /// The part and the instance of the model of each of them.
+    Sources,
+    Cells,
+    CellItems,
+    Curves,
+    CurvePoints,
+    CurveItems,
+    WideStrips,
+    /// An array of [`ExactScene`](super::ExactScene): faces, cells, arcs.
     Exact(usize),
+    /// Of [`MeshBuffers`](super::MeshBuffers): meshes, instances, positions, triangles, normals.
+    Mesh(usize),
 }
 
 /// Bytes to overwrite.
@@ -240,6 +254,7 @@ impl SceneData {
                 EditTarget::CurvePoints => bytemuck::cast_slice_mut(&mut self.curve_points),
                 EditTarget::Instances => bytemuck::cast_slice_mut(&mut self.instances),
                 EditTarget::Exact(array) => self.exact.bytes_mut(array),
+                other => unreachable!("no edit of a loop changes {other:?}"),
             };
             bytes[w.offset as usize..][..w.bytes.len()].copy_from_slice(&w.bytes);
         }

@@ -101,6 +101,11 @@ struct Range {
 }
 
 impl PlacedBox {
+    /// The same of a part that comes behind so many items.
+    pub(super) fn behind(self, items: u32) -> Self {
+        Self { first: self.first + items, ..self }
+    }
+
     fn range(&self, row: DVec4) -> Range {
         let (linear, size) = (row.truncate(), row.truncate().abs());
         let reach = size.dot(self.half);

@@ -89,8 +89,8 @@ impl SceneData {
 
     /// Whether an instance of the model may change. `moves`: its placement or visibility changes.
     pub(crate) fn may_change(&self, instance: usize, moves: bool) -> Result<(), InstanceError> {
-        // a cut is made again after a change
-        if !self.live.is_empty() && self.live[instance].is_none() {
+        // a cut is made again after a change, and so is a scene that is still to be loaded
+        if self.live.get(instance) == Some(&None) {
             return Err(InstanceError::Followed(instance));
         }
         if moves && self.casts_shadows { Err(InstanceError::Shadows(instance)) } else { Ok(()) }
@@ -130,7 +130,7 @@ impl SceneData {
         self.trimmed.iter_mut().for_each(Trimmed::settle);
     }
 
-    fn hide(&mut self, number: u32, hidden: bool) {
+    pub(super) fn hide(&mut self, number: u32, hidden: bool) {
         if hidden || !self.hidden.is_empty() {
             self.hidden.resize(self.placements.len(), false);
             self.hidden[number as usize] = hidden;

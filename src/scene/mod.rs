@@ -14,6 +14,7 @@
 //! centre of their part, and the transform from there to the eye is composed in `f64` every frame. Patches with very
 //! short sides have a fine net in addition (`fine.rs`).
 
+mod arrays;
 mod cells;
 mod cones;
 mod data;
@@ -26,10 +27,13 @@ mod fine;
 mod flatten;
 mod in_sight;
 mod instance;
+mod join;
+mod kept;
 mod link;
 mod mesh;
 mod mixed;
 mod neighbours;
+mod operand_edges;
 mod parts;
 mod picking;
 mod request;
@@ -43,6 +47,7 @@ mod view_cell;
 mod way;
 mod whole_view;
 
+pub(crate) use arrays::Array;
 pub(crate) use data::{Division, SceneData};
 pub(crate) use deep_zoom::{Cut, DeepZoom, DeepZoomUpload};
 pub(crate) use edges::EdgeData;
@@ -56,6 +61,7 @@ pub(crate) use flatten::{Cuts, flattened};
 pub(crate) use in_sight::{InSight, Reach};
 pub use instance::InstanceError;
 pub(crate) use instance::Shown;
+pub(crate) use join::{FirstNumbers, Joinable};
 pub(crate) use parts::Told;
 pub use picking::Hit;
 pub(crate) use picking::{Picked, Picking};
@@ -67,7 +73,7 @@ pub(crate) use trimmed::TableView;
 pub(crate) use upload::BaselineScene;
 #[cfg(feature = "baselines")]
 pub(crate) use upload::TableScene;
-pub(crate) use upload::{EdgeBuffers, ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles, Trims};
+pub(crate) use upload::{EdgeBuffers, ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles};
 pub use view::seen_by;
 #[cfg(any(test, feature = "baselines"))]
 pub(crate) use view::view;

@@ -60,7 +60,7 @@ pub struct Hit {
 }
 
 /// The meaning of the scene's numbers.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Picking {
     /// First item of each placed face, its face and its instance in the scene.
     placed: Vec<[u32; 3]>,
@@ -131,6 +131,18 @@ impl SceneData {
             edges: self.edges.as_ref().map(|edges| (edges.found.clone(), edges.settings)),
             sides: s.leaf_surfaces.iter().map(|side| of_leaf(side.leaf)).chain(triangles).collect(),
         }
+    }
+}
+
+impl Picking {
+    /// A model joins the scene: `new` has what its arrays stand for, whose numbers count on from the scene's.
+    pub(crate) fn join(&mut self, new: Self) {
+        self.placed.extend(new.placed);
+        self.faces.extend(new.faces);
+        self.patches.extend(new.patches);
+        self.sources.extend(new.sources);
+        self.meshes.extend(new.meshes);
+        self.mesh_instances.extend(new.mesh_instances);
     }
 }
 

@@ -314,6 +314,13 @@ impl SolidData {
         }
     }
 
+    /// Faces of primitives of these numbers are cuts.
+    pub(super) fn mark_cuts(&mut self, cuts: &[u32]) {
+        for leaf in self.leaves.iter_mut().filter(|leaf| cuts.contains(&leaf.id)) {
+            leaf.flags |= abi::LEAF_CAP;
+        }
+    }
+
     /// [`SolidWay::Events`] finds the faces, by request or because no other way can.
     pub(crate) fn is_by_events(&self) -> bool {
         !self.leaves.is_empty() && self.blister.is_none() && self.order.is_empty()

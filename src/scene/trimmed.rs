@@ -98,6 +98,23 @@ impl Trimmed {
         part.around = boxes.iter().copied().fold(Bounds::EMPTY, Bounds::union);
     }
 
+    /// So many placed parts come behind these; `new` has those that the table trims. [`settle`](Self::settle) follows.
+    pub(super) fn join(&mut self, new: Option<Self>, parts: usize) {
+        let (boxes, cells) = (self.boxes.len(), self.cells.len());
+        let behind = |range: Range<usize>, first: usize| range.start + first..range.end + first;
+        let Some(new) = new else {
+            let nothing = PlacedBoxes { boxes: boxes..boxes, cells: cells..cells, around: Bounds::EMPTY };
+            return self.placed.extend(std::iter::repeat_n(nothing, parts));
+        };
+        self.boxes.extend(new.boxes);
+        self.cells.extend(new.cells);
+        self.placed.extend(new.placed.into_iter().map(|part| PlacedBoxes {
+            boxes: behind(part.boxes, boxes),
+            cells: behind(part.cells, cells),
+            ..part
+        }));
+    }
+
     /// Updates the ball around all boxes.
     pub(super) fn settle(&mut self) {
         self.ball = Ball::around(self.placed.iter().map(|part| part.around).fold(Bounds::EMPTY, Bounds::union));

@@ -17,7 +17,7 @@ use std::ops::Range;
 pub(crate) struct Scene {
     pub patches: TexelBuffer,
     /// The cells of each patch that no part of the face covers; `None` without occlusion culling.
-    outside: Option<Buffer>,
+    pub(super) outside: Option<Buffer>,
     /// The cone of each patch's normals; `None` if no part is closed and without trims.
     pub cones: Option<Buffer>,
     /// Homogeneous control points, and fine nets.
@@ -176,14 +176,16 @@ impl Volume {
 impl Scene {
     /// The cells of each patch that no part of the face covers.
     ///
-    /// # Panics In a scene without occlusion culling.
+    /// # Panics
+    /// In a scene without occlusion culling.
     pub(crate) fn outside(&self) -> &Buffer {
         self.outside.as_ref().expect("scenes with occlusion culling have it")
     }
 
     /// Slefes and their table.
     ///
-    /// # Panics In a scene whose patches are divided by bounds.
+    /// # Panics
+    /// In a scene whose patches are divided by bounds.
     #[cfg(feature = "baselines")]
     pub(crate) fn slefes(&self) -> &Buffer {
         self.slefes.as_ref().expect("scenes that slefes divide have them")

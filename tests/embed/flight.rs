@@ -147,6 +147,104 @@ fn a_part_moves_while_frames_are_in_flight() {
     assert_eq!(host.shutdown(), [""; 0]);
 }
 
+/// A cube comes and goes, and so do two spheres beside it, while the other slot's frame is in flight: each frame has what
+/// was there when it was recorded, as an upload has it.
+#[test]
+fn models_come_and_go_while_frames_are_in_flight() {
+    let host = Host::new();
+    let at = |mut model: Model, x: f64| {
+        model.instances[0].transform = DAffine3::from_translation(DVec3::X * x);
+        model
+    };
+    let base = painted(shapes::sphere(), RED);
+    let [left, right] = [-9.0, 9.0].map(|x| at(painted(shapes::sphere(), GREEN), x));
+    let cube = at(painted(shapes::cube(), GREEN), 4.0);
+    let size = (120, 60);
+    let eye = DVec3::new(0.0, -40.0, 0.0);
+    let (target, up) = (DVec3::ZERO, DVec3::Z);
+    let projection = selvedge::model::Projection::Perspective { fov_y: 0.4 };
+    let camera = Camera { eye, target, up, projection, depth_range: (1.0, 100.0), size };
+    let targets = [(); SLOTS].map(|()| Targets::new(&host, size, FORMAT));
+    let (mut seen, mut models, mut living) = (Vec::new(), Vec::new(), Vec::new());
+    let mut live = renderer(&host, &base, FORMAT);
+    for frame in 0..12 {
+        let slot = frame % SLOTS;
+        host.wait(slot);
+        if frame >= SLOTS {
+            assert!(live.report(slot).unwrap().unwrap().complete, "frame {frame}");
+            seen.push(targets[slot].values());
+        }
+        match frame % 6 {
+            1 => living.push(live.add(&cube).unwrap()),
+            2 => living.extend([&left, &right].map(|model| live.add(model).unwrap())),
+            4 => live.remove(living.remove(0)).unwrap(),
+            5 => living.drain(..).for_each(|id| live.remove(id).unwrap()),
+            _ => {}
+        }
+        models.push((**live.model().unwrap()).clone());
+        record(&host, &mut live, slot, &targets[slot], &camera, 0.5);
+    }
+    (12 - SLOTS..12).for_each(|frame| {
+        host.wait(frame % SLOTS);
+        seen.push(targets[frame % SLOTS].values());
+    });
+    drop(live);
+    for (frame, pair) in seen.windows(2).enumerate() {
+        assert_eq!(pair[0] != pair[1], models[frame] != models[frame + 1], "frame {frame}");
+    }
+    let mut fresh = renderer(&host, &base, FORMAT);
+    for (frame, (seen, model)) in seen.iter().zip(&models).enumerate() {
+        fresh.upload(model).unwrap();
+        record(&host, &mut fresh, 0, &targets[0], &camera, 0.5);
+        host.wait(0);
+        assert!(*seen == targets[0].values(), "frame {frame}");
+    }
+    drop(fresh);
+    targets.into_iter().for_each(|targets| targets.destroy(&host));
+    assert_eq!(host.shutdown(), [""; 0]);
+}
+
+/// A frame that never reaches the GPU has with it what would have been copied for a model: the next one loads all anew,
+/// with a model that came meanwhile and has moved.
+#[test]
+fn a_discarded_frame_loses_no_model() {
+    let host = Host::new();
+    let base = painted(shapes::sphere(), RED);
+    let cube = painted(shapes::cube(), GREEN);
+    let size = (120, 60);
+    let (eye, target, up) = (DVec3::new(0.0, -40.0, 0.0), DVec3::ZERO, DVec3::Z);
+    let projection = selvedge::model::Projection::Perspective { fov_y: 0.4 };
+    let camera = Camera { eye, target, up, projection, depth_range: (1.0, 100.0), size };
+    let targets = Targets::new(&host, size, FORMAT);
+    let mut live = renderer(&host, &base, FORMAT);
+    record(&host, &mut live, 0, &targets, &camera, 0.5);
+    host.wait(0);
+    live.add(&cube).unwrap();
+    record(&host, &mut live, 0, &targets, &camera, 0.5);
+    host.wait(0);
+    live.discard(0);
+    let second = live.add(&cube).unwrap();
+    let instance = live.instances_of(second).unwrap().start;
+    live.set_transform(instance, DAffine3::from_translation(DVec3::X * 9.0)).unwrap();
+    let third = live.add(&cube).unwrap();
+    live.remove(third).unwrap();
+    let seen = [(); 2].map(|()| {
+        record(&host, &mut live, 0, &targets, &camera, 0.5);
+        host.wait(0);
+        targets.values()
+    });
+    let model = (**live.model().unwrap()).clone();
+    assert_eq!(model.instances.len(), 3);
+    drop(live);
+    let mut fresh = renderer(&host, &model, FORMAT);
+    record(&host, &mut fresh, 0, &targets, &camera, 0.5);
+    host.wait(0);
+    assert!(seen.iter().all(|seen| *seen == targets.values()));
+    drop(fresh);
+    targets.destroy(&host);
+    assert_eq!(host.shutdown(), [""; 0]);
+}
+
 /// A view that needs more rows than the first table has: the report states it while a frame of the other slot is in
 /// flight, and the next frame in the slot is complete.
 #[test]

@@ -3,7 +3,7 @@
 use crate::driver::{Driver, Fault};
 use crate::shapes;
 use ash::vk;
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 use selvedge::headless::{HeadlessDevice, HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, LoopAt, Model};
 use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
@@ -84,6 +84,44 @@ fn memory_that_ends_once_leaves_no_mark() {
         draw(&mut renderer, &camera).unwrap();
         renderer.edit_loop(AT, next).unwrap();
         failing(&mut renderer, turn, &of_after);
+    }
+    drop(renderer);
+    assert!(driver.living().is_empty(), "{:?}", driver.living());
+}
+
+/// A model that joins a scene, so that buffers grow, and its first frame. A change of it meanwhile is not lost, either.
+#[test]
+fn memory_that_ends_once_leaves_no_mark_on_a_model_that_joins() {
+    let driver = Driver::new(false);
+    let [plate, _] = edited();
+    let mut other = plate.clone();
+    other.instances[0].transform = DAffine3::from_translation(DVec3::new(0.5, 0.5, 1.0));
+    let camera = Camera::around(plate.control_bounds(), DVec3::new(0.3, -0.6, 1.1), DVec3::Z, 0.6, SIZE);
+    let red = Some([0.8, 0.1, 0.1, 1.0]);
+    let mut renderer = opened(&driver);
+    // after a frame without the model
+    let joined = |renderer: &mut HeadlessRenderer, fault: Option<Fault>| {
+        renderer.upload(&plate).unwrap();
+        let before = bits(&draw(renderer, &camera).unwrap());
+        driver.plan(fault);
+        let id = renderer.add(&other).or_else(|_| renderer.add(&other)).unwrap();
+        let first = draw(renderer, &camera);
+        renderer.set_colour(renderer.instances_of(id).unwrap().start, red).unwrap();
+        (before, first, draw(renderer, &camera).map(|picture| bits(&picture)))
+    };
+    let (before, _, right) = joined(&mut renderer, None);
+    let right = right.unwrap();
+    // what frames write is as large as it gets
+    assert!(joined(&mut renderer, None).2 == Ok(right.clone()));
+    let turns = turns(driver.calls());
+    assert!(turns.len() >= 10 && before != right, "{turns:?}");
+    for (call, nth) in turns {
+        let fault = Fault { call, nth, result: vk::Result::ERROR_OUT_OF_DEVICE_MEMORY };
+        let (_, first, second) = joined(&mut renderer, Some(fault));
+        assert_eq!(driver.injected(), 1, "{fault:?}");
+        driver.plan(None);
+        let second = second.or_else(|_| draw(&mut renderer, &camera).map(|picture| bits(&picture)));
+        assert!(second.as_ref() == Ok(&right), "another picture after {fault:?}, {:?}", first.err());
     }
     drop(renderer);
     assert!(driver.living().is_empty(), "{:?}", driver.living());

@@ -24,8 +24,10 @@ fn lines() -> EdgeSettings {
     EdgeSettings { width, thin_width: width, tangent: TangentEdges::Full, ..usual }
 }
 
-/// Half a line's width, pixels.
-const HALF: f64 = 0.625;
+/// A line's width, pixels.
+pub const WIDTH: f64 = 1.25;
+/// Half of it.
+const HALF: f64 = 0.5 * WIDTH;
 
 fn with(edges: EdgeSettings) -> SceneSettings {
     SceneSettings { edges: Some(edges), ..SceneSettings::default() }
@@ -49,13 +51,9 @@ fn centres(picture: &Picture) -> impl Iterator<Item = (DVec2, u32)> + '_ {
     picture.edge.iter().enumerate().filter(|(_, edge)| **edge != 0).map(move |(at, edge)| (centre(at), *edge))
 }
 
-/// Beside an outline, pixels that see nothing, or what is farther, show an edge that has just gone behind its own face, while it is within
-/// `d = HALF + 0.5` of the outline: for a radius of r, `sqrt(2 r d)` along it. Radii here are 40 px at most.
-const GOES_ON_PX: f64 = 10.0;
-
 /// Visible points without a line within half its width and half a pixel, and line pixels farther than that and a fifth from
 /// any point that may be seen: a tenth of a pixel for what chords may be off, a tenth for the points' own distance.
-pub fn faults(model: &Model, camera: &Camera, picture: &Picture) -> (usize, usize, usize) {
+fn faults(model: &Model, camera: &Camera, picture: &Picture) -> (usize, usize, usize) {
     let tracer = Tracer::new(model);
     let edges = EdgeTracer::new(model, &tracer).unwrap();
     let all = edges.points(camera, 0.2);
@@ -64,19 +62,13 @@ pub fn faults(model: &Model, camera: &Camera, picture: &Picture) -> (usize, usiz
     };
     let points: Vec<_> = all.iter().filter(drawn).collect();
     let marked: Vec<DVec2> = centres(picture).map(|(at, _)| at).collect();
-    let beyond = |at: DVec2| {
-        let depth = picture.depth[at.y as usize * picture.size.0 as usize + at.x as usize];
-        let on = points.iter().filter(|p| p.pixel.distance(at) <= HALF + 0.5 + 0.2);
-        on.map(|p| p.depth).any(|edge| edge < f64::from(depth))
-    };
     let (w, h) = (f64::from(camera.size.0), f64::from(camera.size.1));
     let inside = |p: DVec2| p.x > 1.0 && p.y > 1.0 && p.x < w - 1.0 && p.y < h - 1.0;
     let seen = points.iter().filter(|p| p.visibility == Visibility::Visible && inside(p.pixel));
     let bare = seen.clone().filter(|p| !marked.iter().any(|at| at.distance(p.pixel) <= HALF + 0.5)).count();
     let open: Vec<DVec2> = points.iter().filter(|p| p.visibility != Visibility::Hidden).map(|p| p.pixel).collect();
     let near = |at: DVec2, px: f64| open.iter().any(|p| p.distance(at) <= px);
-    let goes_on = |at: DVec2| beyond(at) && near(at, GOES_ON_PX);
-    let stray = marked.iter().filter(|at| !near(**at, HALF + 0.5 + 0.2) && !goes_on(**at)).count();
+    let stray = marked.iter().filter(|at| !near(**at, HALF + 0.5 + 0.2)).count();
     (seen.count(), bare, stray)
 }
 

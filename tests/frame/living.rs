@@ -12,12 +12,12 @@ use selvedge::picture::{
 };
 use selvedge::renderer::InstanceError;
 
-const SIZE: (u32, u32) = (160, 120);
+pub const SIZE: (u32, u32) = (160, 120);
 const ALL: Outputs = Outputs { edge: true, part: true, instance: true, ..Outputs::ALL };
 const RED: Colour = [0.8, 0.05, 0.05, 1.0];
 
 /// Rows of plates, cubes, cylinders, waves and ripples, with a mesh among them.
-fn scene() -> Model {
+pub fn scene() -> Model {
     let mut model = crowd();
     let globe = shapes::globe();
     model.parts.extend(globe.parts);
@@ -28,22 +28,22 @@ fn scene() -> Model {
     model
 }
 
-fn camera(model: &Model) -> Camera {
+pub fn camera(model: &Model) -> Camera {
     Camera::around(model.control_bounds(), DVec3::new(0.3, -1.0, 0.4), DVec3::Z, 35f64.to_radians(), SIZE)
 }
 
-fn draw(renderer: &mut HeadlessRenderer, camera: &Camera) -> Picture {
+pub fn draw(renderer: &mut HeadlessRenderer, camera: &Camera) -> Picture {
     renderer.render(camera, &FrameSettings::default(), ALL).unwrap()
 }
 
 /// As `assert_identical`, numbers included.
-fn assert_all_identical(a: &Picture, b: &Picture, what: &str) {
+pub fn assert_all_identical(a: &Picture, b: &Picture, what: &str) {
     assert_identical(a, b, what);
     assert!(a.edge == b.edge && a.part == b.part && a.instance == b.instance, "numbers {what}");
 }
 
 /// Settings that draw placed parts each in another way.
-fn ways() -> Vec<(&'static str, SceneSettings)> {
+pub fn ways() -> Vec<(&'static str, SceneSettings)> {
     let usual = SceneSettings::default();
     vec![
         ("table", SceneSettings { trim: TrimWay::Table, ..usual }),
@@ -57,7 +57,7 @@ fn ways() -> Vec<(&'static str, SceneSettings)> {
 }
 
 /// Where an instance goes at a step: along a row, turned and mirrored, all within the scene.
-fn step(n: usize) -> DAffine3 {
+pub fn step(n: usize) -> DAffine3 {
     let place = DVec3::new(3.0 + 5.0 * n as f64, 9.0 - 2.0 * n as f64, 3.0 + n as f64);
     let mirror = if n.is_multiple_of(2) { DVec3::ONE } else { DVec3::new(-1.0, 1.0, 1.0) };
     DAffine3::from_translation(place) * DAffine3::from_rotation_z(0.4 * n as f64) * DAffine3::from_scale(mirror)

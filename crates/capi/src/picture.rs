@@ -18,7 +18,8 @@ pub const SELVEDGE_UV: u32 = 1 << 3;
 pub const SELVEDGE_NORMAL: u32 = 1 << 4;
 /// Length of the ray within solids and closed parts, millimetres, one float a pixel.
 pub const SELVEDGE_THICKNESS: u32 = 1 << 5;
-/// Number of the edge whose line covers the pixel, one uint32_t a pixel; 0 is none. The colour shows the lines, too.
+/// Number of the edge whose line covers the pixel, one uint32_t a pixel; 0 is none, 4294967295 the outline of a curved face,
+/// 4294967294 a line of a Boolean solid. The colour shows the lines, too.
 pub const SELVEDGE_EDGE: u32 = 1 << 6;
 /// Index of the part, plus 1, one uint32_t a pixel; 0 is none.
 pub const SELVEDGE_PART: u32 = 1 << 7;

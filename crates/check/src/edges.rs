@@ -9,12 +9,16 @@
 //! ```
 //!
 //! A hit is *at* the point when the point lies within [`AT`] times the edges' stated deviation of the tangent plane of the
-//! hit; at a face that is seen almost edge-on the plane says little, and own faces count as at the point also when the
-//! hit is as near as a curved surface allows: within the square root of 8 deviations times the part's size. Hits on solids
-//! and parts that are seen through hide nothing. Where a volume trims the model, edges outside it are cut away.
+//! hit. Hits on solids and parts that are seen through hide nothing. Where a volume trims the model, edges outside it are
+//! cut away.
 //!
-//! Another face at the point (a part that lies flush on another) leaves open which one a renderer sees: such points are
-//! [`Visibility::Unsure`], and no judge counts them.
+//! Two kinds of points are [`Visibility::Unsure`], and no judge counts them:
+//!
+//! * another face is at the point, or closer to it than single precision tells depths apart ([`FLUSH`]): a part that lies
+//!   flush on another;
+//! * an own face folds away beside the point: it would be seen if it were moved by what its place is not known to, or by
+//!   [`FOLD_PX`] / 4 in the picture. Beside a fold both sheets lie within the square root of 8 deviations times the part's
+//!   size, along the ray, and four times as far from each other's tangent planes as from the fold in the picture.
 
 use super::{Hit, ON, Probe, Tracer};
 use crate::model::{Camera, Edge, Edges, Model};
@@ -26,6 +30,10 @@ use std::borrow::Cow;
 
 /// A hit is at a point of an edge within so many times what is known of the edge's place.
 pub const AT: f64 = 4.0;
+/// Of the depth: four roundings of single precision.
+pub const FLUSH: f64 = 2.4e-7;
+/// From the tangent plane of an own sheet before the point, pixels: the point is 1/256 px from the fold.
+pub const FOLD_PX: f64 = 1.0 / 64.0;
 /// What is known of a place at best, relative to the model's size.
 const ROUNDING: f64 = 1e-12;
 /// Points of one piece of a curve at most.
@@ -38,7 +46,7 @@ pub enum Visibility {
     Visible,
     /// A face is before it.
     Hidden,
-    /// Only faces of others that are at the point, too.
+    /// Only faces of others that are at the point, too, or a fold beside it.
     Unsure,
     /// The volume that trims the model does not hold it.
     Cut,
@@ -188,6 +196,7 @@ impl Tracer {
             return Visibility::Cut;
         }
         let size = self.bounds.diagonal();
+        let focal = camera.focal_px().min_element();
         let known = known.max(ROUNDING * size);
         let mut seen = Visibility::Visible;
         for hit in probe.hits(pixel) {
@@ -195,13 +204,17 @@ impl Tracer {
             if gap <= 0.0 || hit.depth >= depth || self.is_clear(hit) {
                 continue;
             }
-            let grazing = own(hit) && gap * gap <= 8.0 * known * size;
-            let at = gap * hit.normal.dot(direction).abs() <= AT * known;
-            match (at || grazing, own(hit)) {
-                (false, _) => return Visibility::Hidden,
-                (true, true) => {}
-                (true, false) => seen = Visibility::Unsure,
+            let from_plane = gap * hit.normal.dot(direction).abs();
+            if own(hit) && from_plane <= AT * known {
+                continue;
             }
+            let pixel_size = if camera.is_perspective() { depth } else { 1.0 } / focal;
+            let beside_a_fold = own(hit) && (gap * gap <= 8.0 * known * size || from_plane <= FOLD_PX * pixel_size);
+            let flush = !own(hit) && from_plane <= (AT * known).max(FLUSH * depth);
+            if !beside_a_fold && !flush {
+                return Visibility::Hidden;
+            }
+            seen = Visibility::Unsure;
         }
         seen
     }

@@ -3,18 +3,20 @@
 //! ```text
 //!    vertex   an edge's end                   ●──────   exact rays see the point
 //!    centre   of a round edge                  ( · )    exact rays see a point of the edge
-//!    edge     its point nearest to the pixel  ──•──     exact rays see the point
+//!    edge     its point nearest to the pixel  ──•──     exact rays see the point; else the edge is followed from there
 //! ```
 //!
 //! Every candidate lies within the radius in the picture. A vertex is preferred to a centre, and both to an edge;
-//! within a kind the nearest visible candidate is taken. An edge has one candidate: if its nearest point is hidden, its
-//! other points are not searched. Edges of meshes have no points. Accuracy: points are within [`Edges::deviation`] of
-//! the edges; rays are as exact as those of [`EdgeTracer`]. Cost: the boxes of all edges; a ray for each candidate up
-//! to the first visible one, and up to 16 rays for a centre.
+//! within a kind the nearest visible candidate is taken. Where the nearest point of an edge is hidden, the edge is followed
+//! both ways, in steps of [`STEP_PX`], to where it comes to be seen, and that place is halved to [`PLACE_PX`]: visible
+//! stretches that are shorter than a step may be missed, and branches of the edge that come back into the radius are.
+//! Edges of meshes have no points. Accuracy: points are within [`Edges::deviation`] of the edges; rays are as exact as those
+//! of [`EdgeTracer`]. Cost: the boxes of all edges; a ray for each candidate up to the first visible one, up to 16 rays for a
+//! centre, and up to a ray a step for an edge whose nearest point is hidden.
 
 use super::{EdgeTracer, Probe, Visibility};
 use crate::model::{Camera, Edge, Edges};
-use glam::{DAffine3, DMat4, DVec2, DVec3};
+use glam::{DAffine3, DMat4, DVec2, DVec3, Vec4Swizzles};
 use selvedge_geometry::edges::curve::{CurveShape, shape};
 use selvedge_geometry::edges::nearest::nearest;
 
@@ -53,6 +55,10 @@ pub struct Snap {
     pub depth: f64,
 }
 
+/// Pixels between the points of an edge that are tested beside a hidden one.
+const STEP_PX: f64 = 0.25;
+/// Pixels to which the place is found where an edge comes to be seen.
+const PLACE_PX: f64 = 1.0 / 64.0;
 /// Points of a round edge that are tested; its centre counts if one of them is visible.
 const LOOKS: u32 = 16;
 
@@ -87,7 +93,70 @@ impl EdgeTracer<'_> {
         }
         found.sort_by(|a: &Snap, b| a.kind.cmp(&b.kind).then(a.distance_px.total_cmp(&b.distance_px)));
         let mut probe = self.probe(camera);
-        found.into_iter().find(|snap| self.is_seen(snap, &mut probe))
+        let before = |a: &Snap, b: &Snap| (a.kind, a.distance_px) < (b.kind, b.distance_px);
+        let mut best: Option<Snap> = None;
+        for snap in found {
+            if best.is_some_and(|best| before(&best, &snap)) {
+                break;
+            }
+            let seen = match snap.kind {
+                _ if self.is_seen(&snap, &mut probe) => Some(snap),
+                SnapKind::Edge => self.seen_beside(&snap, (pixel, radius_px), &mut probe),
+                SnapKind::Vertex | SnapKind::Centre => None,
+            };
+            best = seen.filter(|seen| best.is_none_or(|best| before(seen, &best))).or(best);
+        }
+        best
+    }
+
+    /// The visible point of the snap's edge nearest to the pixel: the edge is followed both ways from the snap's point.
+    fn seen_beside(&self, snap: &Snap, (pixel, radius_px): (DVec2, f64), probe: &mut Probe<'_>) -> Option<Snap> {
+        let camera = *probe.camera();
+        let transform = self.transform(snap.instance);
+        let curve = &self.parts()[snap.part].edges[snap.edge].curve;
+        let to_pixels = camera.pixel_matrix() * DMat4::from(transform);
+        let size = DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1));
+        // the point at a parameter, and by how much the parameter grows a pixel
+        let at = |parameter: f64| {
+            let piece = (parameter as usize).min(curve.len() - 1);
+            let (h, dh) = curve[piece].piece.jet(parameter - piece as f64);
+            let (q, dq) = (to_pixels * h, to_pixels * dh);
+            let speed = ((dq.xy() - q.xy() / q.w * dq.w) / q.w).length();
+            let point = transform.transform_point3(h.xyz() / h.w);
+            let (place, depth) = camera.project(point)?;
+            let (near, far) = camera.depth_range;
+            let inside = place.cmpge(DVec2::ZERO).all() && place.cmple(size).all() && depth >= near && depth <= far;
+            let distance_px = place.distance(pixel);
+            (inside && distance_px <= radius_px)
+                .then_some((Snap { point, pixel: place, distance_px, depth, ..*snap }, speed.recip()))
+        };
+        let start = nearest(&self.parts()[snap.part].edges[snap.edge], to_pixels, pixel, radius_px)?.parameter;
+        let end = curve.len() as f64;
+        let follow = |way: f64, probe: &mut Probe<'_>| {
+            let mut hidden = start;
+            let most = (4.0 * radius_px / STEP_PX).ceil() as u32;
+            for _ in 0..most {
+                let (_, a_pixel) = at(hidden)?;
+                let next = (hidden + way * (STEP_PX * a_pixel).min(0.5)).clamp(0.0, end);
+                let (mut seen, _) = at(next).filter(|_| next != hidden)?;
+                if !self.is_seen(&seen, probe) {
+                    hidden = next;
+                    continue;
+                }
+                let (mut low, mut high) = (hidden, next);
+                while (high - low).abs() > PLACE_PX * a_pixel {
+                    let middle = 0.5 * (low + high);
+                    match at(middle).filter(|(snap, _)| self.is_seen(snap, probe)) {
+                        Some((snap, _)) => (seen, high) = (snap, middle),
+                        None => low = middle,
+                    }
+                }
+                return Some(seen);
+            }
+            None
+        };
+        let found = [-1.0, 1.0].map(|way| follow(way, probe));
+        found.into_iter().flatten().min_by(|a, b| a.distance_px.total_cmp(&b.distance_px))
     }
 
     fn is_seen(&self, snap: &Snap, probe: &mut Probe<'_>) -> bool {

@@ -176,7 +176,8 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
 fn throughput(session: &mut Session, cameras: &[Camera]) -> Result<Throughput> {
     let measured = WARM_UP_FRAMES..cameras.len() - WARM_UP_FRAMES;
     let (mut start, mut wall_ms, mut passes_ms, mut kept) = (Instant::now(), 0.0, 0.0, Vec::new());
-    session.render_sequence(cameras, |nth, picture| {
+    session.render_sequence(cameras, Outputs::default(), |nth, picture| {
+        output::clamps(&picture.stats);
         kept.clear();
         kept.extend_from_slice(picture.colour);
         if measured.contains(&nth) {
@@ -185,6 +186,7 @@ fn throughput(session: &mut Session, cameras: &[Camera]) -> Result<Throughput> {
         } else if nth < measured.start {
             start = Instant::now();
         }
+        Ok(())
     })?;
     let [wall_ms, passes_ms] = [wall_ms, passes_ms].map(|ms| ms / measured.len() as f64);
     let wall_over_passes = wall_ms / passes_ms;

@@ -1,4 +1,5 @@
-//! `selvedge render`: pictures of views, one or several, of files, one or many, and the images beside them.
+//! `selvedge render`: pictures of views, one or several, of files, one or many, and the images beside them. Several views of
+//! a file are drawn with frames in flight: the GPU draws the next ones while this one is written.
 
 mod manifest;
 mod many;
@@ -7,18 +8,24 @@ mod task;
 pub use task::named_for;
 
 use crate::args::{Aov, RenderArgs};
-use crate::session::{self, Session};
+use crate::session::{self, Measured, Session};
 use crate::sheet::Sheet;
 use crate::{Outcome, output, target};
-use anyhow::Result;
-use selvedge::headless::HeadlessRenderer;
+use anyhow::{Error, Result};
+use selvedge::gpu::GpuError;
+use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::Camera;
 use selvedge::picture::{Outputs, Picture};
 use selvedge_io::import::Import;
-use selvedge_session::{Image, legend};
+use selvedge_session::{Backdrop, Image, legend};
+use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
 use task::{Shot, Task};
+
+/// Pixels of the largest pictures of which several are in flight: with all images three of them take 2.4 GiB, on the device
+/// and in host memory.
+const MOST_IN_FLIGHT: u64 = 1 << 24;
 
 /// Draws the pictures and writes all output files.
 pub fn run(args: &RenderArgs) -> Result<Outcome> {
@@ -59,7 +66,7 @@ fn drawn(
     target::check_read(&import, &outputs)?;
     args.cut.apply(&mut import.model, &args.read)?;
     let size = args.camera.pixels(&import);
-    let mut sheet = args.contact_sheet.then(|| Sheet::new(size, task.shots.len())).transpose()?;
+    let sheet = args.contact_sheet.then(|| Sheet::new(size, task.shots.len())).transpose()?;
     let size = sheet.as_ref().map_or(size, Sheet::tile);
     let camera = |shot: &Shot| match shot.direction {
         Some(direction) => args.camera.standard(direction, &import, size),
@@ -76,37 +83,109 @@ fn drawn(
     let backdrop = look.backdrop(&import);
     let range = if look.style.is_curvature() { look.range(&model) } else { 1.0 };
     session.look(backdrop.colour(), look.style, range);
-    let mut all = Vec::new();
-    for (index, (shot, camera)) in task.shots.iter().zip(&cameras).enumerate() {
+    let images = task.shots.first().map_or(Outputs::default(), |shot| wanted(&shot.aovs));
+    let cameras = &cameras;
+    let mut pictures = Pictures { args, task, cameras, backdrop, range, sheet, upload_s, all: Vec::new(), record };
+    let mut next = 0;
+    let is_small = u64::from(size.0) * u64::from(size.1) <= MOST_IN_FLIGHT;
+    // a picture that is measured is drawn again before the next one
+    let mut in_flight = is_small && cameras.len() > 1 && task.shots.iter().all(|shot| shot.stats.is_none());
+    while next < cameras.len() {
+        if in_flight {
+            let (first, mut begun) = (next, Instant::now());
+            let taken = session.render_sequence(&cameras[first..], images, |nth, picture| {
+                if session::is_of_one_colour(picture.colour) {
+                    return Err(Alone.into());
+                }
+                output::clamps(&picture.stats);
+                pictures.take(first + nth, picture.to_picture(), begun.elapsed().as_secs_f64(), None)?;
+                (next, begun) = (first + nth + 1, Instant::now());
+                Ok(())
+            });
+            match taken {
+                Err(error) if error.is::<Alone>() => {}
+                // one at a time may fit
+                Err(error) if is_out_of_memory(&error) => in_flight = false,
+                taken => taken?,
+            }
+        }
+        let Some(camera) = cameras.get(next) else { break };
         let begun = Instant::now();
-        let mut picture = session.render(camera, wanted(&shot.aovs))?;
+        let picture = session.render(camera, images)?;
         let draw_s = begun.elapsed().as_secs_f64();
-        tell(args, &picture);
         if !session.shows(camera, &picture)? {
             session.blank(&task.model, &model, camera.size, &args.read)?;
         }
-        let drawn = Drawn { camera: *camera, clamps: picture.stats.clamps, upload_s, draw_s };
-        match &mut sheet {
+        let stats = task.shots[next].stats.as_ref().map(|_| session.measured(camera, images, &picture.stats));
+        pictures.take(next, picture, draw_s, stats.transpose()?.as_ref())?;
+        next += 1;
+    }
+    pictures.finish()?;
+    Ok(session)
+}
+
+/// A picture that may show nothing: another frame says so, and none is drawn in the middle of a sequence.
+#[derive(Debug)]
+struct Alone;
+
+impl fmt::Display for Alone {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the picture has one colour")
+    }
+}
+
+impl std::error::Error for Alone {}
+
+fn is_out_of_memory(error: &Error) -> bool {
+    let error = error.downcast_ref::<HeadlessError>().and_then(HeadlessError::gpu);
+    error.is_some_and(GpuError::is_out_of_memory)
+}
+
+/// Where the pictures of a file go, one after the other.
+struct Pictures<'a> {
+    args: &'a RenderArgs,
+    task: &'a Task,
+    cameras: &'a [Camera],
+    backdrop: Backdrop,
+    /// Of curvature, in styles that show it.
+    range: f64,
+    sheet: Option<Sheet>,
+    upload_s: f64,
+    /// On the sheet so far.
+    all: Vec<Drawn>,
+    record: &'a mut dyn FnMut(&Drawn) -> Result<()>,
+}
+
+impl Pictures<'_> {
+    /// One more, which took so long, or came so long after the one before.
+    fn take(&mut self, index: usize, mut picture: Picture, draw_s: f64, stats: Option<&Measured>) -> Result<()> {
+        tell(self.args, &picture);
+        let (camera, upload_s) = (self.cameras[index], self.upload_s);
+        let drawn = Drawn { camera, clamps: picture.stats.clamps, upload_s, draw_s };
+        match &mut self.sheet {
             Some(sheet) => {
                 sheet.put(index, &picture);
-                all.push(drawn);
+                self.all.push(drawn);
             }
             None => {
-                backdrop.under(picture.size, &mut picture.colour);
-                legend(look.style, range, picture.size, &mut picture.colour);
-                let stats = shot.stats.as_ref().map(|_| session.measured(camera, wanted(&shot.aovs), &picture.stats));
-                shot.write(camera, &picture, stats.transpose()?.as_ref())?;
-                record(&drawn)?;
+                self.backdrop.under(picture.size, &mut picture.colour);
+                legend(self.args.look.style, self.range, picture.size, &mut picture.colour);
+                self.task.shots[index].write(&camera, &picture, stats)?;
+                (self.record)(&drawn)?;
             }
         }
+        Ok(())
     }
-    for (sheet, path) in sheet.iter_mut().zip(&task.sheet) {
-        backdrop.under(sheet.size, &mut sheet.pixels);
-        legend(look.style, range, sheet.size, &mut sheet.pixels);
-        output::png(path, sheet.size, &sheet.pixels)?;
+
+    /// The contact sheet is whole.
+    fn finish(mut self) -> Result<()> {
+        for (sheet, path) in self.sheet.iter_mut().zip(&self.task.sheet) {
+            self.backdrop.under(sheet.size, &mut sheet.pixels);
+            legend(self.args.look.style, self.range, sheet.size, &mut sheet.pixels);
+            output::png(path, sheet.size, &sheet.pixels)?;
+        }
+        self.all.iter().try_for_each(self.record)
     }
-    all.iter().try_for_each(record)?;
-    Ok(session)
 }
 
 /// Prints the frame's cost, and the counts of marked pixels.

@@ -238,13 +238,14 @@ impl Session {
         Ok(picture)
     }
 
-    /// A frame for each camera, several in flight; `take` gets each picture.
-    pub fn render_sequence(&mut self, cameras: &[Camera], mut take: impl FnMut(usize, &PictureView<'_>)) -> Result<()> {
-        self.renderer.render_sequence(cameras, &self.settings, Outputs::default(), |nth, picture| {
-            output::clamps(&picture.stats);
-            take(nth, picture);
-            Ok(())
-        })
+    /// A frame for each camera, several in flight; `take` gets each picture, and its error ends the sequence.
+    pub fn render_sequence(
+        &mut self,
+        cameras: &[Camera],
+        outputs: Outputs,
+        mut take: impl FnMut(usize, &PictureView<'_>) -> Result<()>,
+    ) -> Result<()> {
+        self.renderer.render_sequence(cameras, &self.settings, outputs, |nth, picture| take(nth, picture))
     }
 
     /// The cost of the first frame, once it is drawn.
@@ -264,8 +265,7 @@ impl Session {
 
     /// Whether any pixel of the picture shows the model.
     pub fn shows(&mut self, camera: &Camera, picture: &Picture) -> Result<bool> {
-        // the background has one colour
-        if picture.colour.windows(2).any(|pair| pair[0] != pair[1]) {
+        if !is_of_one_colour(&picture.colour) {
             return Ok(true);
         }
         let faces = Outputs { face: true, ..Outputs::default() };
@@ -316,6 +316,11 @@ impl Session {
     pub fn close(self) -> bool {
         close(self.renderer)
     }
+}
+
+/// The background has one colour: a picture may be of nothing else.
+pub fn is_of_one_colour(pixels: &[[u8; 4]]) -> bool {
+    pixels.windows(2).all(|pair| pair[0] == pair[1])
 }
 
 /// Frees a device; true when the validation layer had messages, which are printed on standard error.

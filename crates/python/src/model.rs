@@ -203,7 +203,7 @@ impl Model {
         found.map_err(|error| raised(py, &error))?.map(|snapped| plain(py, &snapped)).transpose()
     }
 
-    /// What was left out or healed, in the order in which it was found.
+    /// What was left out or repaired, in the order in which it was found.
     #[getter]
     fn warnings(&self) -> Vec<Warning> {
         self.loaded.warnings.iter().cloned().map(|inner| Warning { inner }).collect()
@@ -305,7 +305,7 @@ impl Instance {
     }
 }
 
-/// Something in a file that was left out, healed or guessed.
+/// Something in a file that was left out, repaired or guessed.
 #[pyclass(frozen, module = "selvedge")]
 pub struct Warning {
     inner: import::Warning,

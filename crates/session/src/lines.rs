@@ -15,7 +15,12 @@ pub fn lines(width_px: Option<f64>, height: u32) -> EdgeSettings {
         Some(width_px) => width_px * at_1080,
         None => usual.width.max(LEAST_PX * at_1080).min(EdgeSettings::MOST_WIDTH),
     };
-    EdgeSettings { width, thin_width: width * usual.thin_width / usual.width, ..usual }
+    EdgeSettings {
+        width,
+        thin_width: width * usual.thin_width / usual.width,
+        section_width: usual.wider(width),
+        ..usual
+    }
 }
 
 #[cfg(test)]

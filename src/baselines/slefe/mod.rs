@@ -84,7 +84,8 @@ pub fn value(coefficients: &[f64], t: f64) -> f64 {
 /// The table as shaders read it, in single precision: `segments`, then `U_j` and `L_j` in turn at the break points, for
 /// each `j`, for each degree from 2 to [`MOST_DEGREE`].
 ///
-/// # Panics If `segments` is not 1 to [`MOST_SEGMENTS`].
+/// # Panics
+/// If `segments` is not 1 to [`MOST_SEGMENTS`].
 pub(crate) fn words(segments: usize) -> Vec<u32> {
     let bounds = (2..=MOST_DEGREE).flat_map(|degree| Slefe::new(degree, segments).bounds);
     let pairs = bounds.flat_map(|(upper, lower)| upper.into_iter().zip(lower)).flat_map(|(u, l)| [u, l]);
@@ -92,7 +93,8 @@ pub(crate) fn words(segments: usize) -> Vec<u32> {
 }
 
 impl Slefe {
-    /// # Panics If the degree is above [`MOST_DEGREE`], or `segments` is not 1 to [`MOST_SEGMENTS`].
+    /// # Panics
+    /// If the degree is above [`MOST_DEGREE`], or `segments` is not 1 to [`MOST_SEGMENTS`].
     pub fn new(degree: usize, segments: usize) -> Self {
         assert!(degree <= MOST_DEGREE && (1..=MOST_SEGMENTS).contains(&segments), "degree {degree} on {segments}");
         let breaks = || (0..=segments).map(|i| i as f64 / segments as f64);
@@ -118,7 +120,8 @@ impl Slefe {
 
     /// Bounds of the polynomial with these coefficients.
     ///
-    /// # Panics If there are not `degree + 1` of them.
+    /// # Panics
+    /// If there are not `degree + 1` of them.
     pub fn enclose(&self, b: &[f64]) -> Enclosure {
         assert_eq!(b.len(), self.degree + 1, "one coefficient more than the degree");
         let linear = |i: usize| b[0] + (b[self.degree] - b[0]) * (i as f64 / self.segments as f64);

@@ -71,7 +71,8 @@ impl<'a> Draw<'a> {
 
 /// The bindings of all stages.
 ///
-/// # Panics If two stages use one binding for different resources.
+/// # Panics
+/// If two stages use one binding for different resources.
 fn merged<'b>(name: &str, stages: impl Iterator<Item = &'b [Binding]>) -> Vec<Binding> {
     let mut all = Vec::new();
     for bindings in stages {

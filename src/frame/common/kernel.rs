@@ -16,7 +16,8 @@ pub(crate) struct Kernel {
 impl Kernel {
     /// `constants`: specialisation constants, as ids of `shaders::constant` and values; a flag is 0 or 1.
     ///
-    /// # Panics If the shader has no constant of an id.
+    /// # Panics
+    /// If the shader has no constant of an id.
     pub(crate) fn new(
         device: &Device,
         name: &str,
@@ -50,7 +51,8 @@ impl Kernel {
 
     /// As [`record`](Self::record), after [`bind`](Self::bind).
     ///
-    /// # Panics If there are more threads than [`MOST_THREADS`].
+    /// # Panics
+    /// If there are more threads than [`MOST_THREADS`].
     pub(crate) fn dispatch(&self, cmd: &Commands<'_>, threads: u32) {
         assert!(threads <= MOST_THREADS, "{threads} threads where {MOST_THREADS} are the most");
         cmd.dispatch(threads.div_ceil(self.group[0]));

@@ -104,7 +104,8 @@ impl Steps {
 impl Scan {
     /// Makes the pipelines; those of [`Count::Gpu`] only if `counts_on_gpu`.
     ///
-    /// # Errors [`GpuError::Vulkan`].
+    /// # Errors
+    /// [`GpuError::Vulkan`].
     pub fn new(device: &Device, counts_on_gpu: bool) -> Result<Self, GpuError> {
         let by_gpu = counts_on_gpu.then(|| Steps::new(device, true)).transpose()?;
         Ok(Self { by_host: Steps::new(device, false)?, by_gpu })
@@ -112,7 +113,8 @@ impl Scan {
 
     /// Records one prefix sum. Several may follow each other if each has its own buffers.
     ///
-    /// # Panics If a buffer is too short, if there may be more than [`MAX_COUNT`] elements, or if [`Count::Gpu`] was
+    /// # Panics
+    /// If a buffer is too short, if there may be more than [`MAX_COUNT`] elements, or if [`Count::Gpu`] was
     /// not announced to [`Scan::new`].
     pub fn record(&self, cmd: &Commands<'_>, count: Count<'_>, bindings: &Bindings<'_>) {
         let Bindings { values, offsets, sums, total, total_index } = *bindings;

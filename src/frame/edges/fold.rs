@@ -6,7 +6,7 @@
 //!
 //! Reads: everything that `Bindings` names. Writes: `best`, as pass `edge_line`.
 
-use crate::bindings::Placed;
+use crate::bindings::{Placed, SeenSolids};
 use crate::frame::common::draw::Draw;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource};
 use crate::scene::MeshBuffers;
@@ -25,6 +25,7 @@ pub(crate) struct Bindings<'a> {
     pub others: &'a Image,
     pub best: &'a Image,
     pub meshes: Option<&'a MeshBuffers>,
+    pub solids: SeenSolids<'a>,
 }
 
 impl Fold {
@@ -41,6 +42,7 @@ impl Fold {
             .chain(b.placed.resources())
             .chain([b.visibility.into(), b.others.into(), b.best.into()])
             .chain(meshes.map(Resource::from))
+            .chain(b.solids.resources())
             .collect();
         cmd.rendering(b.visibility.size(), &[], None, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&half_px));

@@ -2,17 +2,17 @@
 //!
 //! ```text
 //!   chord ─▶ rectangle ─▶ pixel: distance ─▶ share covered
-//!                               exact point of the edge, what the pixel sees ─▶ seen, or hidden
+//!                               exact point of the edge, what pixels around it see ─▶ seen, or hidden
 //!                                                                          └─▶ seen | share | chord, the largest
 //! ```
 //!
 //! Reads: everything that `Bindings` names. Writes: `best`, cleared to 0 before.
 
-use crate::bindings::Placed;
+use crate::bindings::{Placed, Primitives, SeenSolids};
 use crate::frame::common::draw::Draw;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource, TexelBuffer};
 use crate::scene::{EdgeBuffers, MeshBuffers};
-use crate::shaders;
+use crate::shaders::{self, EDGE_LINE_PLAIN, TrimTest, constant};
 use bytemuck::{Pod, Zeroable};
 
 /// Bytes before the number of draws.
@@ -21,6 +21,16 @@ const COUNT_OFFSET: u64 = 16;
 /// The pass.
 pub(crate) struct Line {
     pipeline: Pipeline,
+    /// It reads what the trim test does.
+    tests: bool,
+}
+
+/// What scenes differ in.
+pub(crate) struct Kinds<'a> {
+    /// How faces are trimmed; `None` where none is.
+    pub test: Option<&'a TrimTest>,
+    /// Most general kind of surface of the volume that trims the scene.
+    pub volume: Option<u32>,
 }
 
 /// Its buffers and images, in binding order.
@@ -34,21 +44,34 @@ pub(crate) struct Bindings<'a> {
     pub edges: &'a EdgeBuffers,
     pub best: &'a Image,
     pub meshes: Option<&'a MeshBuffers>,
+    /// Read where no volume trims the scene.
+    pub solids: SeenSolids<'a>,
+    /// What the trim test reads, in its order.
+    pub trim: &'a [Resource<'a>],
+    /// The volume that trims the scene; `None` where there is none.
+    pub volume: Option<Primitives<'a>>,
 }
 
 /// How lines look that matters to where they are.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct Params {
-    /// Pixels: of full lines, of thin ones.
-    pub half_px: [f32; 2],
+    /// Pixels: of full lines, of thin ones, of bold ones.
+    pub half_px: [f32; 3],
     pub hidden: u32,
 }
 
 impl Line {
-    pub(crate) fn new(device: &Device, constants: &[(u32, u32)]) -> Result<Self, GpuError> {
-        let draw = Draw::new("edge_line", &shaders::EDGE_LINE_VERT, &shaders::EDGE_LINE_FRAG);
-        Ok(Self { pipeline: Draw { constants, ..draw }.pipeline(device)? })
+    /// `constants` of passes that follow surfaces.
+    pub(crate) fn new(device: &Device, constants: &[(u32, u32)], kinds: &Kinds<'_>) -> Result<Self, GpuError> {
+        let tested = kinds.test.and_then(|test| test.edge_line.map(|shaders| (test.way, shaders)));
+        let (way, [alone, within]) = tested.unwrap_or(("no trims", EDGE_LINE_PLAIN));
+        let (fragment, volume) = if kinds.volume.is_some() { (within, ", within a volume") } else { (alone, "") };
+        let of_volume = kinds.volume.map(|kind| (constant::SOLIDS_HAVE, kind));
+        let constants: Vec<_> = constants.iter().copied().chain(of_volume).collect();
+        let name = format!("edge_line ({way}{volume})");
+        let draw = Draw::new(&name, &shaders::EDGE_LINE_VERT, fragment);
+        Ok(Self { pipeline: Draw { constants: &constants, ..draw }.pipeline(device)?, tests: tested.is_some() })
     }
 
     /// What `draw` says, and its number, over a picture of the visibility image's size.
@@ -64,6 +87,9 @@ impl Line {
             .chain(edges)
             .chain([Resource::from(&e.points), b.best.into()])
             .chain(meshes.map(Resource::from))
+            .chain(b.solids.resources().into_iter().filter(|_| b.volume.is_none()))
+            .chain(b.trim.iter().copied().filter(|_| self.tests))
+            .chain(b.volume.iter().flat_map(Primitives::resources))
             .collect();
         cmd.rendering(b.visibility.size(), &[], None, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&params));

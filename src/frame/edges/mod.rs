@@ -5,15 +5,19 @@
 //!                                        │
 //!   visibility, patches, meshes ──▶ edge_line ──▶ each pixel's best line ──edge_show──▶ the host's colour, edges' numbers
 //!                                   edge_fold ──▶          outlines
+//!   Boolean solids ──▶ edge_change, edge_join ──▶          where what is seen of them changes
 //! ```
 //!
 //! Chords stay while the view does. docs/design/edges.md has the method.
 
 mod capacities;
+pub(crate) mod change;
 pub(crate) mod divide;
 pub(crate) mod fold;
+pub(crate) mod join;
 pub(crate) mod line;
 pub(crate) mod show;
+mod solid_lines;
 
 pub(crate) use capacities::Capacities;
 
@@ -22,10 +26,11 @@ use super::shading::numbers::NUMBER_FORMAT;
 use super::shading::resolve;
 use super::{Frame, WRITE_TO_READ};
 use crate::abi::Chord;
+use crate::bindings::{Placed, SeenSolids};
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, barrier};
 use crate::picture::EdgeSettings;
-use crate::scene::SceneData;
-use crate::shaders::constant;
+use crate::scene::{SceneData, SolidData};
+use crate::shaders::{TrimTest, constant};
 use ash::vk;
 use std::sync::Arc;
 
@@ -38,50 +43,76 @@ pub(crate) struct Passes {
     line: line::Line,
     /// Where outlines of curved faces are wanted, and there are patches.
     fold: Option<fold::Fold>,
+    /// Where there are Boolean solids.
+    solids: Option<solid_lines::Passes>,
     show: show::Show,
 }
 
 impl Passes {
     /// `None` where no line is drawn.
-    pub(super) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<Self>, GpuError> {
+    pub(super) fn new(
+        device: &Device,
+        data: &SceneData,
+        formats: resolve::Formats,
+        test: Option<&TrimTest>,
+    ) -> Result<Option<Self>, GpuError> {
         let Some(edges) = data.edges.as_ref().filter(|_| data.has_lines()) else { return Ok(None) };
         let constants = constants(data);
+        let kinds = line::Kinds { test, volume: data.volume.as_ref().and_then(SolidData::kinds) };
         let numbers = formats.numbers[0].then_some(NUMBER_FORMAT);
         Ok(Some(Self {
             settings: edges.settings,
             has_edge_image: formats.numbers[0],
             divide: divide::Divide::new(device)?,
-            line: line::Line::new(device, &constants)?,
-            fold: (edges.settings.silhouettes && data.has_patches)
+            line: line::Line::new(device, &constants, &kinds)?,
+            fold: (edges.settings.silhouettes && (data.has_patches || data.has_operands))
                 .then(|| fold::Fold::new(device, &constants))
                 .transpose()?,
+            solids: solid_lines::Passes::new(device, data, &edges.settings)?,
             show: show::Show::new(device, data, (formats.colour, numbers))?,
         }))
     }
 }
 
 /// What passes that follow surfaces are told of the scene.
-fn constants(data: &SceneData) -> [(u32, u32); 4] {
+fn constants(data: &SceneData) -> [(u32, u32); 6] {
     let others = data.has_meshes() || data.solids.kinds().is_some();
     [
         (constant::SCENE_HAS_RATIONAL, u32::from(data.has_rational)),
         (constant::SCENE_HAS_FINE, u32::from(data.has_fine)),
         (constant::SCENE_HAS_MESHES, u32::from(data.has_meshes())),
         (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(others)),
+        (constant::SCENE_HAS_SOLIDS, u32::from(data.solids.kinds().is_some())),
+        (constant::SOLIDS_HAVE_PATCHES, u32::from(data.has_operands)),
     ]
 }
 
 /// The stage.
 pub(crate) struct EdgeStage {
     passes: Arc<Passes>,
-    /// How wide lines are, half of it: full ones and thin ones.
-    half_px: [f32; 2],
+    /// How wide lines are, half of it: full ones, thin ones and bold ones.
+    half_px: [f32; 3],
     counts: Buffer,
     starts: Buffer,
     chords: Buffer,
     draw: Buffer,
     /// Each pixel's best line.
     best: Image,
+    /// Where what is seen of Boolean solids changes; where there are some.
+    changes: Option<Image>,
+}
+
+/// What passes that ask whether a point is seen read of Boolean solids.
+fn seen_solids<'a>(parts: Option<&resolve::SolidBindings<'a>>, placed: &Placed<'a>, best: &'a Image) -> SeenSolids<'a> {
+    // other things stand in for it in scenes without
+    let shells = parts.and_then(|parts| parts.shells.as_ref());
+    let faces: &Buffer = placed.faces;
+    SeenSolids {
+        operand_uv: parts.and_then(|parts| parts.operand_uv).unwrap_or(best),
+        leaf_surfaces: parts.map_or(placed.items, |parts| parts.primitives.leaf_surfaces),
+        surface_places: parts.map_or(placed.points, |parts| parts.primitives.surface_places),
+        meshes: shells.map_or([faces; 3], |m| [m.meshes, m.triangles, m.positions]),
+    }
 }
 
 /// Format of the image of each pixel's best line.
@@ -96,12 +127,13 @@ impl EdgeStage {
         let settings = passes.settings;
         Ok(Self {
             passes: Arc::clone(passes),
-            half_px: [settings.width, settings.thin_width].map(|width| (half * width) as f32),
+            half_px: [settings.width, settings.thin_width, settings.section_width].map(|width| (half * width) as f32),
             counts: room.words("edge chord counts", items)?,
             starts: room.words("edge chord starts", items + 1)?,
             chords: room.structs::<Chord>("edge chords", room.capacities.edges.chords)?,
             draw: room.indirect::<u32>("edge draw", divide::DRAW_WORDS)?,
             best: room.image("best lines", BEST_FORMAT, COUNTED)?,
+            changes: passes.solids.as_ref().map(|_| solid_lines::changes(room)).transpose()?,
         })
     }
 
@@ -122,7 +154,7 @@ impl EdgeStage {
             chords: &self.chords,
             draw: &self.draw,
         };
-        let margin_px = self.half_px[0].max(self.half_px[1]) + BESIDE_PX;
+        let margin_px = self.half_px.into_iter().fold(0.0, f32::max) + BESIDE_PX;
         let params = divide::Params { item_count: frame.counts.edge_items, margin_px };
         let divide = &self.passes.divide;
         divide.count(cmd, &bindings, params);
@@ -138,10 +170,13 @@ impl EdgeStage {
     pub(super) fn draw(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let (s, v, passes) = (frame.scene, &frame.stages.visibility, &self.passes);
         let (written, read) = (Access::FRAGMENT_WRITE, Access::FRAGMENT_READ);
+        let parts = frame.solids().map(|solids| solids.resolve(frame));
+        let solids = seen_solids(parts.as_ref(), &s.placed(frame.views), &self.best);
         barrier::images(cmd, &[(&self.best, read.discarded(), Access::TRANSFER_WRITE)]);
         cmd.clear(&self.best, 0);
         barrier::images(cmd, &[(&self.best, Access::TRANSFER_WRITE, written)]);
         if let (Some(edges), Some(sources)) = (&s.edges, &s.sources) {
+            let trim = frame.trim_test();
             let bindings = line::Bindings {
                 frame: frame.constants,
                 placed: s.placed(frame.views),
@@ -152,6 +187,9 @@ impl EdgeStage {
                 edges,
                 best: &self.best,
                 meshes: s.meshes.as_ref(),
+                trim: &trim,
+                volume: frame.volume(),
+                solids,
             };
             let params = line::Params { half_px: self.half_px, hidden: u32::from(passes.settings.hidden) };
             passes.line.record(cmd, &bindings, params, &self.draw);
@@ -164,9 +202,14 @@ impl EdgeStage {
                 others: v.of_others(),
                 best: &self.best,
                 meshes: s.meshes.as_ref(),
+                solids,
             };
             barrier::images(cmd, &[(&self.best, written, written)]);
             fold.record(cmd, &bindings, self.half_px[0]);
+        }
+        if let (Some(solids), Some(changes)) = (&passes.solids, &self.changes) {
+            barrier::images(cmd, &[(&self.best, written, written)]);
+            solids.draw(frame, cmd, (changes, &self.best), self.half_px);
         }
         barrier::images(cmd, &[(&self.best, written, read)]);
         let bindings = show::Bindings {

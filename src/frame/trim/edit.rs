@@ -1,38 +1,46 @@
-//! Copies edits of trim loops and of placed parts, at the beginning of a frame.
+//! Copies edits of trim loops and of placed parts, and models that join the scene, at the beginning of a frame.
 //!
 //! ```text
-//!   frames before ──read──▶ patches, curves, arcs and their cells; placed parts ◀──copies of edited data
+//!   frames before ──read──▶ the scene's arrays ◀──copies of edited data, and of models that join
+//!                                │                                 ▲
+//!                                ╰──copy, where there is no room──▶ larger arrays
 //! ```
 
 use crate::frame::Frame;
 use crate::gpu::{Access, Buffer, Commands, GpuError, Uploads, barrier};
-use crate::scene::{EditTarget, Scene, Trims, Write};
+use crate::scene::{Array, Scene, Write};
 
 impl Frame<'_> {
-    /// Records the copies. The returned [`Uploads`] must live until the GPU has made them.
-    pub(crate) fn edit(cmd: &Commands<'_>, scene: &Scene, writes: &[Write]) -> Result<Uploads, GpuError> {
+    /// Records the copies. The returned [`Uploads`], and the arrays that larger ones replaced, must live until the GPU
+    /// has made them. After an error the scene is as it was.
+    pub(crate) fn edit<'w>(
+        cmd: &Commands<'_>,
+        scene: &mut Scene,
+        writes: impl Iterator<Item = &'w Write> + Clone,
+    ) -> Result<(Uploads, Vec<Array>), GpuError> {
+        let larger = scene.larger(writes.clone())?;
         let mut uploads = Uploads::new();
         let reads = Access::COMPUTE_READ | Access::VERTEX_READ | Access::FRAGMENT_READ;
         let copied = Access::TRANSFER_WRITE;
-        barrier::memory(cmd, reads, copied);
-        let copies = writes.iter().filter_map(|w| Some((target(scene, w.to)?, w.offset, w.bytes.as_slice())));
-        uploads.scatter(cmd, "edits", &copies.collect::<Vec<_>>())?;
+        if larger.is_empty() {
+            barrier::memory(cmd, reads, copied);
+        } else {
+            barrier::memory(cmd, reads | copied, copied | Access::TRANSFER_READ);
+        }
+        for (of, array) in &larger {
+            let before = scene.buffer(*of).into_iter();
+            before.for_each(|before| cmd.copy(before, 0, array.buffer(), 0, before.bytes()));
+        }
+        if !larger.is_empty() {
+            // the last bytes of what was copied are beyond its end, and are written below
+            barrier::memory(cmd, copied, copied);
+        }
+        let target = |write: &Write| larger.get(&write.to).map(Array::buffer).or_else(|| scene.buffer(write.to));
+        let copies = writes.filter_map(|w| Some((target(w)?, w.offset, w.bytes.as_slice())));
+        let copies: Vec<(&Buffer, u64, &[u8])> = copies.collect();
+        uploads.scatter(cmd, "edits", &copies)?;
         uploads.finish(cmd, reads);
-        Ok(uploads)
-    }
-}
-
-/// The buffer to write; `None` if the scene uses another way to trim than the edit's, which does not happen.
-fn target(scene: &Scene, to: EditTarget) -> Option<&Buffer> {
-    if to == EditTarget::Instances {
-        return Some(&scene.instances);
-    }
-    match (to, scene.trims.as_ref()?) {
-        (EditTarget::Patches, _) => Some(&scene.patches),
-        (EditTarget::Cells, Trims::Table(trims)) => Some(&trims.cells),
-        (EditTarget::Curves, Trims::Table(trims)) => Some(&trims.curves),
-        (EditTarget::CurvePoints, Trims::Table(trims)) => Some(&trims.curve_points),
-        (EditTarget::Exact(array), Trims::Exact(trims)) => Some(*trims.all().get(array)?),
-        _ => None,
+        let replaced = larger.into_iter().map(|(of, array)| scene.replace(of, array)).collect();
+        Ok((uploads, replaced))
     }
 }

@@ -101,7 +101,7 @@ impl SceneData {
             let key = nth as u32 + 1;
             let mut push = |number, kind, own: &mut dyn Iterator<Item = u32>, pieces: Vec<Bezier<DVec4>>| {
                 let Some(style) = settings.style(kind).filter(|_| !pieces.is_empty()) else { return };
-                data.push_line(number, style, own.collect(), *deviation);
+                data.push_line(number, style, own.collect(), *deviation, 0);
                 for piece in pieces {
                     let bounds = piece.points.iter().fold(Bounds::EMPTY, |all, p| all.with(p.point()));
                     let origin = bounds.centre();

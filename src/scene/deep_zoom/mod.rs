@@ -34,6 +34,7 @@ use crate::spline::{Patch, PatchGrid};
 use crate::trim::{LoopIndex, RectSide};
 pub(super) use edges::KnownEdges;
 use glam::{DMat4, DVec2, DVec3, DVec4};
+use std::ops::Range;
 
 /// A part is cut if half its diagonal is longer than this, in pixels. At this size, rounding moves its points by some 4
 /// units of 2⁻²⁴, or 1/128 pixel: a fifth of the tessellation's deviation. A face's 8 v-strips then need half of the
@@ -114,6 +115,17 @@ struct Known {
     /// Bounds of the control points.
     bounds: (DVec3, DVec3),
     cut: Option<(PatchGrid, LoopIndex)>,
+}
+
+/// Of each face of a part: nothing but its control points has been looked at.
+fn known(part: &Part) -> Vec<Known> {
+    part.faces.iter().map(|face| Known { bounds: face.surface.bounds(), cut: None }).collect()
+}
+
+/// Around the Boolean solids that have an end.
+fn bounds_of_solids(model: &Model) -> Bounds {
+    let solids = model.solids.iter().map(Solid::bounds).filter(|b| b.min.is_finite() && b.max.is_finite());
+    solids.fold(Bounds::EMPTY, Bounds::union)
 }
 
 /// One instance seen by the camera.
@@ -205,16 +217,31 @@ impl Window {
 impl DeepZoom {
     /// For a model that is uploaded as a whole. Reads only the control points.
     pub(crate) fn new(model: &Model) -> Self {
-        let known = |face: &Face| Known { bounds: face.surface.bounds(), cut: None };
-        let faces = model.parts.iter().map(|part| part.faces.iter().map(known).collect()).collect();
-        let solids = model.solids.iter().map(Solid::bounds).filter(|b| b.min.is_finite() && b.max.is_finite());
+        let faces = model.parts.iter().map(known).collect();
         Self {
             faces,
             bounds: model.parts.iter().map(Part::control_bounds).collect(),
-            solids: solids.fold(Bounds::EMPTY, Bounds::union),
+            solids: bounds_of_solids(model),
             edges: KnownEdges::default(),
             held: Some(Held::Whole),
         }
+    }
+
+    /// These parts of the model, and its Boolean solids, are others now; or the model's last parts are gone.
+    pub(crate) fn change(&mut self, model: &Model, parts: Range<usize>) {
+        self.faces.resize_with(model.parts.len(), Vec::new);
+        self.bounds.resize(model.parts.len(), Bounds::EMPTY);
+        for (number, part) in parts.clone().zip(model.parts.get(parts).into_iter().flatten()) {
+            self.faces[number] = known(part);
+            self.bounds[number] = part.control_bounds();
+        }
+        self.solids = bounds_of_solids(model);
+        self.edges = KnownEdges::default();
+    }
+
+    /// The model is loaded as it is.
+    pub(crate) fn hold_whole(&mut self) {
+        self.held = Some(Held::Whole);
     }
 
     /// What to upload for this view of `model`, in place of the last upload. The model must have the parts and loops

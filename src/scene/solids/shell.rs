@@ -20,6 +20,8 @@ pub(in crate::scene) struct Operand {
     pub origin: DVec3,
     /// Its range of [`SolidData::operand_meshes`].
     pub meshes: Range<usize>,
+    /// Once it is placed: its instance in the scene, and its first face.
+    pub placed: Option<(u32, usize)>,
 }
 
 impl Operand {
@@ -81,7 +83,7 @@ impl SolidData {
             _ => {}
         }
         let meshes = first..self.operand_meshes.len();
-        self.operands.push(Operand { primitive: primitive.clone(), shell, origin, meshes });
+        self.operands.push(Operand { primitive: primitive.clone(), shell, origin, meshes, placed: None });
         shell
     }
 

@@ -8,9 +8,11 @@
 //!   stray     a pixel of a line whose centre is farther than that from all that is seen
 //! ```
 //!
-//! What is seen is taken to reach from point to point, and to the first point that is hidden: an end is known to
-//! [`SPACING`]. Points flush with the face of another body ([`Visibility::Unsure`](crate::Visibility)) need no line and
-//! excuse one; they are counted.
+//! What is seen is taken to reach from point to point, to the first point that is hidden, and to the end of the edge: where
+//! visibility changes is known to [`SPACING`]. Beside what would be a stray pixel, edges are looked at again, every 1/32 px:
+//! of an edge that touches a surface from behind, less than [`SPACING`] may be seen. Points flush with the face of another
+//! body or beside a fold ([`Visibility::Unsure`](crate::Visibility)) need no line and excuse one; they are counted. Points
+//! just beside the picture excuse lines at its border.
 
 use super::path::View;
 use super::sight::{Sight, State};
@@ -26,6 +28,8 @@ use serde::Serialize;
 pub const SPACING: f64 = 0.5;
 /// Beside half the width, how far a line may be off: pixels.
 pub const SLACK: f64 = 0.5;
+/// Points asked between two points, where a pixel of a line would be stray: 1/32 px apart.
+const LOOKS: u32 = 16;
 /// Most faults that the report lists with their places.
 const TOLD: usize = 16;
 
@@ -79,12 +83,17 @@ enum Need {
     /// A dashed line.
     May,
     No,
+    /// Seen or unsure, beside the picture: excuses lines.
+    Beside,
+    /// An end of the path, which is not asked, or hidden beside the picture.
+    End,
 }
 
 /// A point and what it needs.
 #[derive(Clone, Copy)]
 struct Sample {
     pixel: DVec2,
+    parameter: f64,
     need: Need,
 }
 
@@ -107,19 +116,19 @@ pub fn judge_lines(
     assert_eq!(image.lines.len(), width * height, "a number for each pixel");
     assert!(image.width > 0.0 && image.width.is_finite(), "a line has a width");
     let scene = Scene::new(model, tracer)?;
-    let view = View::new(camera);
-    let paths = scene.paths(&view, settings.silhouettes).paths;
-    let sampled: Vec<(LineSource, Vec<Vec<Sample>>)> = paths
-        .par_iter()
-        .map_init(|| tracer.probe(camera), |probe, path| (path.source, samples(&scene, &view, path, settings, probe)))
-        .collect();
     let reach = 0.5 * image.width + SLACK;
+    let view = View::new(camera).with_beyond(reach);
+    let paths = scene.paths(&view, settings.silhouettes).paths;
+    let sampled: Vec<(&Path<'_>, Vec<Vec<Sample>>)> = paths
+        .par_iter()
+        .map_init(|| tracer.probe(camera), |probe, path| (path, samples(&scene, &view, path, settings, probe)))
+        .collect();
     let mut raster = Raster { width, height, reach, near: vec![false; width * height] };
     let mut out = LineJudgement::default();
-    for (source, runs) in &sampled {
+    for (path, runs) in &sampled {
         for run in runs {
-            for (k, sample) in run.iter().enumerate() {
-                out.points += 1;
+            for (k, sample) in run.iter().enumerate().filter(|(_, sample)| sample.need != Need::End) {
+                out.points += u64::from(sample.need != Need::Beside);
                 out.unsure += u64::from(sample.need == Need::Unsure);
                 if sample.need == Need::No {
                     continue;
@@ -134,13 +143,23 @@ pub fn judge_lines(
                 if !raster.pixels(sample.pixel, sample.pixel).any(|at| image.lines[at] != 0) {
                     out.missing += 1;
                     if out.missing_at.len() < TOLD {
-                        let (instance, index) = numbers(*source);
+                        let (instance, index) = numbers(path.source);
                         let fault = LineFault { pixel: sample.pixel.into(), instance, index };
                         out.missing_at.push(fault);
                     }
                 }
             }
         }
+    }
+    let stray = |at: usize| image.lines[at] != 0 && !raster.near[at];
+    let again = |probe: &mut Probe<'_>, (path, runs): &(&Path<'_>, Vec<Vec<Sample>>)| {
+        let pairs = runs.iter().flat_map(|run| run.windows(2));
+        let pairs = pairs.filter(|pair| raster.pixels(pair[0].pixel, pair[1].pixel).any(stray));
+        seen_between(&Sight::new(&scene, &view, path, settings.silhouettes), (path, &view), pairs, settings, probe)
+    };
+    let found: Vec<Vec<DVec2>> = sampled.par_iter().map_init(|| tracer.probe(camera), again).collect();
+    for place in found.into_iter().flatten() {
+        raster.mark(place, place);
     }
     for at in (0..image.lines.len()).filter(|at| image.lines[*at] != 0) {
         out.line_pixels += 1;
@@ -179,7 +198,11 @@ fn samples(
     }
     let sight = Sight::new(scene, view, path, settings.silhouettes);
     let count = (length / SPACING).ceil().max(1.0) as usize;
-    let mut runs: Vec<Vec<Sample>> = vec![Vec::new()];
+    let end = |parameter: f64| {
+        path.spot(view, parameter).map(|spot| Sample { pixel: spot.pixel, parameter, need: Need::End })
+    };
+    let (from, to) = path.range;
+    let mut runs: Vec<Vec<Sample>> = vec![end(from).into_iter().collect()];
     for k in 0..count {
         let parameter = path.parameter(length * (k as f64 + 0.5) / count as f64);
         let (kind, need) = match sight.state(parameter, probe) {
@@ -190,12 +213,38 @@ fn samples(
         };
         match (kind.filter(|kind| settings.draws(*kind)), path.spot(view, parameter)) {
             (Some(_), Some(spot)) => {
-                runs.last_mut().expect("one at least").push(Sample { pixel: spot.pixel, need });
+                let need = match need {
+                    _ if view.holds(spot.pixel, 0.0) => need,
+                    Need::Must | Need::Unsure => Need::Beside,
+                    _ => Need::End,
+                };
+                runs.last_mut().expect("one at least").push(Sample { pixel: spot.pixel, parameter, need });
             }
             _ => runs.push(Vec::new()),
         }
     }
+    runs.last_mut().expect("one at least").extend(end(to));
     runs
+}
+
+/// What may be seen of a path between neighbouring points: places in the picture.
+fn seen_between<'s>(
+    sight: &Sight<'_>,
+    (path, view): (&Path<'_>, &View),
+    pairs: impl Iterator<Item = &'s [Sample]>,
+    settings: &DrawingSettings,
+    probe: &mut Probe<'_>,
+) -> Vec<DVec2> {
+    let inner = |pair: &[Sample]| {
+        let (a, b) = (pair[0].parameter, pair[1].parameter);
+        (1..LOOKS).map(move |k| a + (b - a) * f64::from(k) / f64::from(LOOKS))
+    };
+    let seen = |parameter: &f64| match sight.state(*parameter, probe) {
+        State::Seen(kind) | State::Unsure(kind) => settings.draws(kind),
+        State::Gone | State::Hidden(_) => false,
+    };
+    let places = pairs.flat_map(inner).filter(seen).filter_map(|parameter| path.spot(view, parameter));
+    places.map(|spot| spot.pixel).collect()
 }
 
 /// Pixels near to what is seen.

@@ -30,6 +30,8 @@ pub(crate) struct View {
     pub size: DVec2,
     pub depth: (f64, f64),
     pub perspective: bool,
+    /// Pixels around the picture that count as in it.
+    beyond: f64,
     eye: DVec3,
     forward: DVec3,
 }
@@ -49,9 +51,15 @@ impl View {
             size: DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1)),
             depth: camera.depth_range,
             perspective: camera.is_perspective(),
+            beyond: 0.0,
             eye: camera.eye,
             forward: camera.axes().2,
         }
+    }
+
+    /// The same view with so many pixels around the picture that count as in it.
+    pub fn with_beyond(self, beyond: f64) -> Self {
+        Self { beyond, ..self }
     }
 
     /// `None` behind the eye.
@@ -71,11 +79,15 @@ impl View {
         if self.perspective { (self.eye - point).normalize_or_zero() } else { -self.forward }
     }
 
-    /// In the picture and the depth range.
+    /// In the picture, or `beyond` beside it, and in the depth range.
     pub fn shows(&self, at: &Spot) -> bool {
         let (near, far) = self.depth;
-        let inside = at.pixel.cmpge(DVec2::ZERO).all() && at.pixel.cmple(self.size).all();
-        inside && at.depth >= near && at.depth <= far
+        self.holds(at.pixel, self.beyond) && at.depth >= near && at.depth <= far
+    }
+
+    /// In the picture, or at most so many pixels beside it.
+    pub fn holds(&self, pixel: DVec2, beside: f64) -> bool {
+        pixel.cmpge(DVec2::splat(-beside)).all() && pixel.cmple(self.size + beside).all()
     }
 }
 
@@ -268,10 +280,11 @@ impl<'s> Path<'s> {
 /// Nothing between the two is in the picture, as far as they tell.
 fn beside(view: &View, spots: [&Spot; 3]) -> bool {
     let all = |test: &dyn Fn(&Spot) -> bool| spots.iter().all(|s| test(s));
-    all(&|s| s.pixel.x < -MARGIN)
-        || all(&|s| s.pixel.y < -MARGIN)
-        || all(&|s| s.pixel.x > view.size.x + MARGIN)
-        || all(&|s| s.pixel.y > view.size.y + MARGIN)
+    let margin = MARGIN + view.beyond;
+    all(&|s| s.pixel.x < -margin)
+        || all(&|s| s.pixel.y < -margin)
+        || all(&|s| s.pixel.x > view.size.x + margin)
+        || all(&|s| s.pixel.y > view.size.y + margin)
         || all(&|s| s.depth < view.depth.0)
         || all(&|s| s.depth > view.depth.1)
 }

@@ -120,6 +120,27 @@ fn what_lies_flush_is_unsure() {
     assert!(flush(-1e-6).iter().all(|v| *v == Visibility::Hidden));
 }
 
+/// A cylinder's rim just behind its side's fold: unsure to 1/256 px from the fold, hidden farther away.
+#[test]
+fn a_rim_beside_its_fold_is_unsure() {
+    let model = of(shapes::cylinder(0.8, 1.0).unwrap().part, &[DAffine3::IDENTITY]);
+    let camera = parallel(DVec3::new(3.0, 0.0, 1.5));
+    let tracer = Tracer::new(&model);
+    let edges = EdgeTracer::new(&model, &tracer).unwrap();
+    let rim = |e: &crate::model::Edge| e.curve.iter().all(|span| span.piece.point(0.5).z.abs() < 1e-9);
+    let lower = edges.parts()[0].edges.iter().position(rim).unwrap();
+    let mut probe = tracer.probe(&camera);
+    let pixel = 1.0 / camera.focal_px().x;
+    // pixels behind the fold, whose sides are y = 0.8 and y = -0.8
+    let mut at = |px: f64| {
+        let y = 0.8 - px * pixel;
+        edges.visibility(0, lower, DVec3::new(-(0.64 - y * y).sqrt(), y, 0.0), &mut probe)
+    };
+    assert_eq!(at(1.0 / 300.0), Visibility::Unsure);
+    assert_eq!(at(1.0 / 200.0), Visibility::Hidden);
+    assert_eq!(at(1.0), Visibility::Hidden);
+}
+
 /// A ball before a square hides it, one of glass does not; and a volume that trims cuts edges away.
 #[test]
 fn glass_hides_nothing_and_volumes_cut() {

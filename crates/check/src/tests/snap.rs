@@ -1,7 +1,7 @@
 //! Snapping on a cylinder and a cube, whose vertices, edges and centres have closed forms.
 
 use super::shapes;
-use crate::model::{Camera, Instance, Model};
+use crate::model::{Camera, Instance, Model, Part, Primitive, Shape, Solid};
 use crate::{EdgeTracer, Snap, SnapKind, Tracer};
 use glam::{DAffine3, DVec2, DVec3};
 use selvedge_geometry::construct::shapes as bodies;
@@ -14,7 +14,7 @@ fn view(eye: DVec3) -> Camera {
     Camera { size: (800, 600), ..shapes::view(eye) }
 }
 
-fn alone(part: crate::model::Part) -> Model {
+fn alone(part: Part) -> Model {
     let instance = Instance { part: 0, transform: DAffine3::IDENTITY, colour: None, name: String::new() };
     Model { parts: vec![part], instances: vec![instance], ..Model::default() }
 }
@@ -74,6 +74,27 @@ fn points_on_edges_and_centres_are_exact_and_kinds_have_their_order() {
         let found = snap(&model, &camera, at, 1.0, &[SnapKind::Edge]).map(|found| found.point.distance(below) < 1e-6);
         assert_eq!(found.unwrap_or(false), seen, "{degrees}");
     }
+}
+
+/// A solid bar, which has no edges, before the middle of a square's lower edge: from a pixel over the bar, the edge is found
+/// where it comes out.
+#[test]
+fn an_edge_is_found_where_it_comes_out_from_behind() {
+    let camera = Camera { up: DVec3::Y, ..view(DVec3::Z * 5.0) };
+    let square = shapes::rectangle(DVec3::new(-1.0, -1.0, 0.0), DVec3::X * 2.0, DVec3::Y * 2.0);
+    let bar = Shape::Block { min: DVec3::new(-0.1, -1.5, 0.9), max: DVec3::new(0.1, 1.5, 1.0) };
+    let bar = Primitive { shape: bar, transform: DAffine3::IDENTITY, colour: [1.0; 4], id: 9 };
+    let part = Part { faces: vec![shapes::face(1, square, vec![])], ..Part::default() };
+    let model = Model { solids: vec![Solid::of(bar).unwrap()], ..alone(part) };
+    // as the eye sees it, the bar's side x = 0.1 at z = 1 is before this point
+    let (side, _) = camera.project(DVec3::new(0.125, -1.0, 0.0)).unwrap();
+    let pixel = side - DVec2::new(4.0, 0.0);
+    let found = |radius: f64| snap(&model, &camera, pixel, radius, &[SnapKind::Edge]);
+    assert_eq!(found(3.9), None);
+    let out = found(4.1).expect("the edge beside the bar");
+    assert!((out.pixel - side).length() < 1.0 / 32.0, "{out:?} {side}");
+    let (at, _) = camera.project(out.point).unwrap();
+    assert!(at.distance(out.pixel) < 1e-9 && (out.distance_px - 4.0).abs() < 1.0 / 32.0, "{out:?}");
 }
 
 #[test]

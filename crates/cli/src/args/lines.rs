@@ -28,6 +28,9 @@ pub struct LineArgs {
     /// Width of lines in pixels of a picture 1080 pixels high; it grows and shrinks with the height
     #[arg(long, value_name = "PX", default_value_t = EdgeSettings::default().width)]
     pub edge_width: f64,
+    /// Width of the outlines of sections, as that of lines; twice that of lines without it
+    #[arg(long, value_name = "PX")]
+    pub section_width: Option<f64>,
 }
 
 impl LineArgs {
@@ -47,6 +50,7 @@ impl LineArgs {
             hidden: self.hidden_lines,
             width: self.edge_width,
             thin_width: self.edge_width * usual.thin_width / usual.width,
+            section_width: self.section_width.unwrap_or(usual.wider(self.edge_width)),
             colour,
             hidden_colour: [r, g, b, opacity * lighter],
         };

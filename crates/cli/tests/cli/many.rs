@@ -35,6 +35,38 @@ fn rows(path: &Path) -> Vec<std::collections::HashMap<String, String>> {
     csv::Reader::from_path(path).expect("a table").deserialize().map(|row| row.expect("a row")).collect()
 }
 
+/// Several views are drawn with frames in flight, but for pictures of one colour, which may show nothing.
+#[test]
+fn views_together_are_what_each_is_alone() {
+    let (folder, names) = files();
+    let draw = |model: &str, start: &str, size: &str, views: &str| {
+        let path = |end: &str| folder.path().join(format!("{start}_{{view}}.{end}")).display().to_string();
+        let depth = format!("depth={}", path("npy"));
+        let output =
+            selvedge(&["render", model, "-o", &path("png"), "--aov", &depth, "--size", size, "--views", views]);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    };
+    let views = ["iso", "front", "top"];
+    // one pixel, of a sphere, has one colour
+    for (model, size) in [(&names[0], "48x32"), (&names[2], "1x1")] {
+        draw(model, &format!("all{size}"), size, &views.join(","));
+        let mut known = Vec::new();
+        for view in views {
+            draw(model, &format!("one{size}"), size, view);
+            for end in ["png", "npy"] {
+                let read = |start: &str| {
+                    fs::read(folder.path().join(format!("{start}{size}_{view}.{end}"))).expect("a file of each view")
+                };
+                assert_eq!(read("all"), read("one"), "{size} {view}.{end}");
+                known.push(read("all"));
+            }
+        }
+        known.sort();
+        known.dedup();
+        assert!(size == "1x1" || known.len() == 2 * views.len(), "no two views are alike");
+    }
+}
+
 #[test]
 fn a_file_that_fails_costs_itself_only() {
     let (folder, names) = files();

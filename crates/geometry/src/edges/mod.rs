@@ -19,6 +19,7 @@
 //! be closed and is not, loops without partner may be `2e-4` apart; fits aim at `1e-8`.
 
 pub mod curve;
+mod cut;
 pub mod flatten;
 mod join;
 mod kind;
@@ -28,6 +29,7 @@ mod sheet;
 mod stretch;
 mod vertices;
 
+pub use cut::CutCurve;
 pub use sheet::Sheet;
 
 use crate::math::golden::section;

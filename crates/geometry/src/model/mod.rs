@@ -76,6 +76,9 @@ pub struct Model {
     /// Faces of Boolean solids that are nearer to each other than this share of the solids' diagonal are one face, as
     /// [`Model::coincidence`] says; `None`: [`SurfaceTable::ROUNDED`].
     pub coincident: Option<f64>,
+    /// Numbers of the primitives whose faces are cuts: those that [`Model::section`] made. Not stored.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub cuts: Vec<u32>,
 }
 
 /// One body: a closed solid, or an open shell.

@@ -81,7 +81,8 @@ impl Model {
         half.check().map_err(|error| SolidError::Shape { primitive: 0, error })?;
         let plane = Plane::new(normal, offset);
         let mut left = Self { instances: Vec::new(), solids: Vec::new(), ..self.clone() };
-        let mut next = self.largest_id() + 1;
+        let first = self.largest_id() + 1;
+        let mut next = first;
         let mut number = || {
             next += 1;
             next - 1
@@ -127,6 +128,7 @@ impl Model {
                 }
             }
         }
+        left.cuts.extend(first..next);
         if open {
             let transform = DAffine3::IDENTITY;
             let half = Solid::of(Primitive { shape: half, transform, colour: GREY, id: 1 })?;
@@ -227,7 +229,8 @@ mod tests {
         assert_eq!(cut.trim.map(|t| t.primitives().len()), Some(1));
         assert_eq!(cut.solids.len(), 3);
         assert_eq!(cut.solids[1], model.solids[0]);
-        // numbers of caps come after all others
+        // numbers of caps come after all others, and are told
+        assert_eq!(cut.cuts, [12, 13]);
         let ids = |s: &Solid| s.primitives().iter().map(|p| p.id).collect::<Vec<_>>();
         assert_eq!([ids(&cut.solids[0]), ids(&cut.solids[2])], [vec![7, 12], vec![10, 13]]);
         assert!(cut.solids[0].primitives().iter().all(|p| p.colour == red));

@@ -25,7 +25,7 @@ impl TryFrom<ModelData> for Model {
 
     fn try_from(data: ModelData) -> Result<Self, ModelError> {
         let ModelData { name, parts, instances, solids, trim, unit, coincident } = data;
-        let model = Self { name, parts, instances, solids, trim, unit, coincident };
+        let model = Self { name, parts, instances, solids, trim, unit, coincident, cuts: Vec::new() };
         model.check()?;
         Ok(model)
     }

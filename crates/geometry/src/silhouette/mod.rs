@@ -27,7 +27,7 @@ mod trace;
 
 use crate::spline::PatchGrid;
 use chain::chains;
-use glam::{DMat4, DVec2};
+use glam::{DMat4, DVec2, DVec3};
 use net::FoldNet;
 use std::sync::Arc;
 
@@ -73,7 +73,17 @@ impl Silhouette {
     ///
     /// Cost: microseconds a patch that has no fold, some milliseconds a patch that has.
     pub fn new(grid: &PatchGrid, matrix: &DMat4) -> Self {
-        let traced = trace::branches(grid, matrix);
+        Self::traced(grid, trace::branches(grid, false, |patch| FoldNet::new(patch, matrix)))
+    }
+
+    /// Where the plane `normal · p = offset` cuts a surface: the same method, with `f = normal · S - offset`. A side of a patch that
+    /// lies in the plane is a cut, of both patches; where a whole patch does, there is none.
+    pub fn cut(grid: &PatchGrid, normal: DVec3, offset: f64) -> Self {
+        let plane = normal.extend(-offset);
+        Self::traced(grid, trace::branches(grid, true, |patch| FoldNet::of_plane(patch, plane)))
+    }
+
+    fn traced(grid: &PatchGrid, traced: trace::Traced) -> Self {
         let ((u0, v0), (u1, v1)) = {
             let (first, last) = (&grid.patches[0], &grid.patches[grid.patches.len() - 1]);
             ((first.u.0, first.v.0), (last.u.1, last.v.1))

@@ -1,4 +1,4 @@
-//! The function that is zero where a patch folds, as one Bernstein polynomial.
+//! The function that is zero where a patch folds, or where a plane cuts it, as one Bernstein polynomial.
 
 use crate::math::bernstein::value;
 use crate::math::root::bracketed;
@@ -106,6 +106,22 @@ impl FoldNet {
         };
         let folds = Side::ALL.into_iter().filter(|side| net.divide(*side) % 2 == 1 && !is_point(of, *side)).collect();
         Some((net, folds))
+    }
+
+    /// Of a patch that a plane cuts, `normal · p + w = 0`, and the sides that lie in it. `None` of one that lies in it.
+    pub fn of_plane(of: &SurfacePatch, plane: DVec4) -> Option<(Self, Vec<Side>)> {
+        let patch = &of.patch;
+        let values: Vec<f64> = patch.points.iter().map(|p| plane.dot(*p)).collect();
+        let size = |p: &DVec4| (plane * *p).abs().max_element();
+        let noise = NOISE * patch.points.iter().map(size).fold(0.0, f64::max);
+        if values.iter().all(|c| c.abs() <= noise) {
+            return None;
+        }
+        let low = DVec2::new(of.u.0, of.v.0);
+        let side = DVec2::new(of.u.1, of.v.1) - low;
+        let mut net = Self { n: patch.degree_u, k: patch.degree_v, values, noise, low, side, pixels: f64::INFINITY };
+        let cuts = Side::ALL.into_iter().filter(|side| net.divide(*side) % 2 == 1 && !is_point(of, *side)).collect();
+        Some((net, cuts))
     }
 
     fn at(&self, i: usize, j: usize) -> f64 {

@@ -3,8 +3,7 @@
 use super::Branch;
 use super::net::{FoldNet, Side};
 use crate::math::bernstein::{sign_changes, split, value};
-use crate::spline::PatchGrid;
-use glam::DMat4;
+use crate::spline::{PatchGrid, SurfacePatch};
 use std::sync::Arc;
 
 /// Where a cell is divided: not in the middle, where symmetric models have their folds.
@@ -45,10 +44,15 @@ fn sign(values: impl Iterator<Item = f64>, noise: f64) -> Option<f64> {
     Some(sign)
 }
 
-pub(super) fn branches(grid: &PatchGrid, matrix: &DMat4) -> Traced {
+/// `net`: of a patch its function, and the sides on which that is zero; these count on the surface's own `borders`, too.
+pub(super) fn branches(
+    grid: &PatchGrid,
+    borders: bool,
+    net: impl Fn(&SurfacePatch) -> Option<(FoldNet, Vec<Side>)>,
+) -> Traced {
     let mut out = Traced::default();
     for (index, patch) in grid.patches.iter().enumerate() {
-        let Some((net, folds)) = FoldNet::new(patch, matrix) else { continue };
+        let Some((net, folds)) = net(patch) else { continue };
         let net = Arc::new(net);
         let (i, j) = (index % grid.count_u, index / grid.count_u);
         for side in folds {
@@ -58,7 +62,7 @@ pub(super) fn branches(grid: &PatchGrid, matrix: &DMat4) -> Traced {
                 Side::Bottom => j == 0,
                 Side::Top => j + 1 == grid.count_v,
             };
-            if !at_border {
+            if borders || !at_border {
                 let bracket = (side.at(), side.at());
                 out.branches.push(Branch { net: Arc::clone(&net), over_v: side.over_v(), range: (0.0, 1.0), bracket });
             }

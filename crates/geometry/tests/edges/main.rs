@@ -1,5 +1,6 @@
 //! Edges of parts whose edges are known.
 
+mod cut;
 mod flatten;
 mod joined;
 mod meshes;

@@ -112,7 +112,7 @@ class Edge:
     def ends(self) -> NDArray[np.float64]: ...
 
 class Warning:
-    """Something in a file that was left out, healed or guessed."""
+    """Something in a file that was left out, repaired or guessed."""
 
     @property
     def file(self) -> str: ...

@@ -3,6 +3,7 @@
 use super::super::shapes::{face, rectangle};
 use super::*;
 use crate::drawing::{LineImage, LineJudgement, judge_lines};
+use crate::model::{Primitive, Shape, Solid};
 use selvedge_geometry::construct::shapes;
 
 const WIDTH: f64 = 1.25;
@@ -82,6 +83,70 @@ fn each_fault_is_seen() {
     // none at all
     let (missing, stray) = told(&vec![0; 200 * 150]);
     assert!(missing > 500 && stray == 0);
+}
+
+/// A line may be half a pixel off, beyond the ends of an edge, too: around a square, wherever it lies among the pixels.
+#[test]
+fn a_line_may_reach_half_a_pixel_beyond_its_width() {
+    let camera = Camera { size: (200, 150), ..parallel(DVec3::Z * 3.0, 3.0) };
+    for step in 0..8 {
+        let by = f64::from(step) / 50.0 * DVec3::new(0.13, 0.07, 0.0);
+        let low = DVec3::new(-1.0, -1.0, 0.0) + by;
+        let square = rectangle(low, DVec3::X * 2.0, DVec3::Y * 2.0);
+        let model = alone(Part { faces: vec![face(1, square, vec![])], ..Part::default() });
+        let corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)];
+        let corners = corners.map(|(x, y)| pixel(&camera, low + DVec3::new(x, y, 0.0)));
+        let sides: Vec<[DVec2; 2]> = (0..4).map(|k| [corners[k], corners[(k + 1) % 4]]).collect();
+        let wide = |more: f64| {
+            let lines = image(&camera, |p| to_segments(&sides, p) - more);
+            judged(&model, &camera, &DrawingSettings::default(), &lines)
+        };
+        let found = wide(0.5 - 1e-6);
+        assert_eq!((found.missing, found.stray), (0, 0), "{step}: {found:?}");
+        // half a pixel more, all along the sides
+        assert!(wide(1.0).stray > 100, "{step}");
+    }
+}
+
+/// Of an edge just above the picture, half a line is in it.
+#[test]
+fn a_line_may_reach_into_the_picture() {
+    let camera = Camera { size: (200, 150), ..parallel(DVec3::Z * 3.0, 3.0) };
+    for (above, stray) in [(0.6, false), (2.0, true)] {
+        let top = 1.5 + above / 50.0;
+        let square = rectangle(DVec3::new(-1.0, -1.0, 0.0), DVec3::X * 2.0, DVec3::Y * (1.0 + top));
+        let model = alone(Part { faces: vec![face(1, square, vec![])], ..Part::default() });
+        let ends = [-0.9, 0.9].map(|x| pixel(&camera, DVec3::new(x, top, 0.0)));
+        let lines = image(&camera, |p| to_segments(&[ends], p) + 0.5 * WIDTH - above - 0.6);
+        let found = judged(&model, &camera, &DrawingSettings::default(), &lines);
+        assert!(found.line_pixels > 80 && (found.stray > 0) == stray, "{found:?}");
+    }
+}
+
+/// An edge behind two blocks, of which a slot between them lets 0.2 px be seen: no point need be asked there, and a line is
+/// right. Without the slot it is wrong.
+#[test]
+fn an_edge_seen_through_a_slot_may_have_a_line() {
+    let camera = Camera { size: (200, 150), ..parallel(DVec3::Z * 3.0, 3.0) };
+    let square = rectangle(DVec3::new(-1.0, -1.0, -1.0), DVec3::X * 2.0, DVec3::Y * 1.01);
+    let block = |middle: f64, size: f64| {
+        let transform = DAffine3::from_translation(DVec3::X * middle);
+        let half = 0.5 * DVec3::new(size, 3.0, 0.1);
+        let shape = Shape::Block { min: -half, max: half };
+        Solid::of(Primitive { shape, transform, colour: [1.0; 4], id: 9 }).unwrap()
+    };
+    let unit = 1.0 / 50.0; // of a pixel
+    for step in 0..5 {
+        let at = 0.1 * f64::from(step) * unit;
+        for (slot, stray) in [(0.2 * unit, false), (0.0, true)] {
+            let solids = [-1.0, 1.0].map(|side| block(at + side * (1.0 + 0.5 * slot), 2.0)).to_vec();
+            let part = Part { faces: vec![face(1, square.clone(), vec![])], ..Part::default() };
+            let model = Model { solids, ..alone(part) };
+            let place = pixel(&camera, DVec3::new(at, 0.01, -1.0));
+            let found = judged(&model, &camera, &DrawingSettings::default(), &image(&camera, |p| p.distance(place)));
+            assert!(found.line_pixels > 0 && (found.stray > 0) == stray, "{step}: {found:?}");
+        }
+    }
 }
 
 /// With hidden lines in the settings, pixels of hidden edges are no faults.

@@ -1,15 +1,15 @@
-#version 460
-#extension GL_EXT_scalar_block_layout : require
-#extension GL_GOOGLE_include_directive : require
 // Pass `edge_line`: each pixel's best line. Where several cover it, the one that is seen, then the one that covers most of
 // it, then the last one counts: the same whatever the order in which they are drawn.
 //
 //    ●━━━━━━━━━━━━●   chord        distance of the pixel's centre ─▶ share of the pixel
 //        │            its point nearest to the centre ─▶ parameter ─▶ the exact point of the edge ─▶ seen, or hidden
 //        · pixel
+//
+// The trim test is that of one way (trim.glsl).
 #include "scene.glsl"
 #include "view.glsl"
 #include "edges.glsl"
+#include "shells.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
@@ -28,31 +28,57 @@ layout(scalar, binding = 18) readonly buffer MeshInstances { MeshInstance mesh_i
 layout(scalar, binding = 19) readonly buffer Triangles { uint triangles[]; };
 layout(scalar, binding = 20) readonly buffer Positions { vec3 positions[]; };
 
+#ifdef WITHIN_VOLUME
+#define SOLIDS_BY_DEPTH // descriptors are few
+#define TRIM_BINDING 21
+#else
+#define TRIM_BINDING 27
+// in scenes without Boolean solids not read
+layout(binding = 21, r32ui) readonly uniform uimage2D operand_uv;
+layout(binding = 22) uniform usamplerBuffer leaf_surfaces;
+layout(binding = 23) uniform samplerBuffer surface_places;
+layout(scalar, binding = 24) readonly buffer OperandMeshes { OperandMesh operand_meshes[]; };
+layout(scalar, binding = 25) readonly buffer OperandTriangles { uint operand_triangles[]; };
+layout(scalar, binding = 26) readonly buffer OperandPositions { vec3 operand_positions[]; };
+#endif
+
 layout(scalar, push_constant) uniform Push {
-    vec2 half_px;
+    vec3 half_px;
     uint hidden;
 } push;
 
+#include "trim.glsl"
+#ifdef WITHIN_VOLUME
+#define VOLUME_BINDING (TRIM_BINDING + TRIM_BUFFERS)
+#include "volume.glsl"
+#endif
 #include "placed.glsl"
 #include "patch.glsl"
+#include "patch_place.glsl"
 #include "refine.glsl"
+#include "face_point.glsl"
 #include "visible.glsl"
 
 layout(location = 0) flat in uint chord;
 
-bool is_own(uint instance, uint key) {
-    EdgeItem item = edge_items[chords[chord].item];
-    EdgeLine line = edge_lines[edge_pieces[item.piece].edge];
+bool is_own_key(uint key) {
+    EdgeLine line = edge_lines[edge_pieces[edge_items[chords[chord].item].piece].edge];
     bool found = false;
     for (uint i = 0u; i < line.own_count && !found; ++i) found = own_faces[line.first_own + i] == key;
-    return found && texelFetch(sources, int(instance)).y == item.instance;
+    return found;
+}
+
+bool is_own(uint instance, uint key) {
+    return is_own_key(key) && texelFetch(sources, int(instance)).y == edge_items[chords[chord].item].instance;
 }
 
 bool is_own_face(FaceInstance fi) { return is_own(fi.instance, word_at(face_keys, fi.face)); }
 
 bool is_own_triangle(uint instance, uint triangle) { return is_own(instance, OWN_TRIANGLE | triangle); }
 
+const bool OWN_PATCHES_HIDE = false;
 #include "edge_seen.glsl"
+#include "edge_covered.glsl"
 
 // What Newton's method leaves of the way to the edge's place, and what the sheet bends on it.
 const float ON_SHEET_PX = 1.0 / 64.0;
@@ -84,13 +110,29 @@ float dash(vec2 along, vec2 pixel, float half_px) {
     return clamp(0.5 * DASH * half_px - inside + 0.5, 0.0, 1.0);
 }
 
+// Some pixel around the point sees a face of the edge that bounds an operand.
+bool is_near_own(EdgePoint e) {
+    bool near = false;
+    for (int k = 0; k < 9 && !near; ++k) {
+        ivec2 at = clamp(ivec2(floor(e.pixel)) + ivec2(k % 3 - 1, k / 3 - 1), ivec2(0), ivec2(frame.size) - 1);
+        uint seen = imageLoad(visibility, at).x;
+        if (sees_nothing(seen)) seen = imageLoad(others, at).x;
+        if (SOLIDS_HAVE_PATCHES && sees_operand(seen)) {
+            near = is_own_face(face_instance_at(face_instance_of(seen_item(seen))));
+        } else if (sees_solid(seen) && seen_side(seen) >= frame.side_count) {
+            near = is_own_key(OWN_TRIANGLE | seen_side(seen) - frame.side_count);
+        }
+    }
+    return near;
+}
+
 void main() {
     Chord c = chords[chord];
     vec2 along = c.b - c.a;
     vec2 from = gl_FragCoord.xy - c.a;
     float size = dot(along, along);
     float share = size > 0.0 ? clamp(dot(from, along) / size, 0.0, 1.0) : 0.0;
-    float half_px = push.half_px[c.style];
+    float half_px = push.half_px[c.style & EDGE_STYLE];
     float covered = line_coverage(length(from - share * along), half_px);
     ivec2 at = ivec2(gl_FragCoord.xy);
     uint steps = uint(covered * LINE_STEPS + 0.5);
@@ -99,7 +141,8 @@ void main() {
     EdgeItem item = edge_items[c.item];
     EdgePiece piece = edge_pieces[item.piece];
     EdgePoint e = point_at(c, share, piece, view_at(item.placement));
-    if (!is_seen(e, at)) {
+    bool near = (c.style & EDGE_NEAR) == 0u || is_near_own(e);
+    if (!near || !is_seen(e, at) || is_covered(e, at)) {
         steps = uint(covered * dash(along, gl_FragCoord.xy, half_px) * LINE_STEPS + 0.5);
         if (push.hidden == 0u || steps == 0u) return;
         best = steps << LINE_COVERAGE | chord;
