@@ -1,6 +1,6 @@
 // Across a mesh from one of its triangles to the one that a point of the picture sees. Needs facet.glsl and a buffer
 // `uint neighbours[]`: of the side opposite to each corner, the corner opposite to it in the triangle beyond; NO_TRIANGLE where
-// there is none or several. Twin: src/twin/mesh_walk.rs.
+// there is none or several.
 //
 //        c                 weights of the point, one a corner: all at least 0 within the triangle. Beyond the side opposite to
 //       ╱ ╲    · point     the corner of the least the next triangle's own corner lies on the point's side, too, unless the
