@@ -47,12 +47,13 @@ macro_rules! at {
             EditTarget::Instances => Some($texels(& $($mutable)? scene.instances)),
             EditTarget::Items => Some($texels(& $($mutable)? scene.items)),
             EditTarget::Sources => scene.sources.$as_ref().map($texels),
-            EditTarget::Mesh(nth) => scene.meshes.$as_ref().map(|meshes| match nth {
-                0 => $structs(& $($mutable)? meshes.meshes),
-                1 => $structs(& $($mutable)? meshes.instances),
-                2 => $structs(& $($mutable)? meshes.positions),
-                3 => $structs(& $($mutable)? meshes.triangles),
-                _ => $structs(& $($mutable)? meshes.normals),
+            EditTarget::Mesh(nth) => scene.meshes.$as_ref().and_then(|meshes| match nth {
+                0 => Some($structs(& $($mutable)? meshes.meshes)),
+                1 => Some($structs(& $($mutable)? meshes.instances)),
+                2 => Some($structs(& $($mutable)? meshes.positions)),
+                3 => Some($structs(& $($mutable)? meshes.triangles)),
+                4 => Some($structs(& $($mutable)? meshes.normals)),
+                _ => meshes.neighbours.$as_ref().map($structs),
             }),
             of_trims => match (of_trims, scene.trims.$as_ref()) {
                 (EditTarget::Cells, Some(Trims::Table(trims))) => Some($structs(& $($mutable)? trims.cells)),

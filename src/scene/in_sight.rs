@@ -101,9 +101,9 @@ struct Range {
 }
 
 impl PlacedBox {
-    /// The same of a part that comes behind so many items.
+    /// The same of a part that comes behind so many items; one without any stays as it is.
     pub(super) fn behind(self, items: u32) -> Self {
-        Self { first: self.first + items, ..self }
+        Self { first: if self.count > 0 { self.first + items } else { 0 }, ..self }
     }
 
     fn range(&self, row: DVec4) -> Range {

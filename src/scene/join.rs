@@ -17,6 +17,7 @@ use super::instance::LivePart;
 use super::picking::Picking;
 use super::request::SceneRequest;
 use crate::abi;
+use crate::abi::constants::mesh_walk::NO_TRIANGLE;
 use crate::model::Model;
 use crate::picture::{TakenWay, TrimWay};
 use bytemuck::Pod;
@@ -231,6 +232,7 @@ impl SceneData {
         arrays.put(&mut own.positions, m.positions, EditTarget::Mesh(2), positions);
         arrays.put(&mut own.triangles, m.triangles, EditTarget::Mesh(3), triangles);
         arrays.put(&mut own.normals, m.normals, EditTarget::Mesh(4), normals);
+        arrays.put(&mut own.neighbours, m.neighbours, EditTarget::Mesh(5), 3 * triangles);
         arrays.put(&mut self.exact.faces, new.exact.faces, EditTarget::Exact(0), faces);
         arrays.put(&mut self.exact.cells, new.exact.cells, EditTarget::Exact(1), cells);
         arrays.put(&mut self.exact.arcs, new.exact.arcs, EditTarget::Exact(2), arcs);
@@ -307,6 +309,8 @@ impl SceneData {
             placed.instance += at.instances;
         }
         self.meshes.triangles.iter_mut().flatten().for_each(|corner| *corner += positions);
+        let beyond = self.meshes.neighbours.iter_mut().filter(|corner| **corner != NO_TRIANGLE);
+        beyond.for_each(|corner| *corner += 3 * triangles);
         for (corners, placed) in &mut self.meshes.draws {
             *corners = corners.start + 3 * triangles..corners.end + 3 * triangles;
             *placed = placed.start + instances..placed.end + instances;

@@ -78,6 +78,9 @@ impl Trimmed {
                 let first = data.faces[face].first_cell as usize;
                 cells = if cells.is_empty() { first..end } else { cells.start..end };
             }
+            if cells.is_empty() {
+                cells = 0..0;
+            }
             let first = trimmed.boxes.len();
             trimmed.boxes.resize(first + cells.len().div_ceil(GROUP), Bounds::EMPTY);
             trimmed.placed.push(PlacedBoxes { boxes: first..trimmed.boxes.len(), cells, around: Bounds::EMPTY });
@@ -103,14 +106,14 @@ impl Trimmed {
         let (boxes, cells) = (self.boxes.len(), self.cells.len());
         let behind = |range: Range<usize>, first: usize| range.start + first..range.end + first;
         let Some(new) = new else {
-            let nothing = PlacedBoxes { boxes: boxes..boxes, cells: cells..cells, around: Bounds::EMPTY };
+            let nothing = PlacedBoxes { boxes: boxes..boxes, cells: 0..0, around: Bounds::EMPTY };
             return self.placed.extend(std::iter::repeat_n(nothing, parts));
         };
         self.boxes.extend(new.boxes);
         self.cells.extend(new.cells);
         self.placed.extend(new.placed.into_iter().map(|part| PlacedBoxes {
             boxes: behind(part.boxes, boxes),
-            cells: behind(part.cells, cells),
+            cells: if part.cells.is_empty() { 0..0 } else { behind(part.cells, cells) },
             ..part
         }));
     }
