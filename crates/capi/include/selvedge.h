@@ -134,7 +134,7 @@ typedef struct SelvedgeView {
     uint32_t outputs;
     // 1, 4 or 8 samples of each pixel's colour; 0: 1.
     uint32_t samples;
-    // shaded, clay, normals or zebra; null: shaded.
+    // shaded, clay, technical, normals, zebra, isophotes, mean-curvature or gaussian-curvature; null: shaded.
     const char *style;
     // A CSS colour, gradient or none; null: gradient.
     const char *background;
@@ -157,6 +157,9 @@ typedef struct SelvedgeView {
     // Radius of ambient occlusion, millimetres. 0: a twenty-fifth of the model's diagonal with one sample, no ambient
     // occlusion with several. Below 0: no ambient occlusion.
     double ambient;
+    // The largest mean curvature on the scale of the styles of curvature, 1/mm, whose square is that of Gaussian curvature;
+    // 0: a round number at which most of the model's curvatures are told apart.
+    double curvature_range;
 } SelvedgeView;
 
 // An image of the host's; 0 where there is none.
@@ -342,8 +345,8 @@ enum SelvedgeStatus selvedge_vulkan_features(void *core, void *vulkan12, void *v
 // Pointers are null or point to what they say; the handles are alive until the SelvedgeHost is freed.
 enum SelvedgeStatus selvedge_host_new(const struct SelvedgeVulkan *vulkan, struct SelvedgeHost **host);
 
-// Uploads the model that later frames show. Only samples, edges, line_width, ambient and sun of `view` are read, and
-// with edges its height: line_width counts pixels of a picture so high. The call does not wait for the GPU: objects
+// Uploads the model that later frames show. Only samples, edges, line_width, ambient and sun of `view` are read,
+// whether its style shows curvature, and with edges its height: line_width counts pixels of a picture so high. The call does not wait for the GPU: objects
 // that frames in flight use are freed with their slots.
 //
 // # Safety
@@ -352,8 +355,8 @@ enum SelvedgeStatus selvedge_host_upload(const struct SelvedgeHost *host,
                                          const struct SelvedgeModel *model,
                                          const struct SelvedgeView *view);
 
-// Records a frame into a VkCommandBuffer of the host's. Only size, camera, style, background and tolerance of `view`
-// are read. With a null background the host's picture stays where no model is drawn. The frame that was recorded into
+// Records a frame into a VkCommandBuffer of the host's. Only size, camera, style, curvature_range (which a host sets:
+// where it is 0, the whole model is sampled), background and tolerance of `view` are read. With a null background the host's picture stays where no model is drawn. The frame that was recorded into
 // the slot before has finished.
 //
 // # Safety
