@@ -97,9 +97,9 @@ pub(crate) struct Frame<'a> {
     pub near: Near,
     pub occlusion: OcclusionState,
     /// The previous frame's visibility images are still valid; with several samples, its patches and trim table.
-    pub keeps: bool,
+    pub reuses_view: bool,
     /// The previous frame's trim table is still valid.
-    pub keeps_table: bool,
+    pub reuses_table: bool,
     /// Pass `gate` runs: if a list overflowed before the first drawing, that drawing has no patches.
     pub counts_first: bool,
     /// Columns and rows of the pixels whose rays may cross operands without equations.
@@ -143,11 +143,11 @@ impl Frame<'_> {
         self.stages.shading.begin(cmd);
         match &self.stages.samples {
             Some(samples) => {
-                self.unless_seen(cmd, || self.make(cmd, times));
+                self.unless_view_reused(cmd, || self.make(cmd, times));
                 samples.record(self, cmd, times);
             }
             None => {
-                self.unless_seen(cmd, || {
+                self.unless_view_reused(cmd, || {
                     self.make(cmd, times);
                     self.see(cmd, &mut Scopes::of(times));
                 });

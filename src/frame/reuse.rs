@@ -33,19 +33,19 @@ fn counted() -> Access {
 
 impl Frame<'_> {
     /// Records the passes of a new view and stores their counters; or restores the counters of the previous frame.
-    pub(super) fn unless_seen(&self, cmd: &Commands<'_>, record: impl FnOnce()) {
-        self.unless_kept(cmd, (self.keeps, &self.stages.common.kept_counters), record);
+    pub(super) fn unless_view_reused(&self, cmd: &Commands<'_>, record: impl FnOnce()) {
+        self.unless_reused(cmd, (self.reuses_view, &self.stages.common.kept_counters), record);
     }
 
     /// The same for the trim table, at the start of a view, when nothing has been counted yet.
-    pub(super) fn unless_made(&self, cmd: &Commands<'_>, table: &Table, record: impl FnOnce()) {
-        self.unless_kept(cmd, (self.keeps_table, &table.counters), record);
+    pub(super) fn unless_table_reused(&self, cmd: &Commands<'_>, table: &Table, record: impl FnOnce()) {
+        self.unless_reused(cmd, (self.reuses_table, &table.counters), record);
     }
 
-    fn unless_kept(&self, cmd: &Commands<'_>, (keeps, kept): (bool, &Buffer), record: impl FnOnce()) {
+    fn unless_reused(&self, cmd: &Commands<'_>, (is_reused, kept): (bool, &Buffer), record: impl FnOnce()) {
         let counters = &self.stages.common.counters;
         let bytes = size_of::<Counters>() as u64;
-        if keeps {
+        if is_reused {
             barrier::buffers(cmd, &[(counters, counted(), Access::TRANSFER_WRITE)]);
             cmd.copy(kept, 0, counters, 0, bytes);
             barrier::buffers(cmd, &[(counters, Access::TRANSFER_WRITE, counted())]);

@@ -6,7 +6,7 @@ use crate::shapes;
 use crate::targets::Targets;
 use ash::vk;
 use glam::{DAffine3, DVec3};
-use selvedge::model::{Camera, Colour, Model};
+use selvedge::model::{Camera, Colour, Model, Projection};
 use selvedge::picture::{FrameSettings, SceneSettings};
 use selvedge::renderer::{FrameInput, RenderError, Renderer, Targets as Into};
 
@@ -32,6 +32,32 @@ fn record(host: &Host, renderer: &mut Renderer, slot: usize, targets: &Targets, 
     unsafe { renderer.record(cmd, &FrameInput { camera, settings, slot, targets: into }) }.unwrap();
     targets.read_back(host, cmd);
     host.submit(slot);
+}
+
+fn from_the_front(size: (u32, u32)) -> Camera {
+    let projection = Projection::Perspective { fov_y: 0.4 };
+    let (eye, target, up) = (DVec3::new(0.0, -40.0, 0.0), DVec3::ZERO, DVec3::Z);
+    Camera { eye, target, up, projection, depth_range: (1.0, 100.0), size }
+}
+
+/// Asserts that each frame shows its model as an upload of that model does.
+fn assert_uploaded(
+    host: &Host,
+    targets: &Targets,
+    camera: &Camera,
+    seen: &[(Vec<[u8; 4]>, Vec<f32>)],
+    models: impl IntoIterator<Item = Model>,
+) {
+    let mut models = models.into_iter();
+    let mut fresh: Option<Renderer> = None;
+    for (frame, seen) in seen.iter().enumerate() {
+        let model = models.next().expect("a model for each frame");
+        let fresh = fresh.get_or_insert_with(|| renderer(host, &model, FORMAT));
+        fresh.upload(&model).unwrap();
+        record(host, fresh, 0, targets, camera, 0.5);
+        host.wait(0);
+        assert!(*seen == targets.values(), "frame {frame}");
+    }
 }
 
 /// Asserts that `channel` is the strongest at the centre of a frame's picture.
@@ -107,10 +133,7 @@ fn a_part_moves_while_frames_are_in_flight() {
     model.instances.push(shapes::placed(DAffine3::from_translation(DVec3::new(0.0, 9.0, 0.0)), Some(GREEN)));
     model.instances[1].part = 1;
     let size = (120, 60);
-    let eye = DVec3::new(0.0, -40.0, 0.0);
-    let (target, up) = (DVec3::ZERO, DVec3::Z);
-    let projection = selvedge::model::Projection::Perspective { fov_y: 0.4 };
-    let camera = Camera { eye, target, up, projection, depth_range: (1.0, 100.0), size };
+    let camera = from_the_front(size);
     let place = |frame: usize| DAffine3::from_translation(DVec3::X * (2.5 * frame as f64 - 10.0));
     let targets = [(); SLOTS].map(|()| Targets::new(&host, size, FORMAT));
     let mut seen = Vec::new();
@@ -130,19 +153,15 @@ fn a_part_moves_while_frames_are_in_flight() {
         seen.push(targets[frame % SLOTS].values());
     });
     drop(live);
-    let mut fresh = renderer(&host, &model, FORMAT);
-    for (frame, seen) in seen.iter().enumerate() {
+    let models = (0..seen.len()).map(|frame| {
         let mut model = model.clone();
         model.instances[0].transform = place(frame);
         if frame % 3 == 1 {
             model.instances.pop();
         }
-        fresh.upload(&model).unwrap();
-        record(&host, &mut fresh, 0, &targets[0], &camera, 0.5);
-        host.wait(0);
-        assert!(*seen == targets[0].values(), "frame {frame}");
-    }
-    drop(fresh);
+        model
+    });
+    assert_uploaded(&host, &targets[0], &camera, &seen, models);
     targets.into_iter().for_each(|targets| targets.destroy(&host));
     assert_eq!(host.shutdown(), [""; 0]);
 }
@@ -160,10 +179,7 @@ fn models_come_and_go_while_frames_are_in_flight() {
     let [left, right] = [-9.0, 9.0].map(|x| at(painted(shapes::sphere(), GREEN), x));
     let cube = at(painted(shapes::cube(), GREEN), 4.0);
     let size = (120, 60);
-    let eye = DVec3::new(0.0, -40.0, 0.0);
-    let (target, up) = (DVec3::ZERO, DVec3::Z);
-    let projection = selvedge::model::Projection::Perspective { fov_y: 0.4 };
-    let camera = Camera { eye, target, up, projection, depth_range: (1.0, 100.0), size };
+    let camera = from_the_front(size);
     let targets = [(); SLOTS].map(|()| Targets::new(&host, size, FORMAT));
     let (mut seen, mut models, mut living) = (Vec::new(), Vec::new(), Vec::new());
     let mut live = renderer(&host, &base, FORMAT);
@@ -192,14 +208,7 @@ fn models_come_and_go_while_frames_are_in_flight() {
     for (frame, pair) in seen.windows(2).enumerate() {
         assert_eq!(pair[0] != pair[1], models[frame] != models[frame + 1], "frame {frame}");
     }
-    let mut fresh = renderer(&host, &base, FORMAT);
-    for (frame, (seen, model)) in seen.iter().zip(&models).enumerate() {
-        fresh.upload(model).unwrap();
-        record(&host, &mut fresh, 0, &targets[0], &camera, 0.5);
-        host.wait(0);
-        assert!(*seen == targets[0].values(), "frame {frame}");
-    }
-    drop(fresh);
+    assert_uploaded(&host, &targets[0], &camera, &seen, models);
     targets.into_iter().for_each(|targets| targets.destroy(&host));
     assert_eq!(host.shutdown(), [""; 0]);
 }
@@ -212,9 +221,7 @@ fn a_discarded_frame_loses_no_model() {
     let base = painted(shapes::sphere(), RED);
     let cube = painted(shapes::cube(), GREEN);
     let size = (120, 60);
-    let (eye, target, up) = (DVec3::new(0.0, -40.0, 0.0), DVec3::ZERO, DVec3::Z);
-    let projection = selvedge::model::Projection::Perspective { fov_y: 0.4 };
-    let camera = Camera { eye, target, up, projection, depth_range: (1.0, 100.0), size };
+    let camera = from_the_front(size);
     let targets = Targets::new(&host, size, FORMAT);
     let mut live = renderer(&host, &base, FORMAT);
     record(&host, &mut live, 0, &targets, &camera, 0.5);
@@ -236,11 +243,7 @@ fn a_discarded_frame_loses_no_model() {
     let model = (**live.model().unwrap()).clone();
     assert_eq!(model.instances.len(), 3);
     drop(live);
-    let mut fresh = renderer(&host, &model, FORMAT);
-    record(&host, &mut fresh, 0, &targets, &camera, 0.5);
-    host.wait(0);
-    assert!(seen.iter().all(|seen| *seen == targets.values()));
-    drop(fresh);
+    assert_uploaded(&host, &targets, &camera, &seen, [model.clone(), model]);
     targets.destroy(&host);
     assert_eq!(host.shutdown(), [""; 0]);
 }

@@ -23,8 +23,8 @@ use std::sync::Arc;
 use std::time::Instant;
 use task::{Shot, Task};
 
-/// Pixels of the largest pictures of which several are in flight: with all images three of them take 2.4 GiB, on the device
-/// and in host memory.
+/// Larger pictures, in pixels, are drawn one at a time: with all images, three of this size take 2.4 GiB on the device and in
+/// host memory.
 const MOST_IN_FLIGHT: u64 = 1 << 24;
 
 /// Draws the pictures and writes all output files.

@@ -89,8 +89,7 @@ fn imported(
     })
 }
 
-/// Refuses a file without anything to draw, and with `--strict` one of which anything is left out; else prints what is
-/// left out.
+/// Refuses a file without anything to draw. `--strict` refuses a file that lost anything; without it, the losses are printed.
 pub fn judge(path: &Path, import: &Import, read: &ReadArgs) -> Result<()> {
     let summary = import.summary();
     let told = format!("{}: {summary}", named(path));

@@ -15,7 +15,7 @@ pub fn vector(text: &str) -> Result<DVec3, String> {
 /// `X,Y,Z`, not all 0.
 pub fn direction(text: &str) -> Result<DVec3, String> {
     let v = vector(text)?;
-    // the square of which may overflow
+    // divided first: the square of a large vector's length overflows
     let largest = v.abs().max_element();
     if largest > 0.0 { Ok((v / largest).normalize()) } else { Err("wants a direction: not 0,0,0".into()) }
 }

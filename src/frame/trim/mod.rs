@@ -95,7 +95,7 @@ impl Trim {
     /// Makes the u-intercept table, in scenes trimmed by it, unless the previous frame's is valid.
     pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, times: &mut Timestamps) {
         if let Self::Table(table) = self {
-            frame.unless_made(cmd, table, || times.scope(cmd, "trim table", || table.record(frame, cmd)));
+            frame.unless_table_reused(cmd, table, || times.scope(cmd, "trim table", || table.record(frame, cmd)));
         }
     }
 

@@ -117,7 +117,7 @@ impl Table {
 
     /// Clears the passes' counters.
     pub(crate) fn begin(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
-        if !frame.keeps_table {
+        if !frame.reuses_table {
             self.counted().for_each(|buffer| cmd.fill(buffer, 0));
         }
     }

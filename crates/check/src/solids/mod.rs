@@ -11,8 +11,9 @@
 //! [`FALLBACK`] to the group before join it.
 //!
 //! A line that lies in a face is outside on the side where that face's value is 0. The owner of a face of the solid is
-//! the first active primitive in its group: one that by itself changes the solid, before or after the rest. Primitives
-//! that some leaf adds come before those that are only subtracted, then earlier ones in the tree come first.
+//! the first active primitive in its group: one that by itself changes the solid, before or after the rest. A
+//! primitive with a leaf that adds it comes before one that is only subtracted; of two alike, the earlier one in the tree
+//! comes first.
 
 mod layers;
 mod roots;

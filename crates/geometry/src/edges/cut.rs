@@ -20,7 +20,7 @@ use rayon::prelude::*;
 const FIT: f64 = 1e-8;
 /// Halvings of a branch.
 const HALVINGS: u32 = 10;
-/// Places on a branch that are asked whether they are inside the loops.
+/// Places on a branch that are tested against the loops.
 const SAMPLES: u32 = 16;
 /// Halvings to where a branch crosses a loop: all digits.
 const BISECTIONS: u32 = 50;
@@ -123,7 +123,7 @@ fn pieces(grid: &PatchGrid, cut: &Fold, (from, to): (f64, f64), reach: f64) -> V
 }
 
 fn halved(grid: &PatchGrid, cut: &Fold, (a, b): (f64, f64), (reach, left): (f64, u32), out: &mut Vec<Bezier<DVec4>>) {
-    // at its end a branch is asked as that branch
+    // just within the branch: at its very end another branch may be nearer
     let end = |at: f64, inner: f64| {
         let at = at + (inner - at) * 1e-12;
         let p = cut.at(at);

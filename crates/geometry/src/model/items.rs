@@ -19,7 +19,7 @@ use std::sync::Arc;
 pub struct Items {
     /// The opaque solids; the picture shows their union.
     pub opaque: Vec<Solid>,
-    /// Opaque closed parts, as solids; only where all are asked for. Their faces are drawn in any case.
+    /// Opaque closed parts, as solids; empty unless the caller wants all items. Their faces are drawn in any case.
     pub parts: Vec<Solid>,
     /// The transparent solids, closed parts among them.
     pub clear: Vec<Solid>,

@@ -123,8 +123,8 @@ fn a_line_may_reach_into_the_picture() {
     }
 }
 
-/// An edge behind two blocks, of which a slot between them lets 0.2 px be seen: no point need be asked there, and a line is
-/// right. Without the slot it is wrong.
+/// An edge behind two blocks with a slot of 0.2 px between them. The judge may find no point of the edge in the slot, and a
+/// line there is right. Without the slot, the line is wrong.
 #[test]
 fn an_edge_seen_through_a_slot_may_have_a_line() {
     let camera = Camera { size: (200, 150), ..parallel(DVec3::Z * 3.0, 3.0) };
