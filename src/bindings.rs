@@ -3,8 +3,8 @@
 //! ```text
 //!   constants      of the frame, or the sun, in a uniform block: a driver loads its words once for many invocations;
 //!                  from a storage buffer it gathers them for each
-//!   placed patches views, faces' places, faces, patches, items, points           glsl/include/placed.glsl
-//!   bounded        views, instances, faces' places, faces, patches, items, taus, counters, cones, points, in_sight
+//!   placed patches views, faces' places, faces, patches, their instances, points  glsl/include/placed.glsl
+//!   bounded        views, instances, faces' places, faces, patches, their instances, taus, counters, cones, points, in_sight
 //!                                                                                  glsl/include/bound.glsl
 //!   primitives     leaves, their sides, surfaces, surfaces' places         glsl/include/solids.glsl, volume.glsl
 //!   sun            sun, its tiles, …, primitives, leaves' centres, counts  glsl/include/sun.glsl
@@ -26,14 +26,15 @@ pub(crate) struct Placed<'a> {
     pub face_instances: &'a TexelBuffer,
     pub faces: &'a TexelBuffer,
     pub patches: &'a TexelBuffer,
-    pub items: &'a TexelBuffer,
+    pub patch_instances: &'a TexelBuffer,
     pub points: &'a TexelBuffer,
 }
 
 impl<'a> Placed<'a> {
     /// In binding order.
     pub(crate) fn resources(&self) -> [Resource<'a>; 6] {
-        [self.views, self.face_instances, self.faces, self.patches, self.items, self.points].map(Resource::from)
+        [self.views, self.face_instances, self.faces, self.patches, self.patch_instances, self.points]
+            .map(Resource::from)
     }
 }
 
@@ -47,9 +48,9 @@ pub(crate) struct Bounded<'a> {
     pub face_instances: &'a Buffer,
     pub faces: &'a Buffer,
     pub patches: &'a Buffer,
-    /// Face instance of each item.
-    pub items: &'a Buffer,
-    /// `tau_u | tau_v << 16` for each item; written.
+    /// Face instance of each patch instance.
+    pub patch_instances: &'a Buffer,
+    /// `tau_u | tau_v << 16` for each patch instance; written.
     pub taus: &'a Buffer,
     /// `clamps`; written.
     pub counters: &'a Buffer,
@@ -57,7 +58,7 @@ pub(crate) struct Bounded<'a> {
     pub cones: Option<&'a Buffer>,
     /// Control points.
     pub points: &'a TexelBuffer,
-    /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight.
+    /// [`PatchRun`](crate::abi::PatchRun)s of the patch instances in sight.
     pub in_sight: &'a Buffer,
 }
 
@@ -70,11 +71,24 @@ impl<'a> Bounded<'a> {
     /// In binding order.
     pub(crate) fn resources(&self) -> [Resource<'a>; 12] {
         let cones = self.cones.unwrap_or(self.frame); // not read in that case
-        let placed = [self.views, self.instances, self.face_instances, self.faces, self.patches, self.items];
-        let [views, instances, face_instances, faces, patches, items] = placed.map(Resource::from);
+        let placed = [self.views, self.instances, self.face_instances, self.faces, self.patches, self.patch_instances];
+        let [views, instances, face_instances, faces, patches, patch_instances] = placed.map(Resource::from);
         let [frame, taus, counters, cones] = [self.frame, self.taus, self.counters, cones].map(Resource::from);
         let (points, in_sight) = (self.points.into(), self.in_sight.into());
-        [frame, views, instances, face_instances, faces, patches, items, taus, counters, cones, points, in_sight]
+        [
+            frame,
+            views,
+            instances,
+            face_instances,
+            faces,
+            patches,
+            patch_instances,
+            taus,
+            counters,
+            cones,
+            points,
+            in_sight,
+        ]
     }
 }
 

@@ -18,7 +18,7 @@
 //!                      ▼
 //!                solid_events    where rays enter Boolean solids; solid_rects to solid_fold came before
 //!                      ▼
-//!                 visibility     tessellate, trim: item and (u, v) per pixel; hidden patches are not drawn: occlusion/
+//!                 visibility     tessellate, trim: patch and (u, v) per pixel; hidden patches are not drawn: occlusion/
 //!                      │
 //!                      ▼
 //!                    gaps        pixels that look through a gap between trimmed faces
@@ -85,10 +85,10 @@ pub(crate) struct Frame<'a> {
     /// This slot's constants and transforms, written by the host.
     pub constants: &'a Buffer,
     pub views: &'a TexelBuffer,
-    /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight.
+    /// [`PatchRun`](crate::abi::PatchRun)s of the patch instances in sight.
     pub in_sight: &'a Buffer,
-    /// Number of items in sight.
-    pub items_in_sight: u32,
+    /// Number of patch instances in sight.
+    pub patch_instances_in_sight: u32,
     /// Constants and transforms for each of a pixel's samples; empty with one sample.
     pub samples: &'a [ViewBuffers],
     /// The view for which the trim table is made; `None` if it is this view.
@@ -103,7 +103,7 @@ pub(crate) struct Frame<'a> {
     /// Pass `gate` runs: if a list overflowed before the first drawing, that drawing has no patches.
     pub counts_first: bool,
     /// Columns and rows of the pixels whose rays may cross operands without equations.
-    pub shell_pixels: &'a [Range<u32>; 2],
+    pub operand_pixels: &'a [Range<u32>; 2],
     /// Places of the surfaces of the volume that trims the scene, relative to this frame's eye.
     pub volume_places: Option<&'a TexelBuffer>,
     /// The sun's constants, in a scene with a sun.
@@ -175,7 +175,7 @@ impl Frame<'_> {
         if let Some(trim) = &stages.trim {
             trim.record(self, cmd, times);
         }
-        if self.counts.items > 0 {
+        if self.counts.patch_instances > 0 {
             times.scope(cmd, "tessellation", || stages.tessellation.record(self, cmd));
         }
         if let Some(edges) = &stages.edges {

@@ -10,8 +10,9 @@
 //!
 //! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the GPU can count (the
 //! trim table, the list of sub-patches) may be too small for a new view: the report of that frame says `complete:
-//! false`, and the next `record` into its slot makes them larger. A view from very near is resolved by what is cut out of
-//! the model for it: [`Renderer::prepare`]. Instances change, and models come and go, between frames: [`Renderer::add`].
+//! false`, and the next `record` into its slot makes them larger. A view from very near is resolved by what is cut out
+//! of the model for it: [`Renderer::prepare`]. Instances change, and models come and go, between frames:
+//! [`Renderer::add`].
 
 mod centres;
 mod constants;
@@ -272,7 +273,7 @@ impl Renderer {
             depth: input.camera.depth_range.0 as f32,
             may_cut: solids.is_some_and(|(walk, _)| walk.may_be_cut(input.camera)),
         };
-        let shell_pixels = loaded.data.solids.shell_pixels(input.camera);
+        let operand_pixels = loaded.data.solids.operand_pixels(input.camera);
         let frame = Frame {
             stages,
             scene,
@@ -281,7 +282,7 @@ impl Renderer {
             constants: &slot.constants,
             views,
             in_sight,
-            items_in_sight: slot.items_in_sight,
+            patch_instances_in_sight: slot.patch_instances_in_sight,
             samples: &slot.samples,
             table_view: slot.table.as_ref(),
             centres: slot.centres.solids(),
@@ -290,7 +291,7 @@ impl Renderer {
             reuses_view: history.reuses_view,
             reuses_table: history.reuses_table,
             counts_first: self.counts_first || loaded.history.is_none(),
-            shell_pixels: &shell_pixels,
+            operand_pixels: &operand_pixels,
             volume_places: slot.centres.volume(),
             sun: slot.centres.sun(),
             sun_parts: slot.centres.sun_parts(),

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `border_find`: the list of pixels beside another face, another thing, or a jump of the depth, in some rows of the
-// picture. One thread a column of 16 pixels, whose neighbours' columns it learns from the threads beside it; the first and
-// the last of a workgroup do nothing else.
+// Pass `border_find`: the list of pixels beside another face, another thing, or a jump of the depth, in some rows of
+// the picture. One thread a column of 16 pixels, whose neighbours' columns it learns from the threads beside it; the
+// first and the last of a workgroup do nothing else.
 //
 //     a b c     another pixel among the eight around, in scenes with meshes or solids among b, d, e and g; or, of a surface
 //     d x e     that hides itself, a jump of J between two pixels: the depths of three pixels in a row bend by J, and climb
@@ -19,9 +19,9 @@ layout(scalar, binding = 0) uniform Frames { Frame frame; };
 #include "grid.glsl"
 #include "border_pixel.glsl"
 #include "border_kinds.glsl"
-layout(binding = 1) uniform usamplerBuffer items; // a word a placed patch
+layout(binding = 1) uniform usamplerBuffer patch_instances; // a word a placed patch
 layout(binding = 2, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 3, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(binding = 3, rg32ui) readonly uniform uimage2D meshes_and_solids; // in scenes without trims the same
 layout(binding = 4, rgba32f) readonly uniform image2D resolved; // linear colour, depth; UNSEEN where nothing is
 layout(scalar, binding = 5) writeonly buffer List { BorderPixel list[]; };
 layout(scalar, binding = 6) buffer Grids { BorderGrids grids; }; // zero before
@@ -43,18 +43,19 @@ shared uint keys[(ROWS + 2) * LANES];
 shared float depths[(ROWS + 2) * LANES];
 shared uint tints[(ROWS + 2) * LANES]; // colours of meshes: roots of linear light, as bytes
 
-// What is seen as one: a placed face, a placed mesh, a side of a solid, OTHER where it is not asked; 0 where nothing is.
+// What is seen as one: a placed face, a placed mesh, a side of a solid, OTHER where it is not asked; 0 where nothing
+// is.
 uint key_at(ivec2 at, float depth) {
     uint word = imageLoad(visibility, at).x;
     if (sees_nothing(word) || sees_other(word)) {
         if (depth >= UNSEEN) return 0u;
-        if (sees_nothing(word)) word = imageLoad(others, at).x;
+        if (sees_nothing(word)) word = imageLoad(meshes_and_solids, at).x;
         if (!is_asked(word)) return OTHER;
         return sees_solid(word) && seen_side(word) >= frame.side_count ? FACET : word;
     }
     // what the host drew hides it
     if (frame.background.a < 0.0 && depth >= UNSEEN) return 0u;
-    return word_at(items, seen_item(word)) + 1u;
+    return word_at(patch_instances, seen_patch_instance(word)) + 1u;
 }
 
 bool tints_differ(uint a, uint b) {

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `border_mean`: the mean of what a pixel's points see, in scenes with meshes or Boolean solids. One thread a pixel of the
-// list.
+// Pass `border_mean`: the mean of what a pixel's points see, in scenes with meshes or Boolean solids. One thread a
+// pixel of the list.
 #include "scene.glsl"
 #include "view.glsl"
 #include "visible.glsl"
@@ -12,7 +12,7 @@ layout(local_size_x = 64) in;
 #include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 2, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(binding = 2, rg32ui) readonly uniform uimage2D meshes_and_solids; // in scenes without trims the same
 layout(binding = 3, rgba32f) readonly uniform image2D resolved; // linear colour, depth; UNSEEN where nothing is
 #include "border_pixel.glsl"
 #include "unmixed.glsl"
@@ -24,7 +24,7 @@ layout(scalar, binding = 6) readonly buffer SeenPoints { BorderPoint seen_points
 
 bool is_asked_at(ivec2 at) {
     uint word = imageLoad(visibility, at).x;
-    return is_asked(sees_nothing(word) ? imageLoad(others, at).x : word);
+    return is_asked(sees_nothing(word) ? imageLoad(meshes_and_solids, at).x : word);
 }
 
 void main() {

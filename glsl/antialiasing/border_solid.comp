@@ -1,15 +1,15 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `border_solid`: the points of pixels at borders ask the Boolean solids, by the whole expression: each has a ray of its
-// own, as pass `solid_events` has for the centre, among the leaves of the pixel's tile. One thread a point; those of a pixel
-// run together, and meet the same leaves.
+// Pass `border_solid`: the points of pixels at borders ask the Boolean solids, by the whole expression: each has a ray
+// of its own, as pass `solid_events` has for the centre, among the leaves of the pixel's tile. One thread a point;
+// those of a pixel run together, and meet the same leaves.
 //
-// A point shows the pixel around that sees the same side nearest to the point's depth: a side may hide itself. Where none
-// does, it shows the nearest pixel that sees a solid.
+// A point shows the pixel around that sees the same side nearest to the point's depth: a side may hide itself. Where
+// none does, it shows the nearest pixel that sees a solid.
 #include "scene.glsl"
 #include "solids.glsl"
-#include "shells.glsl"
+#include "boundary_operands.glsl"
 #include "tiles.glsl"
 #include "eye_ray.glsl"
 #include "view.glsl"
@@ -27,9 +27,9 @@ layout(binding = 4) uniform samplerBuffer surface_places;
 layout(binding = 5) uniform usamplerBuffer tile_starts;
 layout(binding = 6) uniform usamplerBuffer tile_leaves;
 layout(binding = 7) uniform usamplerBuffer tile_entries;
-layout(binding = 8) uniform usamplerBuffer fragments; // not read: no leaf is a shell
+layout(binding = 8) uniform usamplerBuffer fragments; // not read: no leaf is a boundary operand
 layout(binding = 9, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 10, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(binding = 10, rg32ui) readonly uniform uimage2D meshes_and_solids; // in scenes without trims the same
 layout(binding = 11, rgba32f) readonly uniform image2D resolved;
 #include "border_pixel.glsl"
 #include "unmixed.glsl"
@@ -40,7 +40,7 @@ layout(scalar, binding = 14) buffer SeenPoints { BorderPoint seen_points[]; };
 
 // No pass has asked before: there are neither patches nor meshes.
 layout(constant_id = 38) const bool ASKS_FIRST = false;
-const bool SOLIDS_HAVE_SHELLS = false;
+const bool SOLIDS_HAVE_BOUNDARY_OPERANDS = false;
 
 #include "crossing.glsl"
 #include "leaf_span.glsl"
@@ -55,7 +55,7 @@ uint shows(ivec2 at, uint k, uint side, float t) {
         ivec2 beside = around(at, from);
         if (!is_in_picture(beside)) continue;
         uvec2 word = imageLoad(visibility, beside).xy;
-        if (sees_nothing(word.x)) word = imageLoad(others, beside).xy;
+        if (sees_nothing(word.x)) word = imageLoad(meshes_and_solids, beside).xy;
         if (!sees_solid(word.x)) continue;
         solid |= 1u << from;
         float off = abs(uintBitsToFloat(word.y) - t);

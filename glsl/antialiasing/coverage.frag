@@ -50,19 +50,19 @@ struct Covering {
 
 // Placed face + 1 of a pixel that sees a patch, else 0.
 uint placed_face(uvec2 seen) {
-    return sees_nothing(seen.x) ? 0u : face_instance_of(seen_item(seen.x)) + 1u;
+    return sees_nothing(seen.x) ? 0u : face_instance_of(seen_patch_instance(seen.x)) + 1u;
 }
 
 vec2 face_uv(Patch patch_, vec2 uv) { return patch_.domain.xy + uv * patch_.domain.zw; }
 
 // The face that is seen somewhere, at a pixel near that.
 Covering covering(uvec2 seen, vec2 pixel) {
-    uint item = seen_item(seen.x);
-    FaceInstance fi = face_instance_at(face_instance_of(item));
+    uint patch_instance = seen_patch_instance(seen.x);
+    FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
     Face face = face_at(fi.face);
     Covering c = Covering(false, UNSEEN, vec2(0.0), mat2(1.0), Cover(1.0, vec2(0.0), false));
     if ((face.flags & FACE_TRIMMED) == 0u) return c;
-    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+    Patch patch_ = patch_at(face.first_patch + patch_instance - fi.first_patch_instance);
     View view = view_at(fi.instance);
     Sample s = refine(patch_, view, unpack_uv(seen.y), pixel);
     mat2 along = pixels_along(s, view);
@@ -95,9 +95,9 @@ vec4 mixed(ivec2 at, uvec2 own, uint own_face) {
         if (face != own_face) other = beside;
         bool known = face == 0u || (face == own_face && !here.cover.cut);
         if (face == own_face && here.cover.cut) {
-            uint item = seen_item(seen.x);
-            FaceInstance fi = face_instance_at(face_instance_of(item));
-            Patch patch_ = patch_at(face_at(fi.face).first_patch + item - fi.first_item);
+            uint patch_instance = seen_patch_instance(seen.x);
+            FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
+            Patch patch_ = patch_at(face_at(fi.face).first_patch + patch_instance - fi.first_patch_instance);
             known = length(here.along * (face_uv(patch_, unpack_uv(seen.y)) - here.uv)) < SAME_SHEET_PX;
         }
         for (uint i = 0u; i < met_count; ++i) known = known || met[i] == face;

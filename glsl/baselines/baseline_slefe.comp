@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Pass `baseline_slefe`, in place of `bound`: divides patches by the largest extent of their slefe boxes in pixels.
 // Weights are ignored, as in the source: Y. I. Yeo, L. Bin, J. Peters, Efficient pixel-accurate rendering of curved
-// surfaces, 2012. One thread an item. The same in f64: Way::Ipass of src/baselines/factors.
+// surfaces, 2012. One thread a patch instance. The same in f64: Way::Ipass of src/baselines/factors.
 #include "bound.glsl"
 
 layout(scalar, binding = 12) readonly buffer Slefes {

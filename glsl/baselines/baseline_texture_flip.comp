@@ -13,7 +13,7 @@ layout(binding = 2) uniform usamplerBuffer face_instances;
 layout(binding = 3) uniform usamplerBuffer faces;
 layout(binding = 4) uniform usamplerBuffer curves;
 layout(binding = 5) uniform samplerBuffer curve_points;
-layout(binding = 6) uniform usamplerBuffer curve_items; // the placed face of each
+layout(binding = 6) uniform usamplerBuffer curve_instances; // the placed face of each
 layout(scalar, binding = 7) readonly buffer FaceSpeeds { uint face_speeds[]; };
 layout(scalar, binding = 8) readonly buffer Starts { uint starts[]; };
 layout(scalar, binding = 9) buffer Texels { uint texels[]; };
@@ -50,17 +50,17 @@ void flip(TextureSize size, uint start, vec2 a, vec2 b) {
 }
 
 void main() {
-    uint item = gl_GlobalInvocationID.x + gl_GlobalInvocationID.z * gl_NumWorkGroups.x;
-    if (item >= frame.curve_count) return;
-    uint placed = word_at(curve_items, item);
+    uint curve_instance = gl_GlobalInvocationID.x + gl_GlobalInvocationID.z * gl_NumWorkGroups.x;
+    if (curve_instance >= frame.curve_count) return;
+    uint placed = word_at(curve_instances, curve_instance);
     FaceInstance fi = face_instance_at(placed);
     Face face = face_at(fi.face);
-    Curve curve = curve_at(face.first_curve + item - fi.first_curve);
+    Curve curve = curve_at(face.first_curve + curve_instance - fi.first_curve);
     vec2 speed = texture_speed(face_speeds[2u * placed], face_speeds[2u * placed + 1u]);
     TextureSize size = texture_size(speed, texels_per_px);
     uint start = starts[placed];
     uint end = starts[placed_count];
-    if (item == 0u && gl_LocalInvocationID.y == 0u) {
+    if (curve_instance == 0u && gl_LocalInvocationID.y == 0u) {
         atomicMax(counters.intercepts, end);
         if (end > frame.intercept_capacity) atomicOr(counters.failed, FAILED_INTERCEPTS);
     }

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `edge_change`: where, between the centres of pixels that lie side by side, what is seen of Boolean solids changes to
-// another surface.
+// Pass `edge_change`: where, between the centres of pixels that lie side by side, what is seen of Boolean solids
+// changes to another surface.
 //
 //      ●───x──●      a pixel's centre, and those to the right and below: where on the way the line goes, and how it
 //      │             is drawn; 0: nowhere
@@ -12,7 +12,7 @@
 // Operands without equations have edges of their own, which pass `edge_line` draws.
 #include "scene.glsl"
 #include "solids.glsl"
-#include "shells.glsl"
+#include "boundary_operands.glsl"
 #include "tiles.glsl"
 #include "view.glsl"
 #include "edges.glsl"
@@ -25,7 +25,7 @@ layout(binding = 4) uniform samplerBuffer surface_places;
 layout(binding = 5) uniform usamplerBuffer tile_starts;
 layout(binding = 6) uniform usamplerBuffer tile_leaves;
 layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 8, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(binding = 8, rg32ui) readonly uniform uimage2D meshes_and_solids; // in scenes without trims the same
 layout(scalar, binding = 9) readonly buffer Instances { Instance instances[]; };
 layout(scalar, binding = 10) readonly buffer Views { View views[]; };
 // of operands that are meshes
@@ -38,7 +38,7 @@ layout(binding = 15, r32ui) readonly uniform uimage2D operand_uv;
 layout(scalar, binding = 16) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 17) readonly buffer Faces { Face faces[]; };
 layout(scalar, binding = 18) readonly buffer Patches { Patch patches[]; };
-layout(scalar, binding = 19) readonly buffer Items { uint item_face_instance[]; };
+layout(scalar, binding = 19) readonly buffer PatchInstances { uint patch_instances[]; };
 layout(binding = 20) uniform samplerBuffer points;
 
 layout(scalar, push_constant) uniform Push {
@@ -62,7 +62,7 @@ layout(location = 0) out uvec2 out_changes;
 
 uvec2 seen_at(ivec2 at) {
     uvec2 seen = imageLoad(visibility, at).xy;
-    return sees_nothing(seen.x) ? imageLoad(others, at).xy : seen;
+    return sees_nothing(seen.x) ? imageLoad(meshes_and_solids, at).xy : seen;
 }
 
 bool is_of_solid(uint word) { return sees_solid(word) || SOLIDS_HAVE_PATCHES && sees_operand(word); }
@@ -101,9 +101,9 @@ uint change(ivec2 at, ivec2 beside, uvec2 seen, uvec2 next) {
     }
     bool cap = is_cap(sheets[0]) || is_cap(sheets[1]);
     bool both = sheets[0].is_there && sheets[1].is_there;
-    if (both && sheets[0].shell != 0u && sheets[0].shell == sheets[1].shell) return 0u;
+    if (both && sheets[0].operand != 0u && sheets[0].operand == sheets[1].operand) return 0u;
     // the outline of a section through such an operand is a line of its own, too
-    if (both && cap && (sheets[0].shell != 0u || sheets[1].shell != 0u)) return 0u;
+    if (both && cap && (sheets[0].operand != 0u || sheets[1].operand != 0u)) return 0u;
     // faces that coincide are one, but caps of two solids
     bool together = both && sheets[0].surface == sheets[1].surface && sheets[0].surface != SPLINE_SHEET;
     if (together && !sheets[0].is_round && (!cap || sheets[0].leaf == sheets[1].leaf)) return 0u;
@@ -122,7 +122,7 @@ uint change(ivec2 at, ivec2 beside, uvec2 seen, uvec2 next) {
     }
     Sheet f = sheets[c.first ? 0 : 1];
     // its edges and folds are drawn by themselves
-    if (f.shell != 0u) return 0u;
+    if (f.operand != 0u) return 0u;
     float cosine = 0.0;
     bool cut = false;
     float end = 2.0;
@@ -139,7 +139,7 @@ uint change(ivec2 at, ivec2 beside, uvec2 seen, uvec2 next) {
         return drawn_as(style, c.first ? end : 1.0 - end);
     }
     if (c.why == CHANGE_FOLD) return drawn_as((push.drawn & LINES_FOLDS) != 0u ? LINE_FULL : LINE_NONE, c.share);
-    if (other || SOLIDS_HAVE_SHELLS && is_cap(f)) return 0u;
+    if (other || SOLIDS_HAVE_BOUNDARY_OPERANDS && is_cap(f)) return 0u;
     // something without an equation ends it, somewhere between
     return drawn_as(is_cap(f) && (push.drawn & LINES_SHARP) != 0u ? LINE_BOLD : style_of(0.0), 0.5);
 }

@@ -11,14 +11,14 @@ layout(local_size_x = 64) in;
 #include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
-layout(scalar, binding = 2) readonly buffer EdgeItems { EdgeItem edge_items[]; };
+layout(scalar, binding = 2) readonly buffer PieceInstances { PieceInstance piece_instances[]; };
 layout(scalar, binding = 3) readonly buffer EdgePieces { EdgePiece edge_pieces[]; };
 layout(binding = 4) uniform samplerBuffer edge_points;
 layout(scalar, binding = 5) writeonly buffer ChordCounts { uint chord_counts[]; };
 layout(scalar, binding = 6) buffer CountersBuffer { Counters counters; };
 
 layout(scalar, push_constant) uniform Push {
-    uint item_count;
+    uint instance_count;
     float margin_px;
 } push;
 
@@ -30,8 +30,8 @@ void put_chords(uint n, uint chords, float a, float b) { counted += chords; }
 
 void main() {
     uint i = thread_number();
-    if (i >= push.item_count) return;
-    EdgeItem item = edge_items[i];
-    if (divide(edge_pieces[item.piece], views[item.placement])) atomicAdd(counters.clamps, 1u);
+    if (i >= push.instance_count) return;
+    PieceInstance piece_instance = piece_instances[i];
+    if (divide(edge_pieces[piece_instance.piece], views[piece_instance.placement])) atomicAdd(counters.clamps, 1u);
     chord_counts[i] = counted;
 }

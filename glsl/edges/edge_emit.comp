@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `edge_emit`: the chords of each piece of an edge, in the order of the pieces, and the draw of them all. One thread a
-// placed piece. Twin: src/twin/edges.rs.
+// Pass `edge_emit`: the chords of each piece of an edge, in the order of the pieces, and the draw of them all. One
+// thread a placed piece. Twin: src/twin/edges.rs.
 #include "scene.glsl"
 #include "view.glsl"
 #include "edges.glsl"
@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 #include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
-layout(scalar, binding = 2) readonly buffer EdgeItems { EdgeItem edge_items[]; };
+layout(scalar, binding = 2) readonly buffer PieceInstances { PieceInstance piece_instances[]; };
 layout(scalar, binding = 3) readonly buffer EdgePieces { EdgePiece edge_pieces[]; };
 layout(binding = 4) uniform samplerBuffer edge_points;
 layout(scalar, binding = 5) readonly buffer ChordStarts { uint chord_starts[]; };
@@ -21,13 +21,13 @@ layout(scalar, binding = 8) writeonly buffer Chords { Chord chords[]; };
 layout(scalar, binding = 9) writeonly buffer EdgeDraw { uint edge_draw[5]; }; // the draw, and that there is one
 
 layout(scalar, push_constant) uniform Push {
-    uint item_count;
+    uint instance_count;
     float margin_px;
     uint capacity;
 } push;
 
 uint next = 0u;
-uint item_index = 0u;
+uint own_instance = 0u;
 View own_view;
 uint own_style = 0u;
 
@@ -48,7 +48,7 @@ void put_chords(uint n, uint count, float a, float b) {
         precise vec2 start = from.xy / from.z;
         precise vec2 end = to.xy / to.z;
         if (next < push.capacity) {
-            chords[next] = Chord(start, end, vec2(from.z, to.z), vec2(t0, t1), item_index, own_style);
+            chords[next] = Chord(start, end, vec2(from.z, to.z), vec2(t0, t1), own_instance, own_style);
         }
         ++next;
         from = to;
@@ -58,9 +58,9 @@ void put_chords(uint n, uint count, float a, float b) {
 
 void main() {
     uint i = thread_number();
-    if (i >= push.item_count) return;
+    if (i >= push.instance_count) return;
     if (i == 0u) {
-        uint total = chord_starts[push.item_count];
+        uint total = chord_starts[push.instance_count];
         counters.edge_chords = total;
         if (total > push.capacity) atomicOr(counters.failed, FAILED_EDGE_CHORDS);
         edge_draw[0] = 6u;
@@ -69,10 +69,10 @@ void main() {
         edge_draw[3] = 0u;
         edge_draw[4] = 1u;
     }
-    EdgeItem item = edge_items[i];
-    EdgePiece piece = edge_pieces[item.piece];
-    item_index = i;
-    own_view = views[item.placement];
+    PieceInstance piece_instance = piece_instances[i];
+    EdgePiece piece = edge_pieces[piece_instance.piece];
+    own_instance = i;
+    own_view = views[piece_instance.placement];
     own_style = edge_lines[piece.edge].style;
     next = chord_starts[i];
     if (chord_starts[i + 1u] > next) divide(piece, own_view);

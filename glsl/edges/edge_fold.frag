@@ -8,17 +8,17 @@
 //            ╲ ╲  ╱      from where a pixel beside this one sees the face, Newton's method to the point of the fold
 //      face    ╲╱        that is nearest to this pixel's centre
 //
-// Only pixels are looked at beside which something else is seen: another face, or another place of the face. The fold is
-// the exact surface's, within ARRIVED_PX. It counts when it is as near to the pixel that sees the face as pixels beside each
-// other are: where the face ends before it folds, its edge is the outline.
+// Only pixels are looked at beside which something else is seen: another face, or another place of the face. The fold
+// is the exact surface's, within ARRIVED_PX. It counts when it is as near to the pixel that sees the face as pixels
+// beside each other are: where the face ends before it folds, its edge is the outline.
 #include "scene.glsl"
 #include "view.glsl"
 #include "edges.glsl"
-#include "shells.glsl"
+#include "boundary_operands.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 8, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(binding = 8, rg32ui) readonly uniform uimage2D meshes_and_solids; // in scenes without trims the same
 layout(binding = 9, r32ui) uniform uimage2D lines;
 // in scenes without meshes not read
 layout(scalar, binding = 10) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
@@ -73,9 +73,11 @@ const float SAME_PLACE = 0.05;
 uvec2 patch_seen(ivec2 at) {
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(frame.size)))) return uvec2(0u);
     uvec2 seen = imageLoad(visibility, at).xy;
-    if (SOLIDS_HAVE_PATCHES && sees_nothing(seen.x)) seen = imageLoad(others, at).xy;
-    if (SOLIDS_HAVE_PATCHES && sees_operand(seen.x)) return uvec2(seen_item(seen.x) + 1u, imageLoad(operand_uv, at).x);
-    return sees_nothing(seen.x) || sees_other(seen.x) ? uvec2(0u) : uvec2(seen_item(seen.x) + 1u, seen.y);
+    if (SOLIDS_HAVE_PATCHES && sees_nothing(seen.x)) seen = imageLoad(meshes_and_solids, at).xy;
+    if (SOLIDS_HAVE_PATCHES && sees_operand(seen.x)) {
+        return uvec2(seen_patch_instance(seen.x) + 1u, imageLoad(operand_uv, at).x);
+    }
+    return sees_nothing(seen.x) || sees_other(seen.x) ? uvec2(0u) : uvec2(seen_patch_instance(seen.x) + 1u, seen.y);
 }
 
 bool is_one_place(uvec2 a, uvec2 b) {
@@ -89,8 +91,8 @@ float fold_at(Sample s, View view) {
     return along[0].x * along[1].y - along[0].y * along[1].x;
 }
 
-// The fold of the face nearest to `pixel`, from (u, v) of a patch on and over into those beside it; false where there is
-// none near.
+// The fold of the face nearest to `pixel`, from (u, v) of a patch on and over into those beside it; false where there
+// is none near.
 bool find_fold(Face face, int n, View view, vec2 uv, vec2 pixel, out Sample s) {
     ivec2 count = ivec2(face.count_u, face.count_v);
     ivec2 place = place_of(face, n);
@@ -157,14 +159,15 @@ void main() {
     }
     if (alone) return;
     for (uint i = 0u; i < count; ++i) {
-        uint item = found[i].x - 1u;
-        FaceInstance fi = face_instance_at(face_instance_of(item));
+        uint patch_instance = found[i].x - 1u;
+        FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
         Face face = face_at(fi.face);
-        Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+        Patch patch_ = patch_at(face.first_patch + patch_instance - fi.first_patch_instance);
         if (patch_.bend == vec3(0.0)) continue;
         View view = view_at(fi.instance);
         Sample s;
-        if (!find_fold(face, int(item - fi.first_item), view, unpack_uv(found[i].y), gl_FragCoord.xy, s)) continue;
+        int n = int(patch_instance - fi.first_patch_instance);
+        if (!find_fold(face, n, view, unpack_uv(found[i].y), gl_FragCoord.xy, s)) continue;
         vec2 place = s.q.xy / s.q.w;
         float covered = line_coverage(length(s.miss), push.half_px);
         uint steps = uint(covered * LINE_STEPS + 0.5);

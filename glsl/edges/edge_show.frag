@@ -11,11 +11,11 @@
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1, r32ui) readonly uniform uimage2D lines;
 layout(scalar, binding = 2) readonly buffer Chords { Chord chords[]; };
-layout(scalar, binding = 3) readonly buffer EdgeItems { EdgeItem edge_items[]; };
+layout(scalar, binding = 3) readonly buffer PieceInstances { PieceInstance piece_instances[]; };
 layout(scalar, binding = 4) readonly buffer EdgePieces { EdgePiece edge_pieces[]; };
 layout(scalar, binding = 5) readonly buffer EdgeLines { EdgeLine edge_lines[]; };
 layout(binding = 6, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 7, rg32ui) readonly uniform uimage2D others;
+layout(binding = 7, rg32ui) readonly uniform uimage2D meshes_and_solids;
 
 layout(scalar, push_constant) uniform Push {
     vec4 colour; // linear, and opacity
@@ -39,7 +39,7 @@ void main() {
     float opacity = colour.a * covered;
     vec3 encoded = encode(colour, frame.encode_srgb).rgb;
     out_colour = vec4(encoded * opacity, opacity);
-    bool empty = sees_nothing(imageLoad(visibility, at).x) && sees_nothing(imageLoad(others, at).x);
+    bool empty = sees_nothing(imageLoad(visibility, at).x) && sees_nothing(imageLoad(meshes_and_solids, at).x);
     if (empty && frame.background.a >= 0.0) {
         // colours of the target are not multiplied by their opacities: the mean of line and background, less what the
         // blending adds
@@ -51,7 +51,7 @@ void main() {
     if (!HAS_EDGE_IMAGE) return;
     uint number = (line & LINE_CHORD) == LINE_SOLID ? SOLID_NUMBER : FOLD_NUMBER;
     if ((line & LINE_CHORD) < LINE_SOLID) {
-        number = edge_lines[edge_pieces[edge_items[chords[line & LINE_CHORD].item].piece].edge].number;
+        number = edge_lines[edge_pieces[piece_instances[chords[line & LINE_CHORD].piece_instance].piece].edge].number;
     }
     out_edge = covered >= EDGE_COVERS ? number : 0u;
 }

@@ -1,5 +1,5 @@
-// Pass `border_mesh`: the points of pixels at borders ask the meshes that the nine pixels around see. One thread a pixel of
-// the list.
+// Pass `border_mesh`: the points of pixels at borders ask the meshes that the nine pixels around see. One thread a
+// pixel of the list.
 //
 //     ╲       ╱╲       a triangle that a pixel around sees covers a point; else the mesh is followed from it to the point's
 //      ╲  ○──╱──╲──▶·  ray, across the side that the ray passes farthest beyond. It is not there where a border or a fold
@@ -20,7 +20,7 @@ layout(scalar, binding = 3) readonly buffer Triangles { uint triangles[]; };
 layout(scalar, binding = 4) readonly buffer Positions { vec3 positions[]; };
 layout(scalar, binding = 5) readonly buffer Neighbours { uint neighbours[]; };
 layout(binding = 6, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 7, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(binding = 7, rg32ui) readonly uniform uimage2D meshes_and_solids; // in scenes without trims the same
 layout(binding = 8, rgba32f) readonly uniform image2D resolved;
 #include "border_pixel.glsl"
 #include "unmixed.glsl"
@@ -87,7 +87,7 @@ void main() {
         ivec2 beside = around(at, from);
         if (!is_in_picture(beside)) continue;
         uvec2 word = imageLoad(visibility, beside).xy;
-        if (sees_nothing(word.x)) word = imageLoad(others, beside).xy;
+        if (sees_nothing(word.x)) word = imageLoad(meshes_and_solids, beside).xy;
         if (!sees_mesh(word.x)) continue;
         bool known = false;
         for (uint j = 0u; j < start_count; ++j) known = known || starts[j].word == word;

@@ -47,7 +47,7 @@ const float CLOSE_PX = 0.02;
 // A sheet, as visible in the pixel `at`.
 struct Sheet {
     vec2 pixel; // where it is visible
-    uint item;
+    uint patch_instance;
     FaceInstance fi;
     Face face;
     Patch patch_;
@@ -60,11 +60,11 @@ Sheet sheet_at(ivec2 at) {
     uvec2 seen = imageLoad(visibility, at).xy;
     Sheet s;
     s.pixel = vec2(at) + 0.5;
-    s.item = seen_item(seen.x);
-    s.fi = face_instance_at(face_instance_of(s.item));
+    s.patch_instance = seen_patch_instance(seen.x);
+    s.fi = face_instance_at(face_instance_of(s.patch_instance));
     s.face = face_at(s.fi.face);
     s.view = view_at(s.fi.instance);
-    s.patch_ = patch_at(s.face.first_patch + s.item - s.fi.first_item);
+    s.patch_ = patch_at(s.face.first_patch + s.patch_instance - s.fi.first_patch_instance);
     // a word's (u, v) has 16 bits, which in a large patch are more than a pixel
     Sample here = refine_to(s.patch_, s.view, unpack_uv(seen.y), s.pixel, CLOSE_PX);
     mat2 along = pixels_along(here, s.view);
@@ -82,7 +82,7 @@ float depth_at(Sheet s, vec2 pixel) {
     if (any(greaterThan(abs(step_), vec2(MAX_STEP * pieces_of(s.patch_.shape))))) step_ = vec2(0.0);
     Sample there = refine_to(s.patch_, s.view, s.uv + step_, pixel, CLOSE_PX);
     vec2 uv = there.uv - s.uv_along * there.miss; // the rest of the way
-    bool is = length(there.miss) <= ON_PIXEL_PX && is_there(s.fi, s.face, s.item, s.patch_, uv);
+    bool is = length(there.miss) <= ON_PIXEL_PX && is_there(s.fi, s.face, s.patch_instance, s.patch_, uv);
 #ifdef WITHIN_VOLUME
     is = is && in_volume(there.q, ON_PX);
 #endif
@@ -123,7 +123,7 @@ void main() {
             no_patch |= 1u << from;
             continue;
         }
-        uint face = face_instance_of(seen_item(seen)) << 1;
+        uint face = face_instance_of(seen_patch_instance(seen)) << 1;
         // a second sheet of the pixel's own face
         if (own_patch && k > 0u && face == met[0] && jumps_to(at, beside - at, own_depth)) face |= 1u;
         bool known = met_count == MOST_SHEETS;

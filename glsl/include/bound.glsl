@@ -1,5 +1,5 @@
 // Shared by the passes that compute how finely patches are divided: finds the patches that may be visible. The entry
-// point's `factors_of` computes their segments. One thread for each item in sight.
+// point's `factors_of` computes their segments. One thread for each patch instance in sight.
 #ifndef BOUND_GLSL
 #define BOUND_GLSL
 
@@ -17,7 +17,7 @@ layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
 layout(scalar, binding = 3) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 4) readonly buffer Faces { Face faces[]; };
 layout(scalar, binding = 5) readonly buffer Patches { Patch patches[]; };
-layout(scalar, binding = 6) readonly buffer Items { uint item_face_instance[]; };
+layout(scalar, binding = 6) readonly buffer PatchInstances { uint patch_instances[]; };
 layout(scalar, binding = 7) writeonly buffer Taus { uint taus[]; };
 layout(scalar, binding = 8) buffer CountersBuffer { Counters counters; };
 layout(scalar, binding = 9) readonly buffer Cones { vec4 cones[]; }; // only with SCENE_HAS_CONES
@@ -32,13 +32,13 @@ vec2 factors_of(Patch patch_, View view, uint instance, Seen seen);
 
 void main() {
     uint place = thread_number();
-    if (place >= frame.items_in_sight) return;
-    uint item = item_at(place);
-    FaceInstance fi = face_instances[item_face_instance[item]];
+    if (place >= frame.patch_instances_in_sight) return;
+    uint patch_instance = patch_instance_at(place);
+    FaceInstance fi = face_instances[patch_instances[patch_instance]];
     Face face = faces[fi.face];
-    uint index = face.first_patch + item - fi.first_item;
+    uint index = face.first_patch + patch_instance - fi.first_patch_instance;
     Patch patch_ = patches[index];
-    taus[item] = 0u;
+    taus[patch_instance] = 0u;
     if (side_of(patch_.shape) == SIDE_OUTSIDE) return;
     View view = views[fi.instance];
     Seen seen = see(view, frame, patch_.box_min, patch_.box_max, frame.gap_radius_px + 1.0, far_of(face, frame));
@@ -50,7 +50,7 @@ void main() {
     vec2 tau = frame.fixed_factor != 0u ? vec2(frame.fixed_factor) : factors_of(patch_, view, fi.instance, seen);
     if (max(tau.x, tau.y) > float(MAX_FACTOR * MAX_SPLIT)) atomicAdd(counters.clamps, 1u);
     uvec2 t = uvec2(min(tau, vec2(MAX_FACTOR * MAX_SPLIT)));
-    taus[item] = t.x | t.y << 16;
+    taus[patch_instance] = t.x | t.y << 16;
 }
 
 #endif

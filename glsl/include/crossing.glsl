@@ -1,5 +1,5 @@
-// The state of a Boolean solid's leaf at a depth of the pixel's ray. Needs solids.glsl, shells.glsl and the buffer
-// `usamplerBuffer fragments`.
+// The state of a Boolean solid's leaf at a depth of the pixel's ray. Needs solids.glsl, boundary_operands.glsl and the
+// buffer `usamplerBuffer fragments`.
 #ifndef CROSSING_GLSL
 #define CROSSING_GLSL
 
@@ -15,15 +15,15 @@ Crossing crossing_of(Span s, float t) {
     return Crossing(inside_span(s, t), inside_before(s, t), ends_at(s, t), next_of_span(s, t));
 }
 
-// For a shell; `last` is its last fragment at t.
-Crossing crossing_of(uint shell, float t, uint first, uint count, out uint last) {
+// For a boundary operand; `last` is its last fragment at t.
+Crossing crossing_of(uint operand, float t, uint first, uint count, out uint last) {
     Crossing c = Crossing(false, false, false, NEVER);
     last = 0u;
     bool begun = false;
     for (uint i = first; i < first + count; ++i) {
         Fragment f = fragment_at(fragments, i);
-        if ((f.shell & FRAGMENT_SHELL) != shell) continue;
-        bool leaves_ = (f.shell & FRAGMENT_LEAVES) != 0u;
+        if ((f.operand & FRAGMENT_OPERAND) != operand) continue;
+        bool leaves_ = (f.operand & FRAGMENT_LEAVES) != 0u;
         bool passed = f.depth <= t;
         if (f.depth > t) c.next = min(c.next, f.depth);
         // entries and exits alternate: the first fragment behind t decides, or the last before it

@@ -5,35 +5,35 @@
 //      ·   │·
 //          outline
 //
-// The surface is followed to E's place in the picture, by Newton's method, from patch to patch and over the seam. It covers
-// E where it is before it, as edge_seen.glsl has it, and inside its trims. Needs edge_seen.glsl, face_point.glsl, trim.glsl,
-// with WITHIN_VOLUME volume.glsl.
+// The surface is followed to E's place in the picture, by Newton's method, from patch to patch and over the seam. It
+// covers E where it is before it, as edge_seen.glsl has it, and inside its trims. Needs edge_seen.glsl,
+// face_point.glsl, trim.glsl, with WITHIN_VOLUME volume.glsl.
 #ifndef EDGE_COVERED_GLSL
 #define EDGE_COVERED_GLSL
 
 // From a place in the picture that a surface passes: Newton's method halves its way to a fold with each step.
 const float COVERS_PX = 0.01;
-// How far behind an own sheet the edge may lie: 1/512 px from the fold, where the sheets are four times as far from each
-// other's tangent planes; and of what the edge may be off, four times, along the diagonal of three axes.
+// How far behind an own sheet the edge may lie: 1/512 px from the fold, where the sheets are four times as far from
+// each other's tangent planes; and of what the edge may be off, four times, along the diagonal of three axes.
 const float COVERS_OWN_PX = 1.0 / 128.0;
 const float COVERS_OWN_OFF = 7.0;
 
-// Of a face that a step leads out of: the item of the patch where a closed face goes on, and (u, v) there; false where the
+// Of a face that a step leads out of: the patch instance where a closed face goes on, and (u, v) there; false where the
 // step does not lead out.
-bool over_the_seam(FaceInstance fi, Face face, inout uint item, inout vec2 uv) {
+bool over_the_seam(FaceInstance fi, Face face, inout uint patch_instance, inout vec2 uv) {
     ivec2 count = ivec2(face.count_u, face.count_v);
-    ivec2 place = place_of(face, int(item - fi.first_item));
+    ivec2 place = place_of(face, int(patch_instance - fi.first_patch_instance));
     ivec2 out_ = way_beyond(uv, BEYOND);
     ivec2 next = (place + out_ + count) % count;
     bvec2 over = notEqual(next, place + out_);
-    item = fi.first_item + patch_in(face, next) - face.first_patch;
+    patch_instance = fi.first_patch_instance + patch_in(face, next) - face.first_patch;
     uv = mix(clamp(uv, 0.0, 1.0), vec2(lessThan(out_, ivec2(0))), over);
     return any(over) && side_of(patch_at(patch_in(face, next)).shape) != SIDE_OUTSIDE;
 }
 
 bool patch_covers(EdgePoint e, uvec2 seen) {
-    uint item = seen_item(seen.x);
-    FaceInstance fi = face_instance_at(face_instance_of(item));
+    uint patch_instance = seen_patch_instance(seen.x);
+    FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
     Face face = face_at(fi.face);
     View view = view_at(fi.instance);
     vec2 slack = is_own_face(fi) ? vec2(COVERS_OWN_PX, COVERS_OWN_OFF * e.slack.y) : vec2(0.0);
@@ -42,17 +42,18 @@ bool patch_covers(EdgePoint e, uvec2 seen) {
     bool covers = false;
     bool goes_on = true;
     for (uint turn = 0u; turn < 2u && goes_on; ++turn) {
-        Sample s = refine_across(fi, face, view, item, uv, e.pixel);
+        Sample s = refine_across(fi, face, view, patch_instance, uv, e.pixel);
         covers = length(s.miss) <= COVERS_PX && before_sheet(e.place, s, view) < -behind;
 #ifdef TRIM_BY_UNTRIMMED
         covers = covers && (face.flags & FACE_TRIMMED) == 0u; // a way without a test here
 #endif
-        if (covers) covers = is_there(fi, face, item, patch_at(face.first_patch + item - fi.first_item), s.uv);
+        Patch patch_ = patch_at(face.first_patch + patch_instance - fi.first_patch_instance);
+        if (covers) covers = is_there(fi, face, patch_instance, patch_, s.uv);
 #ifdef WITHIN_VOLUME
         if (covers) covers = in_volume(s.q, ON_PX);
 #endif
         uv = s.uv;
-        goes_on = !covers && over_the_seam(fi, face, item, uv);
+        goes_on = !covers && over_the_seam(fi, face, patch_instance, uv);
     }
     return covers;
 }
@@ -79,7 +80,9 @@ bool is_covered(EdgePoint e, ivec2 at) {
         bool is_asked = is_inside && (k == 4 || around != at);
         uvec2 seen = uvec2(0u);
         if (is_asked) seen = imageLoad(visibility, around).xy;
-        if (SCENE_HAS_MESHES_OR_SOLIDS && is_asked && sees_nothing(seen.x)) seen = imageLoad(others, around).xy;
+        if (SCENE_HAS_MESHES_OR_SOLIDS && is_asked && sees_nothing(seen.x)) {
+            seen = imageLoad(meshes_and_solids, around).xy;
+        }
         if (!sees_nothing(seen.x) && !sees_other(seen.x)) covered = patch_covers(e, seen);
         else if (SCENE_HAS_MESHES && sees_mesh(seen.x)) covered = triangle_covers(e, seen);
     }

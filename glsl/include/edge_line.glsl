@@ -1,5 +1,5 @@
-// Pass `edge_line`: each pixel's best line. Where several cover it, the one that is seen, then the one that covers most of
-// it, then the last one counts: the same whatever the order in which they are drawn.
+// Pass `edge_line`: each pixel's best line. Where several cover it, the one that is seen, then the one that covers most
+// of it, then the last one counts: the same whatever the order in which they are drawn.
 //
 //    ●━━━━━━━━━━━━●   chord        distance of the pixel's centre ─▶ share of the pixel
 //        │            its point nearest to the centre ─▶ parameter ─▶ the exact point of the edge ─▶ seen, or hidden
@@ -9,15 +9,15 @@
 #include "scene.glsl"
 #include "view.glsl"
 #include "edges.glsl"
-#include "shells.glsl"
+#include "boundary_operands.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 8, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(binding = 8, rg32ui) readonly uniform uimage2D meshes_and_solids; // in scenes without trims the same
 layout(binding = 9) uniform usamplerBuffer face_keys;    // a word a face of the scene
 layout(binding = 10) uniform usamplerBuffer sources;      // of an instance of the scene: part and instance, from 1 on
 layout(scalar, binding = 11) readonly buffer Chords { Chord chords[]; };
-layout(scalar, binding = 12) readonly buffer EdgeItems { EdgeItem edge_items[]; };
+layout(scalar, binding = 12) readonly buffer PieceInstances { PieceInstance piece_instances[]; };
 layout(scalar, binding = 13) readonly buffer EdgePieces { EdgePiece edge_pieces[]; };
 layout(scalar, binding = 14) readonly buffer EdgeLines { EdgeLine edge_lines[]; };
 layout(scalar, binding = 15) readonly buffer OwnFaces { uint own_faces[]; };
@@ -62,14 +62,15 @@ layout(scalar, push_constant) uniform Push {
 layout(location = 0) flat in uint chord;
 
 bool is_own_key(uint key) {
-    EdgeLine line = edge_lines[edge_pieces[edge_items[chords[chord].item].piece].edge];
+    EdgeLine line = edge_lines[edge_pieces[piece_instances[chords[chord].piece_instance].piece].edge];
     bool found = false;
     for (uint i = 0u; i < line.own_count && !found; ++i) found = own_faces[line.first_own + i] == key;
     return found;
 }
 
 bool is_own(uint instance, uint key) {
-    return is_own_key(key) && texelFetch(sources, int(instance)).y == edge_items[chords[chord].item].instance;
+    uint own = piece_instances[chords[chord].piece_instance].instance;
+    return is_own_key(key) && texelFetch(sources, int(instance)).y == own;
 }
 
 bool is_own_face(FaceInstance fi) { return is_own(fi.instance, word_at(face_keys, fi.face)); }
@@ -116,9 +117,9 @@ bool is_near_own(EdgePoint e) {
     for (int k = 0; k < 9 && !near; ++k) {
         ivec2 at = clamp(ivec2(floor(e.pixel)) + ivec2(k % 3 - 1, k / 3 - 1), ivec2(0), ivec2(frame.size) - 1);
         uint seen = imageLoad(visibility, at).x;
-        if (sees_nothing(seen)) seen = imageLoad(others, at).x;
+        if (sees_nothing(seen)) seen = imageLoad(meshes_and_solids, at).x;
         if (SOLIDS_HAVE_PATCHES && sees_operand(seen)) {
-            near = is_own_face(face_instance_at(face_instance_of(seen_item(seen))));
+            near = is_own_face(face_instance_at(face_instance_of(seen_patch_instance(seen))));
         } else if (sees_solid(seen) && seen_side(seen) >= frame.side_count) {
             near = is_own_key(OWN_TRIANGLE | seen_side(seen) - frame.side_count);
         }
@@ -138,9 +139,9 @@ void main() {
     uint steps = uint(covered * LINE_STEPS + 0.5);
     uint best = LINE_SEEN | steps << LINE_COVERAGE | chord;
     if (steps == 0u || imageLoad(lines, at).x >= best) return;
-    EdgeItem item = edge_items[c.item];
-    EdgePiece piece = edge_pieces[item.piece];
-    EdgePoint e = point_at(c, share, piece, view_at(item.placement));
+    PieceInstance piece_instance = piece_instances[c.piece_instance];
+    EdgePiece piece = edge_pieces[piece_instance.piece];
+    EdgePoint e = point_at(c, share, piece, view_at(piece_instance.placement));
     bool near = (c.style & EDGE_NEAR) == 0u || is_near_own(e);
     if (!near || !is_seen(e, at) || is_covered(e, at)) {
         steps = uint(covered * dash(along, gl_FragCoord.xy, half_px) * LINE_STEPS + 0.5);

@@ -12,9 +12,9 @@
 // visible.glsl, edges.glsl, `frame`, buffers `MeshInstance mesh_instances[]`, `uint triangles[]`, `vec3 positions[]`,
 // `OperandMesh operand_meshes[]`, `uint operand_triangles[]`, `vec3 operand_positions[]`, `uimage2D operand_uv`,
 // `usamplerBuffer leaf_surfaces`, `samplerBuffer surface_places`, functions `bool is_own_face(FaceInstance)` and
-// `bool is_own_triangle(uint instance, uint triangle)`, and the constant `OWN_PATCHES_HIDE`: whether patches of own faces
-// are compared here, and not in edge_covered.glsl. With SOLIDS_BY_DEPTH, what is named of operands and solids' sides is not
-// needed: they are compared by their depth in the picture.
+// `bool is_own_triangle(uint instance, uint triangle)`, and the constant `OWN_PATCHES_HIDE`: whether patches of own
+// faces are compared here, and not in edge_covered.glsl. With SOLIDS_BY_DEPTH, what is named of operands and solids'
+// sides is not needed: they are compared by their depth in the picture.
 #ifndef EDGE_SEEN_GLSL
 #define EDGE_SEEN_GLSL
 
@@ -28,7 +28,7 @@ layout(constant_id = 17) const bool SOLIDS_HAVE_PATCHES = false;
 layout(constant_id = 29) const bool SCENE_HAS_SOLIDS = false;
 
 #include "solids.glsl"
-#include "shells.glsl"
+#include "boundary_operands.glsl"
 
 // A point of an edge: its place in the picture, and relative to the eye (right, down, ahead).
 struct EdgePoint {
@@ -65,10 +65,10 @@ float before_sheet(vec3 point, Sample s, View view) {
 }
 
 bool is_before_patch(EdgePoint e, uvec2 seen, bool own_hides) {
-    uint item = seen_item(seen.x);
-    FaceInstance fi = face_instance_at(face_instance_of(item));
+    uint patch_instance = seen_patch_instance(seen.x);
+    FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
     Face face = face_at(fi.face);
-    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+    Patch patch_ = patch_at(face.first_patch + patch_instance - fi.first_patch_instance);
     View view = view_at(fi.instance);
     Sample s = refine(patch_, view, unpack_uv(seen.y), e.pixel);
     float before = before_sheet(e.place, s, view);
@@ -96,7 +96,7 @@ bool is_before_mesh(EdgePoint e, uvec2 seen) {
 float solid_depth(ivec2 at, uint like, float none) {
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(frame.size)))) return none;
     uvec2 seen = imageLoad(visibility, at).xy;
-    if (sees_nothing(seen.x)) seen = imageLoad(others, at).xy;
+    if (sees_nothing(seen.x)) seen = imageLoad(meshes_and_solids, at).xy;
     return seen.x == like ? uintBitsToFloat(seen.y) : none;
 }
 
@@ -159,7 +159,7 @@ bool is_before_solid(EdgePoint e, ivec2 at, uvec2 seen) {
 
 bool is_seen(EdgePoint e, ivec2 at) {
     uvec2 seen = imageLoad(visibility, at).xy;
-    if (SCENE_HAS_MESHES_OR_SOLIDS && sees_nothing(seen.x)) seen = imageLoad(others, at).xy;
+    if (SCENE_HAS_MESHES_OR_SOLIDS && sees_nothing(seen.x)) seen = imageLoad(meshes_and_solids, at).xy;
     if (sees_nothing(seen.x)) return true;
     if (SCENE_HAS_MESHES && sees_mesh(seen.x)) return is_before_mesh(e, seen);
 #ifndef SOLIDS_BY_DEPTH

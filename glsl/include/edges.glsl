@@ -1,8 +1,8 @@
 // Lines along edges. Twin of src/abi/edges.rs; the build checks every offset.
 //
-//   EdgeItem ──▶ EdgePiece ──▶ degree + 1 control points        a placed rational Bézier piece of an edge
+//   PieceInstance ──▶ EdgePiece ──▶ degree + 1 control points        a placed rational Bézier piece of an edge
 //                    └───────▶ EdgeLine ──▶ own faces            the line along it
-//   Chord: from a to b, pixels; of an item                       drawn by a frame
+//   Chord: from a to b, pixels; of a piece instance                       drawn by a frame
 #ifndef EDGES_GLSL
 #define EDGES_GLSL
 
@@ -20,7 +20,7 @@ struct EdgeLine {
     float off; // most distance from its own faces, units of the part
 };
 
-struct EdgeItem {
+struct PieceInstance {
     uint piece;
     uint placement; // number of its view
     uint instance;  // of the model, from 1 on
@@ -31,7 +31,7 @@ struct Chord {
     vec2 b;
     vec2 w; // homogeneous weights of its ends
     vec2 t; // parameters of its ends on the piece
-    uint item;
+    uint piece_instance;
     uint style;
 };
 

@@ -14,32 +14,32 @@ const float ROUNDED = 1e-5;
 
 // Whether (u, v) of an untrimmed patch is in it, or in a patch beside it that lies within the loops. A surface
 // continues beyond its own end, but the face does not.
-bool in_whole_patch(FaceInstance fi, Face face, uint item, vec2 uv) {
+bool in_whole_patch(FaceInstance fi, Face face, uint patch_instance, vec2 uv) {
     ivec2 count = ivec2(face.count_u, face.count_v);
-    ivec2 place = place_of(face, int(item - fi.first_item)) + way_beyond(uv, ROUNDED);
+    ivec2 place = place_of(face, int(patch_instance - fi.first_patch_instance)) + way_beyond(uv, ROUNDED);
     if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, count))) return false;
     return side_of(patch_at(patch_in(face, place)).shape) != SIDE_OUTSIDE;
 }
 
-// Whether the face is there at (u, v) of the item's patch. The table has rows only near the face's border: not for
+// Whether the face is there at (u, v) of its patch. The table has rows only near the face's border: not for
 // strips and bins in which all patches are whole.
-bool is_there(FaceInstance fi, Face face, uint item, Patch patch_, vec2 uv) {
-    if ((face.flags & FACE_TRIMMED) == 0u) return in_whole_patch(fi, face, item, uv);
+bool is_there(FaceInstance fi, Face face, uint patch_instance, Patch patch_, vec2 uv) {
+    if ((face.flags & FACE_TRIMMED) == 0u) return in_whole_patch(fi, face, patch_instance, uv);
     vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
 #ifdef TRIM_BY_TABLE
     if (side_of(patch_.shape) == SIDE_INSIDE) {
         if (clamp(uv, 0.0, 1.0) == uv) return true;
-        if (!table_covers(fi.first_bin, face.strips, at)) return in_whole_patch(fi, face, item, uv);
+        if (!table_covers(fi.first_bin, face.strips, at)) return in_whole_patch(fi, face, patch_instance, uv);
     }
 #endif
     return trim_inside(fi, face, at);
 }
 
-// Like `refine`, but continues in the next patch of the face if the point lies beyond a side. `item` becomes the last
-// patch.
-Sample refine_across(FaceInstance fi, Face face, View view, inout uint item, vec2 uv, vec2 pixel) {
+// Like `refine`, but continues in the next patch of the face if the point lies beyond a side. `patch_instance` becomes
+// the last patch.
+Sample refine_across(FaceInstance fi, Face face, View view, inout uint patch_instance, vec2 uv, vec2 pixel) {
     ivec2 count = ivec2(face.count_u, face.count_v);
-    uint number = face.first_patch + item - fi.first_item;
+    uint number = face.first_patch + patch_instance - fi.first_patch_instance;
     Patch patch_ = patch_at(number);
     Sample s;
     for (uint hop = 0u; hop <= MAX_HOPS; ++hop) {
@@ -47,11 +47,11 @@ Sample refine_across(FaceInstance fi, Face face, View view, inout uint item, vec
         // beside a silhouette the next patch may come less near; then the continuation of the first one is better
         bool on = hop == 0u || length(t.miss) <= max(length(s.miss), ON_PIXEL_PX);
         if (on) {
-            item = fi.first_item + number - face.first_patch;
+            patch_instance = fi.first_patch_instance + number - face.first_patch;
             s = t;
         }
         if (!on) break; // only here: see refine.glsl
-        ivec2 place = place_of(face, int(item - fi.first_item));
+        ivec2 place = place_of(face, int(patch_instance - fi.first_patch_instance));
         ivec2 next = clamp(place + way_beyond(s.uv, BEYOND), ivec2(0), count - 1);
         number = patch_in(face, next);
         Patch there = patch_at(number);

@@ -18,7 +18,7 @@ const float ACROSS = 0.2;
 bool counts(uint word) {
     if ((word & GAP_CANDIDATE) == 0u) return true;
     if (sees_nothing(word)) return false;
-    return (face_at(face_instance_at(face_instance_of(seen_item(word))).face).flags & FACE_SOLID) == 0u;
+    return (face_at(face_instance_at(face_instance_of(seen_patch_instance(word))).face).flags & FACE_SOLID) == 0u;
 }
 
 bool in_picture(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(frame.size))); }
@@ -48,7 +48,7 @@ float other_depth(uvec2 seen, vec2 pixel) {
 // The situation without the own face and the neighbours.
 Situation situation_at(uint listed, ivec2 at, vec2 pixel, bool within) {
     uvec2 seen = imageLoad(visibility, at).xy;
-    uvec2 other = SCENE_HAS_MESHES_OR_SOLIDS ? imageLoad(others, at).xy : uvec2(0u);
+    uvec2 other = SCENE_HAS_MESHES_OR_SOLIDS ? imageLoad(meshes_and_solids, at).xy : uvec2(0u);
     Situation s;
     s.border = (listed & BORDER_BEFORE) != 0u || within;
     s.isolated = (listed & BORDER_BEFORE) != 0u && (listed & ISOLATED) != 0u;
@@ -108,7 +108,7 @@ Question ask_beside(inout Situation s, ivec2 at, ivec2 step_, bool within) {
     uint band = is_interior(s) ? WIDE_BAND_PX : BAND_PX;
     uint steps = first_that_counts(at, step_, band, within, beside, seen);
     bool nothing = steps == 1u && sees_nothing(seen.x);
-    uvec2 there = nothing && SCENE_HAS_MESHES_OR_SOLIDS ? imageLoad(others, beside).xy : uvec2(0u);
+    uvec2 there = nothing && SCENE_HAS_MESHES_OR_SOLIDS ? imageLoad(meshes_and_solids, beside).xy : uvec2(0u);
     if (nothing && there.x == 0u) s.empty_beside = true;
     if (nothing && there.x != 0u) s.other_beside = true;
     return Question(steps != 0u && !sees_nothing(seen.x), seen, steps > 1u ? FROM_BEYOND : FROM_BESIDE, RADIUS_OF_OUTSIDE);

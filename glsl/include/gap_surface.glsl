@@ -1,5 +1,5 @@
-// A face at the centre of a gap candidate, by its exact surface and its trims. Needs gap_candidate.glsl, face_point.glsl
-// and facing.glsl; with WITHIN_VOLUME volume.glsl.
+// A face at the centre of a gap candidate, by its exact surface and its trims. Needs gap_candidate.glsl,
+// face_point.glsl and facing.glsl; with WITHIN_VOLUME volume.glsl.
 #ifndef GAP_SURFACE_GLSL
 #define GAP_SURFACE_GLSL
 
@@ -21,13 +21,13 @@ bool reaches(Patch patch_, View view, vec2 uv, vec2 pixel) {
 // The face of the word `seen` at the pixel's centre and, as the RADIUS_OF_ bits of `radius` say, at points of the gap
 // radius. The expensive part is called once, since drivers inline it.
 Candidate candidate_at(uvec2 seen, vec2 pixel, uint from, uint radius) {
-    uint item = seen_item(seen.x);
-    FaceInstance fi = face_instance_at(face_instance_of(item));
+    uint patch_instance = seen_patch_instance(seen.x);
+    FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
     Face face = face_at(fi.face);
     View view = view_at(fi.instance);
-    Sample s = refine_across(fi, face, view, item, unpack_uv(seen.y), pixel);
-    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
-    uvec2 word = uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0))));
+    Sample s = refine_across(fi, face, view, patch_instance, unpack_uv(seen.y), pixel);
+    Patch patch_ = patch_at(face.first_patch + patch_instance - fi.first_patch_instance);
+    uvec2 word = uvec2(patch_instance + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0))));
     Candidate c = Candidate(ABSENT, from, fi.face + 1u, false, true, s.q.z, length(s.miss), vec2(0.0), word);
     bool within = true;
 #ifdef WITHIN_VOLUME
@@ -52,7 +52,7 @@ Candidate candidate_at(uvec2 seen, vec2 pixel, uint from, uint radius) {
             vec2 step_ = frame.gap_radius_px * DIRECTIONS[k - 1u];
             duv = vec2(step_.x * pv.y - step_.y * pv.x, pu.x * step_.y - pu.y * step_.x) / det;
         }
-        bool there = is_there(fi, face, item, patch_, s.uv + duv);
+        bool there = is_there(fi, face, patch_instance, patch_, s.uv + duv);
         bool settled;
         if (k == 0u) {
             c.inside = there && within;
@@ -71,10 +71,10 @@ Candidate candidate_at(uvec2 seen, vec2 pixel, uint from, uint radius) {
 
 // The border of a candidate near the pixel; see gap_decide.glsl.
 Outline outline_of(Candidate c, vec2 pixel) {
-    uint item = seen_item(c.word.x);
-    FaceInstance fi = face_instance_at(face_instance_of(item));
+    uint patch_instance = seen_patch_instance(c.word.x);
+    FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
     Face face = face_at(fi.face);
-    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+    Patch patch_ = patch_at(face.first_patch + patch_instance - fi.first_patch_instance);
     View view = view_at(fi.instance);
     Sample s = sample_at(patch_, net_of(patch_), view, unpack_uv(c.word.y), pixel);
     mat2 uv_along = inverse(pixels_along(s, view));
@@ -86,7 +86,7 @@ Outline outline_of(Candidate c, vec2 pixel) {
         bool last = k == DIRECTION_COUNT; // the opposite direction
         vec2 step_ = frame.gap_radius_px * DIRECTIONS[k % DIRECTION_COUNT];
         if (last) step_ = -0.5 * frame.gap_radius_px / max(length(sum), 1e-6) * sum;
-        there = is_there(fi, face, item, patch_, at + uv_along * step_);
+        there = is_there(fi, face, patch_instance, patch_, at + uv_along * step_);
         if (there && !last) sum += step_;
     }
     return Outline(sum, !there);

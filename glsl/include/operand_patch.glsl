@@ -6,7 +6,7 @@
 // or enter without leaving. The entry point defines TRIMMED and its way to trim.
 #include "scene.glsl"
 #include "view.glsl"
-#include "shells.glsl"
+#include "boundary_operands.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 10) buffer FragmentCounts { uint fragment_counts[]; };
@@ -27,17 +27,17 @@ layout(scalar, binding = 12) writeonly buffer Fragments { Fragment fragments[]; 
 #include "visible.glsl"
 
 layout(location = 0) in vec2 uv;
-layout(location = 1) flat in uint item;
+layout(location = 1) flat in uint patch_instance;
 
 void main() {
-    FaceInstance fi = face_instance_at(face_instance_of(item));
+    FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
     Face face = face_at(fi.face);
-    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+    Patch patch_ = patch_at(face.first_patch + patch_instance - fi.first_patch_instance);
     Instance instance = instance_at(fi.instance);
     vec2 dx = dFdx(uv) * patch_.domain.zw;
     vec2 dy = dFdy(uv) * patch_.domain.zw;
-    uint shell = instance.shell | FRAGMENT_PATCH;
-    if (looks_away(dx, dy, face, instance)) shell |= FRAGMENT_LEAVES;
+    uint operand = instance.operand | FRAGMENT_PATCH;
+    if (looks_away(dx, dy, face, instance)) operand |= FRAGMENT_LEAVES;
 #ifdef TRIMMED
     vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
     vec2 around = frame.gap_radius_px * (abs(dx) + abs(dy)); // the point's circle is in this box
@@ -50,9 +50,9 @@ void main() {
         near = trim_inside(fi, face, at + step_.x * dx + step_.y * dy);
     }
     if (!near) discard;
-    if (!inside) shell |= FRAGMENT_SKIRT;
+    if (!inside) operand |= FRAGMENT_SKIRT;
 #endif
-    Fragment f = Fragment(shell, 0.0, item + 1u, 0u);
+    Fragment f = Fragment(operand, 0.0, patch_instance + 1u, 0u);
     if (FILLS) {
         Sample s = refine(patch_, view_at(fi.instance), uv, gl_FragCoord.xy);
         f.depth = s.q.z;

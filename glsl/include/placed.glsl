@@ -10,7 +10,7 @@ layout(binding = 1) uniform samplerBuffer views;           // four a placed part
 layout(binding = 2) uniform usamplerBuffer face_instances; // two a placed face
 layout(binding = 3) uniform usamplerBuffer faces;          // four a face
 layout(binding = 4) uniform usamplerBuffer patches;        // four a patch
-layout(binding = 5) uniform usamplerBuffer items;          // a word a placed patch
+layout(binding = 5) uniform usamplerBuffer patch_instances;          // a word a placed patch
 layout(binding = 6) uniform samplerBuffer points;          // one a control point
 
 View view_at(uint i) {
@@ -20,7 +20,7 @@ View view_at(uint i) {
 
 #include "faces.glsl"
 
-uint face_instance_of(uint item) { return word_at(items, item); }
+uint face_instance_of(uint patch_instance) { return word_at(patch_instances, patch_instance); }
 
 Patch patch_at(uint i) {
     int at = int(i) * 4;

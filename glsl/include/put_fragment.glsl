@@ -1,6 +1,6 @@
-// A fragment of an operand: counted first, then stored from the pixel's prefix sum on. Needs `frame`, shells.glsl and
-// buffers `uint fragment_counts[]`, `uint fragment_starts[]`, `Fragment fragments[]`. The order within a pixel is the
-// rasteriser's; pass `operand_sort` sorts it.
+// A fragment of an operand: counted first, then stored from the pixel's prefix sum on. Needs `frame`,
+// boundary_operands.glsl and buffers `uint fragment_counts[]`, `uint fragment_starts[]`, `Fragment fragments[]`. The
+// order within a pixel is the rasteriser's; pass `operand_sort` sorts it.
 #ifndef PUT_FRAGMENT_GLSL
 #define PUT_FRAGMENT_GLSL
 

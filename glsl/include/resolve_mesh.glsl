@@ -15,7 +15,7 @@ layout(scalar, binding = 5) readonly buffer Triangles { uint triangles[]; };
 layout(scalar, binding = 6) readonly buffer Positions { vec3 positions[]; };
 layout(scalar, binding = 7) readonly buffer Normals { uint normals[]; };
 layout(binding = 8, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 9, rg32ui) readonly uniform uimage2D others; // without trims, the same image
+layout(binding = 9, rg32ui) readonly uniform uimage2D meshes_and_solids; // without trims, the same image
 
 #include "facet.glsl"
 #include "octahedral.glsl"
@@ -27,7 +27,7 @@ vec3 corner_normal(uint corner) { return normalize(octahedral(normals[corner]));
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     uvec2 seen = imageLoad(visibility, at).xy;
-    if (sees_nothing(seen.x)) seen = imageLoad(others, at).xy;
+    if (sees_nothing(seen.x)) seen = imageLoad(meshes_and_solids, at).xy;
     if (!sees_mesh(seen.x)) discard;
     MeshInstance placed = mesh_instances[seen_mesh_instance(seen.x)];
     Mesh mesh = meshes[placed.mesh];

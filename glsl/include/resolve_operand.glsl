@@ -8,7 +8,7 @@
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 8, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 9, rg32ui) readonly uniform uimage2D others; // without trims, the same image
+layout(binding = 9, rg32ui) readonly uniform uimage2D meshes_and_solids; // without trims, the same image
 layout(binding = 10, r32ui) readonly uniform uimage2D operand_uv;
 
 #include "eye_ray.glsl"
@@ -21,7 +21,7 @@ layout(binding = 10, r32ui) readonly uniform uimage2D operand_uv;
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec2 seen = imageLoad(visibility, pixel).xy;
-    if (sees_nothing(seen.x)) seen = imageLoad(others, pixel).xy;
+    if (sees_nothing(seen.x)) seen = imageLoad(meshes_and_solids, pixel).xy;
     if (!sees_operand(seen.x)) discard;
     write_patch(uvec2(seen.x, imageLoad(operand_uv, pixel).x), true);
 }

@@ -7,7 +7,7 @@
 #include "view.glsl"
 #include "solids.glsl"
 #include "eye_ray.glsl"
-#include "shells.glsl"
+#include "boundary_operands.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
@@ -15,7 +15,7 @@ layout(binding = 2) uniform usamplerBuffer leaf_surfaces;
 layout(binding = 3) uniform samplerBuffer surfaces;
 layout(binding = 4) uniform samplerBuffer surface_places;
 layout(binding = 5, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 6, rg32ui) readonly uniform uimage2D others; // without trims, the same image
+layout(binding = 6, rg32ui) readonly uniform uimage2D meshes_and_solids; // without trims, the same image
 layout(scalar, binding = 8) readonly buffer Instances { Instance instances[]; };
 layout(scalar, binding = 9) readonly buffer OperandMeshes { OperandMesh operand_meshes[]; };
 layout(scalar, binding = 10) readonly buffer Triangles { uint triangles[]; };
@@ -31,7 +31,7 @@ layout(scalar, binding = 13) readonly buffer Views { View views[]; };
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec2 seen = imageLoad(visibility, pixel).xy;
-    if (sees_nothing(seen.x)) seen = imageLoad(others, pixel).xy;
+    if (sees_nothing(seen.x)) seen = imageLoad(meshes_and_solids, pixel).xy;
     if (!sees_solid(seen.x)) discard;
     float t = uintBitsToFloat(seen.y);
     Ray ray = eye_ray(frame, gl_FragCoord.xy);

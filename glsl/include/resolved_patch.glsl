@@ -8,16 +8,18 @@
 #include "bend.glsl"
 #include "visible.glsl"
 
-// `seen` is item + 1 and packed (u, v). An operand's face may show its back, which is then a front of the solid.
+// `seen` is patch instance + 1 and packed (u, v). An operand's face may show its back, which is then a front of the
+// solid.
 void write_patch(uvec2 seen, bool operand) {
-    uint item = seen_item(seen.x);
-    FaceInstance fi = face_instance_at(face_instance_of(item));
+    uint patch_instance = seen_patch_instance(seen.x);
+    FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
     Face face = face_at(fi.face);
     Instance instance = instance_at(fi.instance);
     View view = view_at(fi.instance);
     Patch patch_;
     vec3 n;
-    Sample s = surface_under(face, item - fi.first_item, view, unpack_uv(seen.y), gl_FragCoord.xy, patch_, n);
+    uint number = patch_instance - fi.first_patch_instance;
+    Sample s = surface_under(face, number, view, unpack_uv(seen.y), gl_FragCoord.xy, patch_, n);
     n = normalize(instance.normal * n);
     bool flip = ((face.flags & FACE_SAME_SENSE) == 0u) != (instance.mirrored != 0u);
     if (operand) flip = dot(n, eye_ray(frame, gl_FragCoord.xy).d) > 0.0;

@@ -3,12 +3,12 @@
 //   Instance ◀── FaceInstance ──▶ Face ──▶ Patch[count_u * count_v] ──▶ points
 //                    │              ├────▶ Cell   (a patch within one v-strip: its box and speed)
 //                    │              └────▶ Curve  (rational Bézier in (u, v)) ──▶ curve_points
-//                    ├── first_item   + local patch  = item     (one patch of one placed face)
-//                    ├── first_cell   + local cell   = cell item
-//                    ├── first_curve  + local curve  = curve item
-//                    └── first_bin    + strip * bins + bin = bin item (a strip's is that of its first bin)
+//                    ├── first_patch_instance + local patch = patch instance (one patch of one placed face)
+//                    ├── first_cell           + local cell  = cell instance
+//                    ├── first_curve          + local curve = curve instance
+//                    └── first_bin            + strip * bins + bin = bin instance (a strip's is that of its first bin)
 //
-//   Patch, side ──▶ Link ──▶ the next side on the same curve: patches of one part, whose items have the same distance
+//   Patch, side ──▶ Link ──▶ the next side on the same curve: patches of one part, whose instances have the same distance
 //
 //   Instance ◀── MeshInstance ──▶ Mesh ──▶ triangles (three indices each) ──▶ positions
 //                                   └────▶ normals, one a corner of its triangles, or none
@@ -82,7 +82,7 @@ struct Face {
 struct FaceInstance {
     uint face;
     uint instance;
-    uint first_item;
+    uint first_patch_instance;
     uint first_bin;
 
     uint first_cell;
@@ -96,7 +96,7 @@ struct Instance {
     uint colour;   // over its faces' colours, by its opacity
     uint mirrored; // 1 if the transform mirrors
 
-    uint shell;    // of its FACE_OPERAND faces: the operand that they bound
+    uint operand;    // of its FACE_OPERAND faces: the operand that they bound
     uvec3 unused;
 };
 
@@ -158,8 +158,8 @@ struct Frame {
     float chord_px;     // budget of a trim curve's linear segments
     float table_density; // pixels a model unit of the trim table, for every view; 0: those of this view
     uint fixed_factor;  // of every patch; 0: the factor of pass `bound`
-    uint items_in_sight; // placed patches of placed parts that are in sight
-    uint run_count;     // runs of consecutive items in sight (in_sight.glsl)
+    uint patch_instances_in_sight; // placed patches of placed parts that are in sight
+    uint run_count;     // runs of consecutive patch instances in sight (in_sight.glsl)
     uint cell_count;
     uint bin_count;     // of all strips of all placed faces
     uint curve_count;
@@ -248,7 +248,7 @@ const uint FAILED_LAYERS = 256u;
 const uint FAILED_RAY_SEGMENTS = 512u;
 const uint FAILED_EDGE_CHORDS = 1024u;
 
-// Tessellation of one item, decided by the split pass. Totals over the whole patch.
+// Tessellation of one patch instance, decided by the split pass. Totals over the whole patch.
 struct Factors {
     uint inner;  // along u | along v << 16
     uint edge_u; // segments of the sides v = 0 | v = 1 << 16
@@ -256,15 +256,15 @@ struct Factors {
     uint splits; // sub-patches along u | along v << 16; powers of two
 };
 
-// A run of consecutive items in sight (in_sight.glsl).
-struct ItemRun {
-    uint place; // of its first item, among all items in sight
-    uint item;  // its first item
+// A run of consecutive patch instances in sight (in_sight.glsl).
+struct PatchRun {
+    uint place; // of its first one, among all in sight
+    uint patch_instance; // its first one
 };
 
 struct SubPatch {
-    uint item;
-    uint place; // i | j << 8: which of the item's sub-patches
+    uint patch_instance;
+    uint place; // i | j << 8: which of the patch instance's sub-patches
 };
 
 // A pixel for pass `gap_fill`.

@@ -1,5 +1,5 @@
-// Curvature of the sides of Boolean solids, from gradient and second derivatives of their functions. Needs sides.glsl and
-// curvature.glsl.
+// Curvature of the sides of Boolean solids, from gradient and second derivatives of their functions. Needs sides.glsl
+// and curvature.glsl.
 #ifndef SIDE_CURVATURE_GLSL
 #define SIDE_CURVATURE_GLSL
 
@@ -23,7 +23,7 @@ mat3 surface_bend(Surface s, vec3 p) {
 
 // Curvature of a side that the ray meets at depth t. Planes and triangles have none.
 Curvature side_curvature(uint side, float t, Ray ray) {
-    if (SOLIDS_HAVE == SURFACE_PLANE || SOLIDS_HAVE_SHELLS && side >= frame.side_count) return NO_CURVATURE;
+    if (SOLIDS_HAVE == SURFACE_PLANE || SOLIDS_HAVE_BOUNDARY_OPERANDS && side >= frame.side_count) return NO_CURVATURE;
     uint word = leaf_surface_at(leaf_surfaces, side).surface;
     if ((word & SIDE_PLANE) != 0u) return NO_CURVATURE;
     Surface s = surface_at(surfaces, word >> SIDE_SHIFT);

@@ -1,5 +1,5 @@
 // The owner and the orientation of a Boolean solid's side: a side of a leaf with equations, or a triangle of an
-// operand. Needs scene.glsl, solids.glsl, shells.glsl, view.glsl, eye_ray.glsl, `frame`,
+// operand. Needs scene.glsl, solids.glsl, boundary_operands.glsl, view.glsl, eye_ray.glsl, `frame`,
 // `usamplerBuffer leaf_surfaces`, and buffers `Instance instances[]`, `OperandMesh operand_meshes[]`, and those of
 // triangle_depth.glsl.
 #ifndef SIDES_GLSL
@@ -7,8 +7,8 @@
 
 #include "triangle_depth.glsl"
 
-// Whether some leaf is a shell; the code for shells is compiled in only then.
-layout(constant_id = 13) const bool SOLIDS_HAVE_SHELLS = true;
+// Whether some leaf is a boundary operand; the code for boundary operands is compiled in only then.
+layout(constant_id = 13) const bool SOLIDS_HAVE_BOUNDARY_OPERANDS = true;
 
 struct Side {
     uint leaf;
@@ -36,7 +36,7 @@ vec3 across_side(uint side, float t, Ray ray) {
 
 // The side that the ray meets at depth t.
 Side side_at(uint side, float t, Ray ray) {
-    if (!SOLIDS_HAVE_SHELLS || side < frame.side_count) {
+    if (!SOLIDS_HAVE_BOUNDARY_OPERANDS || side < frame.side_count) {
         LeafSurface s = leaf_surface_at(leaf_surfaces, side);
         return Side(s.leaf, across_side(s.surface, t, ray), s.surface >> SIDE_SHIFT);
     }

@@ -7,8 +7,8 @@
 //     end    ────●    the nearer one ends at a third         smooth ──⌒── as meet, with one normal
 //                │    surface, which is hidden
 //
-// The place is a root of the difference of two depths, of the third surface's function along the nearer one, or halves the
-// way to where the nearer one is met no more.
+// The place is a root of the difference of two depths, of the third surface's function along the nearer one, or halves
+// the way to where the nearer one is met no more.
 #ifndef SOLID_CHANGE_GLSL
 #define SOLID_CHANGE_GLSL
 
@@ -39,7 +39,7 @@ struct Change {
 // Model units across a pixel.
 float pixel_across(float t) { return (frame.perspective != 0u ? t : 1.0) / frame.focal; }
 
-bool is_cap(Sheet s) { return s.is_there && s.shell == 0u && (leaves[s.leaf].flags & LEAF_CAP) != 0u; }
+bool is_cap(Sheet s) { return s.is_there && s.operand == 0u && (leaves[s.leaf].flags & LEAF_CAP) != 0u; }
 
 vec3 point_on(float t, vec2 place) {
     Ray ray = eye_ray(frame, place);
@@ -85,8 +85,9 @@ float depth_along(vec3 depths, float share) {
     return depths.x + share * (b + share * a);
 }
 
-// The first place on the way from `from` to `to` at which the sheet gets to a side of a primitive; 2 where it gets to none.
-// `tile`: of the band, whose primitives are looked at. `cosine`: between both normals there; `cut`: it is a section's.
+// The first place on the way from `from` to `to` at which the sheet gets to a side of a primitive; 2 where it gets to
+// none. `tile`: of the band, whose primitives are looked at. `cosine`: between both normals there; `cut`: it is a
+// section's.
 float end_of(Sheet f, vec2 from, vec2 to, uint tile, out float cosine, out bool cut) {
     vec3 depths;
     for (uint k = 0u; k < 3u; ++k) depths[k] = depth_on(f, mix(from, to, 0.5 * float(k)));
@@ -102,7 +103,7 @@ float end_of(Sheet f, vec2 from, vec2 to, uint tile, out float cosine, out bool 
     for (uint i = first; i < end; ++i) {
         uint number = leaf_number(tile_leaf_at(tile_leaves, i));
         Leaf leaf = leaves[number];
-        if (number >= frame.followed_leaf || (leaf.flags & LEAF_SHELL) != 0u) continue;
+        if (number >= frame.followed_leaf || (leaf.flags & LEAF_BOUNDARY) != 0u) continue;
         for (uint k = leaf.first; k < leaf.first + leaf.count; ++k) {
             uint side = side_word(leaf_surfaces, k);
             if (side >> SIDE_SHIFT == f.surface) continue;

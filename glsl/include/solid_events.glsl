@@ -25,7 +25,7 @@
 
 #include "scene.glsl"
 #include "solids.glsl"
-#include "shells.glsl"
+#include "boundary_operands.glsl"
 #include "tiles.glsl"
 #include "eye_ray.glsl"
 #include "view.glsl"
@@ -64,8 +64,8 @@ layout(scalar, push_constant) uniform Legs {
 const uint RESUME_BEFORE = 0x80000000u;
 #endif
 
-// Whether some leaf is a shell; the code for shells is compiled in only then.
-layout(constant_id = 13) const bool SOLIDS_HAVE_SHELLS = true;
+// Whether some leaf is a boundary operand; the code for boundary operands is compiled in only then.
+layout(constant_id = 13) const bool SOLIDS_HAVE_BOUNDARY_OPERANDS = true;
 
 #include "crossing.glsl"
 #include "leaf_span.glsl"
@@ -85,8 +85,8 @@ void main() {
 #endif
     Meets meets = leaves_at(uvec2(gl_FragCoord.xy));
     if (meets.entry == EXIT_FALSE) discard;
-    meets.first_fragment = SOLIDS_HAVE_SHELLS ? fragment_starts[pixel] : 0u;
-    meets.fragment_count = SOLIDS_HAVE_SHELLS ? fragment_counts[pixel] : 0u;
+    meets.first_fragment = SOLIDS_HAVE_BOUNDARY_OPERANDS ? fragment_starts[pixel] : 0u;
+    meets.fragment_count = SOLIDS_HAVE_BOUNDARY_OPERANDS ? fragment_counts[pixel] : 0u;
     Progress p = begin_walk();
 #ifdef FACE_IS_FOUND
     uvec2 face = imageLoad(found, ivec2(gl_FragCoord.xy)).xy;

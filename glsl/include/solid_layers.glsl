@@ -13,7 +13,7 @@
 
 #include "scene.glsl"
 #include "solids.glsl"
-#include "shells.glsl"
+#include "boundary_operands.glsl"
 #include "tiles.glsl"
 #include "view.glsl"
 
@@ -36,7 +36,7 @@ layout(scalar, binding = 13) readonly buffer Views { View views[]; };
 layout(scalar, binding = 14) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 15) readonly buffer Faces { Face faces[]; };
 layout(scalar, binding = 16) readonly buffer Patches { Patch patches[]; };
-layout(scalar, binding = 17) readonly buffer Items { uint item_face_instance[]; };
+layout(scalar, binding = 17) readonly buffer PatchInstances { uint patch_instances[]; };
 layout(binding = 18) uniform samplerBuffer points;
 layout(scalar, binding = 19) readonly buffer Instances { Instance instances[]; };
 // of mesh operands
@@ -158,13 +158,14 @@ Layer layer_of(uint side, float t, Ray ray) {
 }
 
 Layer layer_of_patch(Fragment f, Ray ray) {
-    uint item = seen_item(f.what);
-    FaceInstance fi = face_instances[item_face_instance[item]];
+    uint patch_instance = seen_patch_instance(f.what);
+    FaceInstance fi = face_instances[patch_instances[patch_instance]];
     Face face = faces[fi.face];
     View view = views[fi.instance];
     Patch patch_;
     vec3 n;
-    Sample s = surface_under(face, item - fi.first_item, view, unpack_uv(f.uv), gl_FragCoord.xy, patch_, n);
+    uint number = patch_instance - fi.first_patch_instance;
+    Sample s = surface_under(face, number, view, unpack_uv(f.uv), gl_FragCoord.xy, patch_, n);
     n = normalize(instances[fi.instance].normal * n);
     vec2 at = patch_.domain.xy + s.uv * patch_.domain.zw;
     vec4 colour = unpackUnorm4x8(face.colour);
@@ -181,8 +182,8 @@ void main() {
     while (first < end && leaf_number(tile_leaf_at(tile_leaves, first)) < frame.followed_leaf) ++first;
     Ray ray = eye_ray(frame, gl_FragCoord.xy);
     uint pixel = pixel_in_band(frame, uvec2(gl_FragCoord.xy));
-    uint first_fragment = SOLIDS_HAVE_SHELLS ? fragment_starts[pixel] : 0u;
-    uint fragment_count = SOLIDS_HAVE_SHELLS ? fragment_counts[pixel] : 0u;
+    uint first_fragment = SOLIDS_HAVE_BOUNDARY_OPERANDS ? fragment_starts[pixel] : 0u;
+    uint fragment_count = SOLIDS_HAVE_BOUNDARY_OPERANDS ? fragment_counts[pixel] : 0u;
     vec4 under = FOLLOWED_FOR == FOR_THICKNESS ? vec4(0.0, 0.0, 0.0, UNSEEN) : imageLoad(behind, ivec2(gl_FragCoord.xy));
     bool mixed = under.a < 0.0;
     float stop = mixed ? UNSEEN : under.a;
@@ -242,13 +243,13 @@ void main() {
                 w.at_before = i;
             }
             bool is_kept = i - first < KEPT;
-            bool shell = SOLIDS_HAVE_SHELLS && (leaf.flags & LEAF_SHELL) != 0u;
+            bool operand = SOLIDS_HAVE_BOUNDARY_OPERANDS && (leaf.flags & LEAF_BOUNDARY) != 0u;
             Crossing c;
-            if (shell) {
+            if (operand) {
                 uint last;
                 c = crossing_of(leaf.first, t, first_fragment, fragment_count, last);
                 if (purpose == SIDE) {
-                    of_patch = (fragment_at(fragments, last).shell & FRAGMENT_PATCH) != 0u;
+                    of_patch = (fragment_at(fragments, last).operand & FRAGMENT_PATCH) != 0u;
                     side = of_patch ? last : fragment_at(fragments, last).what;
                 }
             } else {
@@ -311,7 +312,7 @@ void main() {
                 // an opaque face hides items entered at its depth, and everything behind it
                 bool entered = (layer.key & ENTERED) != 0u;
                 uint number = leaf_number(tile_leaf_at(tile_leaves, layer.from));
-                float slack = (leaves[number].flags & LEAF_SHELL) != 0u ? TOUCHES * abs(t) : 0.0;
+                float slack = (leaves[number].flags & LEAF_BOUNDARY) != 0u ? TOUCHES * abs(t) : 0.0;
                 bool hidden = entered ? t + slack >= stop : t - slack > stop;
                 if (hidden) {
                     shows = false;

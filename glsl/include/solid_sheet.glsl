@@ -1,5 +1,6 @@
-// What a pixel sees of a Boolean solid, followed to other places of the picture. Needs scene.glsl, view.glsl, solids.glsl,
-// shells.glsl, eye_ray.glsl, sides.glsl, refine.glsl, visible.glsl, `frame`, and what sides.glsl and patch.glsl need.
+// What a pixel sees of a Boolean solid, followed to other places of the picture. Needs scene.glsl, view.glsl,
+// solids.glsl, boundary_operands.glsl, eye_ray.glsl, sides.glsl, refine.glsl, visible.glsl, `frame`, and what
+// sides.glsl and patch.glsl need.
 //
 //        pixel        place                       a side with an equation: the same root of the ray through the place
 //   ───────┼────────────┼───                      triangles, spline faces: the tangent plane, which over a pixel or two
@@ -19,7 +20,7 @@ struct Sheet {
     bool is_round;  // has an equation beside its tangent plane
     uint surface;   // as Side.surface; of a spline face SPLINE_SHEET
     uint leaf;
-    uint shell;     // of an operand without equations its number + 1
+    uint operand;     // of an operand without equations its number + 1
     vec4 plane;     // n . p = w at the point that is seen: model axes, from the eye
     float t;        // its depth
     bool enters;    // rays get to where the surface's function is below 0
@@ -45,11 +46,11 @@ vec3 normal_on(Sheet s, vec3 p) {
 }
 
 // The normal of a spline face of an operand, model axes, and the operand's number.
-vec3 normal_of_patch(uint item, vec2 uv, vec2 pixel, out uint shell) {
-    FaceInstance fi = face_instances[item_face_instance[item]];
-    Patch patch_ = patch_at(faces[fi.face].first_patch + item - fi.first_item);
+vec3 normal_of_patch(uint patch_instance, vec2 uv, vec2 pixel, out uint operand) {
+    FaceInstance fi = face_instances[patch_instances[patch_instance]];
+    Patch patch_ = patch_at(faces[fi.face].first_patch + patch_instance - fi.first_patch_instance);
     Sample s = refine(patch_, views[fi.instance], uv, pixel);
-    shell = instances[fi.instance].shell;
+    operand = instances[fi.instance].operand;
     return normalize(instances[fi.instance].normal * cross(normalize(s.jet.du), normalize(s.jet.dv)));
 }
 
@@ -65,18 +66,18 @@ Sheet sheet_at(ivec2 at, uvec2 seen, uint uv) {
     vec3 p = ray.o + s.t * ray.d;
     vec3 n;
     if (of_patch) {
-        uint shell;
-        n = normal_of_patch(seen_item(seen.x), unpack_uv(uv), pixel, shell);
+        uint operand;
+        n = normal_of_patch(seen_patch_instance(seen.x), unpack_uv(uv), pixel, operand);
         s.surface = SPLINE_SHEET;
         s.leaf = NO_LEAF;
-        s.shell = shell + 1u;
+        s.operand = operand + 1u;
     } else {
         Side side = side_at(seen_side(seen.x), s.t, ray);
         n = normalize(side.n);
         s.surface = side.surface;
         s.leaf = side.leaf;
-        if ((leaves[side.leaf].flags & LEAF_SHELL) != 0u) s.shell = leaves[side.leaf].first + 1u;
-        bool is_plane = s.shell != 0u || (leaf_surface_at(leaf_surfaces, seen_side(seen.x)).surface & SIDE_PLANE) != 0u;
+        if ((leaves[side.leaf].flags & LEAF_BOUNDARY) != 0u) s.operand = leaves[side.leaf].first + 1u;
+        bool is_plane = s.operand != 0u || (leaf_surface_at(leaf_surfaces, seen_side(seen.x)).surface & SIDE_PLANE) != 0u;
         s.is_round = SOLIDS_HAVE != SURFACE_PLANE && !is_plane;
     }
     s.plane = vec4(n, dot(n, p));

@@ -1,6 +1,6 @@
-// The walk of a ray from event to event of a Boolean solid, for passes `solid_events` and `border_solid`: solid_events.glsl
-// says how it goes. Needs solids.glsl, shells.glsl, tiles.glsl, crossing.glsl, leaf_span.glsl, visible.glsl, eye_ray.glsl, `frame`
-// and `usamplerBuffer tile_starts`, `tile_leaves`, `tile_entries`.
+// The walk of a ray from event to event of a Boolean solid, for passes `solid_events` and `border_solid`:
+// solid_events.glsl says how it goes. Needs solids.glsl, boundary_operands.glsl, tiles.glsl, crossing.glsl,
+// leaf_span.glsl, visible.glsl, eye_ray.glsl, `frame` and `usamplerBuffer tile_starts`, `tile_leaves`, `tile_entries`.
 #ifndef SOLID_WALK_GLSL
 #define SOLID_WALK_GLSL
 
@@ -55,8 +55,8 @@ struct Meets {
     uint fragment_count;
 };
 
-// Of the tile of a pixel in the band: the leaves of the union that is seen, without those of items that rays are followed
-// through. No fragments.
+// Of the tile of a pixel in the band: the leaves of the union that is seen, without those of items that rays are
+// followed through. No fragments.
 Meets leaves_at(uvec2 pixel) {
     uint n = tile_in_band(frame, pixel);
     uint first = min(word_at(tile_starts, n), frame.tile_leaf_capacity);
@@ -93,8 +93,8 @@ void follow(inout Progress p, Meets meets, Ray ray) {
     uint most = 8u * (meets.end - meets.first) + 2u * meets.fragment_count + 4u;
     uint two = min(meets.end - meets.first, 1u) + 1u;
     for (uint scan = 0u; scan < most && !p.done; ++scan) {
-        // the spans of [meets.first, known) are kept, those of [from, to) computed: all at first, then what is not kept,
-        // and the asked leaf's again to tell its side
+        // the spans of [meets.first, known) are kept, those of [from, to) computed: all at first, then what is not
+        // kept, and the asked leaf's again to tell its side
         bool tells = purpose == SIDE;
         uint from = tells ? asked : scan == 0u ? meets.first : min(meets.first + KEPT, meets.end);
         uint to = !tells ? meets.end : asked == NO_LEAF ? from : asked + 1u;
@@ -104,7 +104,7 @@ void follow(inout Progress p, Meets meets, Ray ray) {
             TileLeaf here = tile_leaf_at(tile_leaves, i);
             Crossing c;
             uint last;
-            if (SOLIDS_HAVE_SHELLS && (here.of & LEAF_SHELL) != 0u) {
+            if (SOLIDS_HAVE_BOUNDARY_OPERANDS && (here.of & LEAF_BOUNDARY) != 0u) {
                 c = crossing_of(here.of >> LEAF_FLAG_BITS, p.t, meets.first_fragment, meets.fragment_count, last);
             } else {
                 c = crossing_of(kept[i - meets.first], p.t);
@@ -114,13 +114,13 @@ void follow(inout Progress p, Meets meets, Ray ray) {
         for (uint i = from; i < to; ++i) {
             TileLeaf here = tile_leaf_at(tile_leaves, i);
             Crossing c;
-            if (SOLIDS_HAVE_SHELLS && (here.of & LEAF_SHELL) != 0u) {
+            if (SOLIDS_HAVE_BOUNDARY_OPERANDS && (here.of & LEAF_BOUNDARY) != 0u) {
                 uint last;
                 c = crossing_of(here.of >> LEAF_FLAG_BITS, p.t, meets.first_fragment, meets.fragment_count, last);
                 if (tells) {
                     Fragment f = fragment_at(fragments, last);
                     p.side = f.what;
-                    p.word = (f.shell & FRAGMENT_PATCH) != 0u ? SEEN_OPERAND : SEEN_SOLID;
+                    p.word = (f.operand & FRAGMENT_PATCH) != 0u ? SEEN_OPERAND : SEEN_SOLID;
                     p.operand_uv = f.uv;
                 }
             } else {

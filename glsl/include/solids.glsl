@@ -82,7 +82,7 @@ const uint EXIT_TRUE = 0xffffffffu;
 const uint LEAF_UNBOUNDED = 1u;      // no box: in every tile
 const uint LEAF_NEGATIVE = 2u;       // under an odd number of complements: the solid is outside it
 const uint LEAF_FALLS = 4u;          // its chain of out-exits ends at EXIT_FALSE, else at EXIT_TRUE
-const uint LEAF_SHELL = 8u;          // an operand without equations, number `first`: see shells.glsl
+const uint LEAF_BOUNDARY = 8u;          // an operand without equations, number `first`: see boundary_operands.glsl
 
 const uint LEAF_ELSEWHERE = 16u;     // belongs to an item that rays are followed through; drawn by another pass
 const uint LEAF_PLANES = 32u;        // its last sides are planes

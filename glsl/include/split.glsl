@@ -11,11 +11,11 @@ layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 2) readonly buffer Faces { Face faces[]; };
 layout(scalar, binding = 3) readonly buffer Patches { Patch patches[]; };
-layout(scalar, binding = 4) readonly buffer Items { uint item_face_instance[]; };
+layout(scalar, binding = 4) readonly buffer PatchInstances { uint patch_instances[]; };
 layout(scalar, binding = 5) readonly buffer Taus { uint taus[]; };
 layout(scalar, binding = 6) writeonly buffer FactorsBuffer { Factors factors[]; };
-// numbers of sub-patches and of tessellated vertices of each item in sight: first of all plain items, then of all
-// trimmed ones
+// numbers of sub-patches and of tessellated vertices of each patch instance in sight: first of all plain patch
+// instances, then of all trimmed ones
 layout(scalar, binding = 7) writeonly buffer SubPatchCounts { uint sub_patch_counts[]; };
 layout(scalar, binding = 8) writeonly buffer VertexCounts { uint vertex_counts[]; };
 #define IN_SIGHT_BINDING 9
@@ -51,9 +51,9 @@ void decide(uint axis, uint own, uvec2 others, uvec2 others_splits) {
     high[axis] = side_segments(own, others.y, others_splits.y, axis);
 }
 
-void write(uint place, uint item, uint patch_) {
-    bool drawn = is_drawn(taus[item]);
-    factors[item] = Factors(inner.x | inner.y << 16, low.x | high.x << 16, low.y | high.y << 16,
+void write(uint place, uint patch_instance, uint patch_) {
+    bool drawn = is_drawn(taus[patch_instance]);
+    factors[patch_instance] = Factors(inner.x | inner.y << 16, low.x | high.x << 16, low.y | high.y << 16,
                             splits.x | splits.y << 16);
     uvec2 most = max(inner, max(low, high)) / splits;
     // the tessellator makes two segments of one along an axis, unless all numbers are one
@@ -61,7 +61,7 @@ void write(uint place, uint item, uint patch_) {
     uint sub_patches = drawn ? splits.x * splits.y : 0u;
     uint vertices = sub_patches * (most.x + 1u) * (most.y + 1u);
     uint plain = side_of(patches[patch_].shape) == SIDE_INSIDE ? 1u : 0u;
-    uint as_trimmed = frame.items_in_sight + place;
+    uint as_trimmed = frame.patch_instances_in_sight + place;
     sub_patch_counts[place] = sub_patches * plain;
     sub_patch_counts[as_trimmed] = sub_patches * (1u - plain);
     vertex_counts[place] = vertices * plain;

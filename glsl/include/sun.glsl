@@ -51,7 +51,7 @@ struct SunTile {
 struct SunTriangle {
     vec2 corners[3];
     vec3 heights; // of the corners towards the sun, model units, relative to the middle
-    uint shell;
+    uint operand;
     uint surface; // its plane, or OWN_PLANE and its number
     float slack;  // along the ray: nearer points are not met
 };
@@ -214,7 +214,7 @@ const uint CRACK_TRIES = 7u;
 //
 // A line leaves a closed surface as often as it enters it. If it does not, it passes through a crack between the
 // triangles of two spline faces that meet; then a line beside it is taken, at most as far away as such cracks are wide.
-Met meet_mesh(uint shell, vec3 middle, SunTile tile, vec3 p, uint surface, float t, inout uint steps, inout uint wanted) {
+Met meet_mesh(uint operand, vec3 middle, SunTile tile, vec3 p, uint surface, float t, inout uint steps, inout uint wanted) {
     Met met = Met(false, NEVER);
     vec2 q = vec2(dot(sun.right, p - middle), dot(sun.up, p - middle));
     float height = dot(sun.towards, p - middle);
@@ -232,7 +232,7 @@ Met meet_mesh(uint shell, vec3 middle, SunTile tile, vec3 p, uint surface, float
         for (uint i = tile.first_triangle; i < tile.end_triangle; ++i) {
             ++steps;
             SunTriangle triangle = sun_triangle_at(sun_list(i));
-            if (triangle.shell != shell) continue;
+            if (triangle.operand != operand) continue;
             int sum = turns(triangle, at_q);
             if (triangle.slack > 0.0) whole += sum;
             // the point's own plane is crossed at 0
@@ -328,7 +328,7 @@ bool in_sun(Ray ray, float depth, vec3 n, uint surface) {
             TileLeaf here = sun_leaves[i];
             bool is_kept = i - tile.first < SUN_KEPT;
             Met met;
-            if ((here.of & LEAF_SHELL) != 0u) {
+            if ((here.of & LEAF_BOUNDARY) != 0u) {
                 met = meet_mesh(here.of >> LEAF_FLAG_BITS, caster_middles[here.leaf], tile, p, surface, t, steps, wanted);
             } else {
                 Span s;

@@ -13,7 +13,7 @@ layout(binding = TABLE_BINDING + 1) uniform usamplerBuffer table_rows;   // firs
 layout(binding = TABLE_BINDING + 2) uniform usamplerBuffer flips;        // u, in order in each row, two a texel
 layout(binding = TABLE_BINDING + 3) uniform usamplerBuffer border_cells; // one a band of a bin
 
-// Whether a placed face whose bin items begin at `first` has rows at (u, v); `strips` as in Face.
+// Whether a placed face whose bin instances begin at `first` has rows at (u, v); `strips` as in Face.
 bool table_covers(uint first, uint strips, vec2 uv) {
     float n = float(strip_count(strips));
     uint bins = bin_count(strips);

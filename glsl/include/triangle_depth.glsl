@@ -1,8 +1,8 @@
 // The intersection of a ray with the plane of an operand's triangle. A plane shared with other faces is intersected by
 // the formula for the solids' other sides, so that coinciding faces have the same depth, bit for bit. Otherwise the
 // corners give the plane, and the depth is kept within the triangle, as for other meshes. Needs scene.glsl,
-// solids.glsl, shells.glsl, eye_ray.glsl, `frame`, and the buffers of facet.glsl, `View views[]`, `uint planes[]`,
-// `samplerBuffer surfaces`, `samplerBuffer surface_places`.
+// solids.glsl, boundary_operands.glsl, eye_ray.glsl, `frame`, and the buffers of facet.glsl, `View views[]`, `uint
+// planes[]`, `samplerBuffer surfaces`, `samplerBuffer surface_places`.
 #ifndef TRIANGLE_DEPTH_GLSL
 #define TRIANGLE_DEPTH_GLSL
 

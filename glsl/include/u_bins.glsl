@@ -42,8 +42,8 @@ struct StripRows {
     uint bins;
 };
 
-StripRows strip_rows(usamplerBuffer strips, uint item) {
-    uvec4 words = texelFetch(strips, int(item));
+StripRows strip_rows(usamplerBuffer strips, uint bin_instance) {
+    uvec4 words = texelFetch(strips, int(bin_instance));
     return StripRows(words.x, words.y, words.z, words.w);
 }
 

@@ -15,17 +15,17 @@ layout(scalar, binding = 0) uniform Frames { Frame frame; };
 #endif
 
 layout(location = 0) in vec2 uv;
-layout(location = 1) flat in uint item;
+layout(location = 1) flat in uint patch_instance;
 layout(location = 0) out uvec2 visible;
 
 void main() {
-    FaceInstance fi = face_instance_at(face_instance_of(item));
+    FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
     Face face = face_at(fi.face);
     bool solid = (face.flags & FACE_SOLID) != 0u;
     bool candidate = solid && looks_away(dFdx(uv), dFdy(uv), face, instance_at(fi.instance));
 #ifdef WITHIN_VOLUME
-    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+    Patch patch_ = patch_at(face.first_patch + patch_instance - fi.first_patch_instance);
     if (!in_volume(exact_point(patch_, view_at(fi.instance), uv), ON_PX)) discard;
 #endif
-    visible = uvec2(item + 1u | (candidate ? GAP_CANDIDATE : 0u), pack_uv(uv));
+    visible = uvec2(patch_instance + 1u | (candidate ? GAP_CANDIDATE : 0u), pack_uv(uv));
 }

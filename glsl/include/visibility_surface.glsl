@@ -20,14 +20,14 @@ layout(scalar, binding = 0) uniform Frames { Frame frame; };
 #include "link.glsl"
 #endif
 
-layout(location = 0) patch in uint in_item;
+layout(location = 0) patch in uint in_patch_instance;
 layout(location = 1) patch in uint in_instance;
 layout(location = 2) patch in uint in_patch;
 layout(location = 3) patch in uvec2 in_place;
 layout(location = 4) patch in uvec2 in_splits;
 layout(location = 5) patch in uvec4 in_edges;
 layout(location = 0) out vec2 out_uv; // of the patch
-layout(location = 1) flat out uint out_item;
+layout(location = 1) flat out uint out_patch_instance;
 
 // Borders are pushed outwards by at most MAX_PUSH of a patch's width, by at most a segment, and only as far as the
 // surface stays within this share of deviation_px of its tangent. Beside a silhouette, even a step of many pixels does
@@ -116,5 +116,5 @@ void main() {
     vec4 q = to_pixel(view, vec4(jet.point, 1.0));
     gl_Position = DRAWS_OPERANDS ? to_clip_unending(frame, q) : to_clip(frame, q);
     out_uv = uv;
-    out_item = in_item;
+    out_patch_instance = in_patch_instance;
 }

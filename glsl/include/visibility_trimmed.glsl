@@ -43,7 +43,7 @@ layout(binding = 10, r32ui) uniform uimage2D border_depths; // depth's bits, 0 w
 #include "visible.glsl"
 
 layout(location = 0) in vec2 uv;
-layout(location = 1) flat in uint item;
+layout(location = 1) flat in uint patch_instance;
 layout(location = 0) out uvec2 visible;
 layout(depth_less) out float gl_FragDepth;
 
@@ -65,9 +65,9 @@ float bend_within(Patch patch_, vec2 far) {
 }
 
 void main() {
-    FaceInstance fi = face_instance_at(face_instance_of(item));
+    FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
     Face face = face_at(fi.face);
-    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+    Patch patch_ = patch_at(face.first_patch + patch_instance - fi.first_patch_instance);
     vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
     vec2 dx = dFdx(uv) * patch_.domain.zw;
     vec2 dy = dFdy(uv) * patch_.domain.zw;
@@ -121,6 +121,6 @@ void main() {
         imageAtomicMax(border_depths, ivec2(gl_FragCoord.xy), skirt ? skirt_depth : skirt_depth + 1u);
     }
     if (skirt) discard;
-    visible = uvec2(item + 1u | (candidate ? GAP_CANDIDATE : 0u), pack_uv(uv));
+    visible = uvec2(patch_instance + 1u | (candidate ? GAP_CANDIDATE : 0u), pack_uv(uv));
     gl_FragDepth = z - stand_back;
 }

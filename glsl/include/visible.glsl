@@ -2,14 +2,14 @@
 //
 //   first word    31  30-29   28 - 0             second word
 //   nothing        0      0   0                  0
-//   a patch        d      0   item + 1           (u, v) of the patch, two 16-bit numbers
+//   a patch        d      0   patch instance + 1   (u, v) of the patch, two 16-bit numbers
 //   a mesh         0      1   mesh instance      triangle of the scene
 //   a solid        0      2   side, triangle     depth along the view axis, a float
-//   an operand     0      3   item + 1           the same; for a spline face of a solid's operand. Its (u, v) are in
+//   an operand     0      3   patch instance + 1   the same; for a spline face of a solid's operand. Its (u, v) are in
 //                                                an image of their own, `operand_uv`
 //
 // d: a gap candidate, for pass `gap_fill`. In scenes with trims, meshes and solids are in an image of their own,
-// `others`, and are visible where `visibility` is empty.
+// `meshes_and_solids`, and are visible where `visibility` is empty.
 #ifndef VISIBLE_GLSL
 #define VISIBLE_GLSL
 
@@ -39,7 +39,7 @@ bool sees_operand(uint word) { return (word & SEEN_KIND) == SEEN_OPERAND; }
 // Column and row of a word of that list.
 ivec2 candidate_pixel(uint packed) { return ivec2(packed & 0x7fffu, (packed & ~BORDER_BEFORE) >> 16); }
 
-uint seen_item(uint word) { return (word & ~(GAP_CANDIDATE | SEEN_KIND)) - 1u; }
+uint seen_patch_instance(uint word) { return (word & ~(GAP_CANDIDATE | SEEN_KIND)) - 1u; }
 uint seen_mesh_instance(uint word) { return word & ~(GAP_CANDIDATE | SEEN_KIND); }
 uint seen_side(uint word) { return word & ~(GAP_CANDIDATE | SEEN_KIND); }
 

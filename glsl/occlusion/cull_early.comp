@@ -2,7 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `cull_early`: patches that were hidden in the previous frame are not drawn, unless pass `cull_late` finds that
-// they may be visible. One thread for each item in sight. Twin: src/twin/occlusion.rs.
+// they may be visible. One thread for each patch instance in sight. Twin: src/twin/occlusion.rs.
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
@@ -16,10 +16,10 @@ layout(scalar, binding = 3) buffer CountersBuffer { Counters counters; };
 
 void main() {
     uint place = thread_number();
-    if (place >= frame.items_in_sight) return;
-    uint item = item_at(place);
-    if (taus[item] == 0u) return;
-    if (hidden[item] == 0u) return;
-    taus[item] |= TAU_HIDDEN;
+    if (place >= frame.patch_instances_in_sight) return;
+    uint patch_instance = patch_instance_at(place);
+    if (taus[patch_instance] == 0u) return;
+    if (hidden[patch_instance] == 0u) return;
+    taus[patch_instance] |= TAU_HIDDEN;
     atomicAdd(counters.hidden, 1u);
 }

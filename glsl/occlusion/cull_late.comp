@@ -2,8 +2,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `cull_late`: finds the patches that are hidden behind the surfaces drawn so far. Other patches that pass
-// `cull_early` removed are drawn now; hidden patches are not drawn first in the next frame. One thread for each item in
-// sight. Twin: src/twin/occlusion.rs.
+// `cull_early` removed are drawn now; hidden patches are not drawn first in the next frame. One thread for each patch
+// instance in sight. Twin: src/twin/occlusion.rs.
 #include "scene.glsl"
 #include "view.glsl"
 #include "tiles.glsl"
@@ -17,7 +17,7 @@ layout(scalar, binding = 3) readonly buffer FaceInstances { FaceInstance face_in
 layout(scalar, binding = 4) readonly buffer Faces { Face faces[]; };
 layout(scalar, binding = 5) readonly buffer Patches { Patch patches[]; };
 layout(binding = 6) uniform samplerBuffer points;
-layout(scalar, binding = 7) readonly buffer Items { uint item_face_instance[]; };
+layout(scalar, binding = 7) readonly buffer PatchInstances { uint patch_instances[]; };
 layout(scalar, binding = 8) readonly buffer Farthest { float farthest[]; };
 layout(scalar, binding = 9) buffer Taus { uint taus[]; };
 layout(scalar, binding = 10) writeonly buffer Hidden { uint hidden[]; };
@@ -31,18 +31,18 @@ layout(scalar, binding = 12) buffer CountersBuffer { Counters counters; };
 
 void main() {
     uint place = thread_number();
-    if (place >= frame.items_in_sight) return;
-    uint item = item_at(place);
-    uint tau = taus[item];
+    if (place >= frame.patch_instances_in_sight) return;
+    uint patch_instance = patch_instance_at(place);
+    uint tau = taus[patch_instance];
     if (tau == 0u) {
-        hidden[item] = 0u;
+        hidden[patch_instance] = 0u;
         return;
     }
-    FaceInstance fi = face_instances[item_face_instance[item]];
-    uint index = faces[fi.face].first_patch + item - fi.first_item;
+    FaceInstance fi = face_instances[patch_instances[patch_instance]];
+    uint index = faces[fi.face].first_patch + patch_instance - fi.first_patch_instance;
     bool is_hidden = lies_behind(patches[index], views[fi.instance], instances[fi.instance].scale, tau, outside[index]);
-    hidden[item] = is_hidden ? 1u : 0u;
+    hidden[patch_instance] = is_hidden ? 1u : 0u;
     bool appears = (tau & TAU_HIDDEN) != 0u && !is_hidden;
-    taus[item] = appears ? tau & ~TAU_HIDDEN : tau | TAU_HIDDEN;
+    taus[patch_instance] = appears ? tau & ~TAU_HIDDEN : tau | TAU_HIDDEN;
     if (appears) atomicAdd(counters.hidden, 0xffffffffu);
 }

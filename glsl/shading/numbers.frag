@@ -8,9 +8,9 @@
 
 layout(binding = 0) uniform usamplerBuffer sources; // for an instance of the scene: part and instance, from 1 on
 layout(binding = 1) uniform usamplerBuffer face_instances;
-layout(binding = 2) uniform usamplerBuffer items;
+layout(binding = 2) uniform usamplerBuffer patch_instances;
 layout(binding = 3, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 4, rg32ui) readonly uniform uimage2D others; // without trims, the same image
+layout(binding = 4, rg32ui) readonly uniform uimage2D meshes_and_solids; // without trims, the same image
 layout(scalar, binding = 5) readonly buffer MeshInstances { MeshInstance mesh_instances[]; }; // only with meshes
 
 layout(location = 0) out uint out_edge; // of lines, which are drawn later
@@ -20,13 +20,13 @@ layout(location = 2) out uint out_instance;
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     uint seen = imageLoad(visibility, at).x;
-    if (sees_nothing(seen)) seen = imageLoad(others, at).x;
+    if (sees_nothing(seen)) seen = imageLoad(meshes_and_solids, at).x;
     if (sees_nothing(seen) || sees_solid(seen) || sees_operand(seen)) discard;
     uint instance = 0u;
     if (sees_mesh(seen)) {
         instance = mesh_instances[seen_mesh_instance(seen)].instance;
     } else {
-        instance = texelFetch(face_instances, int(word_at(items, seen_item(seen))) * 2).y;
+        instance = texelFetch(face_instances, int(word_at(patch_instances, seen_patch_instance(seen))) * 2).y;
     }
     uvec2 source = texelFetch(sources, int(instance)).xy;
     out_edge = 0u;

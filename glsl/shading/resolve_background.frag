@@ -8,7 +8,7 @@
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 2, rg32ui) readonly uniform uimage2D others; // without trims, the same image
+layout(binding = 2, rg32ui) readonly uniform uimage2D meshes_and_solids; // without trims, the same image
 
 #include "shade.glsl"
 #include "visible.glsl"
@@ -17,7 +17,7 @@ layout(location = 0) out vec4 out_colour;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    if (!sees_nothing(imageLoad(visibility, pixel).x) || !sees_nothing(imageLoad(others, pixel).x)) discard;
+    if (!sees_nothing(imageLoad(visibility, pixel).x) || !sees_nothing(imageLoad(meshes_and_solids, pixel).x)) discard;
     if (frame.background.a < 0.0) discard;
     out_colour = encode(frame.background, frame.encode_srgb);
     out_colour.rgb *= frame.background.a;

@@ -10,7 +10,7 @@
 layout(local_size_x = 64) in; // BLOCK x BLOCK
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 2, rg32ui) readonly uniform uimage2D others; // without trims, the same image
+layout(binding = 2, rg32ui) readonly uniform uimage2D meshes_and_solids; // without trims, the same image
 layout(scalar, binding = 3) writeonly buffer SeenSquares { uint seen_squares[]; };
 
 shared bool seen[BLOCK * BLOCK];
@@ -24,7 +24,7 @@ bool is_drawn(uvec2 tile) {
 // Whether the pixel shows a patch or a mesh.
 bool sees_surface(ivec2 pixel) {
     uint word = imageLoad(visibility, pixel).x;
-    if (sees_nothing(word)) word = imageLoad(others, pixel).x;
+    if (sees_nothing(word)) word = imageLoad(meshes_and_solids, pixel).x;
     return !sees_nothing(word) && !sees_solid(word) && !sees_operand(word);
 }
 

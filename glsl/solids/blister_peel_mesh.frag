@@ -7,7 +7,7 @@
 #include "view.glsl"
 #include "solids.glsl"
 #include "eye_ray.glsl"
-#include "shells.glsl"
+#include "boundary_operands.glsl"
 #include "blister.glsl"
 #include "visible.glsl"
 

@@ -8,7 +8,7 @@
 #include "view.glsl"
 #include "solids.glsl"
 #include "eye_ray.glsl"
-#include "shells.glsl"
+#include "boundary_operands.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };

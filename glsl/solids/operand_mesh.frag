@@ -6,7 +6,7 @@
 #include "view.glsl"
 #include "solids.glsl"
 #include "eye_ray.glsl"
-#include "shells.glsl"
+#include "boundary_operands.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
@@ -30,5 +30,5 @@ void main() {
     float depth = 0.0;
     if (FILLS) depth = triangle_depth(mesh, crossed.y, gl_FragCoord.xy);
     bool leaves = gl_FrontFacing == (mesh.mirrored != 0u);
-    put_fragment(Fragment(mesh.shell | (leaves ? FRAGMENT_LEAVES : 0u), depth, frame.side_count + crossed.y, 0u));
+    put_fragment(Fragment(mesh.operand | (leaves ? FRAGMENT_LEAVES : 0u), depth, frame.side_count + crossed.y, 0u));
 }

@@ -5,7 +5,7 @@
 // behind the near plane determine whether the near plane is within a mesh.
 #include "scene.glsl"
 #include "view.glsl"
-#include "shells.glsl"
+#include "boundary_operands.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };

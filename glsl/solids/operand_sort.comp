@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `operand_sort`: sorts the fragments of each pixel of the band by shell and depth, so that entries and exits
+// Pass `operand_sort`: sorts the fragments of each pixel of the band by operand and depth, so that entries and exits
 // alternate. One thread for each pixel of a part of the band; other pixels have no fragments. Twin:
 // src/twin/operand_sort.rs.
 //
@@ -16,17 +16,17 @@
 //                               silhouette two fragments may be interchanged
 //
 //   An entry without an exit stays, an exit without an entry is removed: both are `unpaired`, unless the camera's
-//   depth range cuts the shell.
+//   depth range cuts the operand.
 #include "scene.glsl"
 #include "solids.glsl"
-#include "shells.glsl"
+#include "boundary_operands.glsl"
 #include "tiles.glsl"
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
 layout(scalar, binding = 2) readonly buffer LeafCentres { vec3 leaf_centres[]; };
-layout(scalar, binding = 3) readonly buffer ShellLeaves { uint shell_leaves[]; };
+layout(scalar, binding = 3) readonly buffer OperandLeaves { uint operand_leaves[]; };
 layout(scalar, binding = 4) readonly buffer FragmentStarts { uint fragment_starts[]; };
 layout(scalar, binding = 5) buffer FragmentCounts { uint fragment_counts[]; };
 layout(scalar, binding = 6) buffer Fragments { Fragment fragments[]; };
@@ -35,12 +35,12 @@ layout(scalar, push_constant) uniform Part { uvec2 part_first; }; // column, and
 
 // A total order: fragments that compare equal are equal.
 bool before(Fragment a, Fragment b) {
-    uint x = a.shell & FRAGMENT_SHELL;
-    uint y = b.shell & FRAGMENT_SHELL;
+    uint x = a.operand & FRAGMENT_OPERAND;
+    uint y = b.operand & FRAGMENT_OPERAND;
     if (x != y) return x < y;
     if (a.depth != b.depth) return a.depth < b.depth;
     if (a.what != b.what) return a.what < b.what;
-    if (a.shell != b.shell) return a.shell < b.shell;
+    if (a.operand != b.operand) return a.operand < b.operand;
     return a.uv < b.uv;
 }
 
@@ -65,19 +65,19 @@ void sort(uint first, uint count) {
     }
 }
 
-// Whether the box around a shell crosses the near plane (1), the far plane (2).
-uint cuts(uint shell) {
-    Leaf leaf = leaves[shell_leaves[shell]];
-    float middle = dot(frame.forward, leaf_centres[shell_leaves[shell]]);
+// Whether the box around a boundary operand crosses the near plane (1), the far plane (2).
+uint cuts(uint operand) {
+    Leaf leaf = leaves[operand_leaves[operand]];
+    float middle = dot(frame.forward, leaf_centres[operand_leaves[operand]]);
     float reach = dot(abs(frame.forward), leaf.half_size);
     return (middle - reach < frame.near ? 1u : 0u) | (middle + reach > frame.far ? 2u : 0u);
 }
 
-// End of the fragments that stay of the current shell.
+// End of the fragments that stay of the current operand.
 uint kept;
 
 void keep(Fragment f, uint bits) {
-    f.shell = f.shell & ~(FRAGMENT_SKIRT | FRAGMENT_LEAVES) | bits;
+    f.operand = f.operand & ~(FRAGMENT_SKIRT | FRAGMENT_LEAVES) | bits;
     fragments[kept] = f;
     ++kept;
 }
@@ -92,14 +92,14 @@ bool by_winding(uint from, uint end, int number, uint start) {
         Fragment f;
         bool more = i < end;
         if (more) f = fragments[i];
-        if (more && (f.shell & FRAGMENT_SKIRT) != 0u) continue;
+        if (more && (f.operand & FRAGMENT_SKIRT) != 0u) continue;
         if (any && (!more || f.depth != depth)) {
             bool now = number != 0;
             if (now != within) keep(owner, start | (now ? 0u : FRAGMENT_LEAVES));
             within = now;
         }
         if (!more) break;
-        number += (f.shell & FRAGMENT_LEAVES) != 0u ? -1 : 1;
+        number += (f.operand & FRAGMENT_LEAVES) != 0u ? -1 : 1;
         if ((number != 0) != within) owner = f;
         any = true;
         depth = f.depth;
@@ -115,8 +115,8 @@ bool in_turn(uint from, uint end, bool within, uint start, bool writes) {
     bool lost = false;
     for (uint i = from; i < end; ++i) {
         Fragment f = fragments[i];
-        uint kind = (f.shell & FRAGMENT_LEAVES) != 0u ? 1u : 0u;
-        if ((f.shell & FRAGMENT_SKIRT) != 0u) {
+        uint kind = (f.operand & FRAGMENT_LEAVES) != 0u ? 1u : 0u;
+        if ((f.operand & FRAGMENT_SKIRT) != 0u) {
             if (!has_skirt[kind]) skirt[kind] = f;
             has_skirt[kind] = true;
             continue;
@@ -134,7 +134,7 @@ bool in_turn(uint from, uint end, bool within, uint start, bool writes) {
         }
         within = kind == 0u;
         has_skirt = bool[](false, false);
-        if (writes) keep(f, start | (f.shell & FRAGMENT_LEAVES));
+        if (writes) keep(f, start | (f.operand & FRAGMENT_LEAVES));
     }
     if (within && has_skirt[1]) {
         if (writes) {
@@ -174,22 +174,22 @@ void main() {
     kept = first;
     uint from = first;
     while (from < end) {
-        uint shell = fragments[from].shell & FRAGMENT_SHELL;
-        bool patches = (fragments[from].shell & FRAGMENT_PATCH) != 0u;
+        uint operand = fragments[from].operand & FRAGMENT_OPERAND;
+        bool patches = (fragments[from].operand & FRAGMENT_PATCH) != 0u;
         int sum = 0; // exits less entries
         bool leaves_first = false;
         bool any = false;
         uint stop = from;
         for (; stop < end; ++stop) {
-            uint word = fragments[stop].shell;
-            if ((word & FRAGMENT_SHELL) != shell) break;
+            uint word = fragments[stop].operand;
+            if ((word & FRAGMENT_OPERAND) != operand) break;
             if ((word & FRAGMENT_SKIRT) != 0u) continue;
             bool leaves_ = (word & FRAGMENT_LEAVES) != 0u;
             sum += leaves_ ? 1 : -1;
             if (!any) leaves_first = leaves_;
             any = true;
         }
-        uint cut = cuts(shell);
+        uint cut = cuts(operand);
         int number = (cut & 1u) != 0u ? sum : 0;
         bool within = (cut & 1u) != 0u && leaves_first;
         bool turns = patches;

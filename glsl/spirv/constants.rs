@@ -63,6 +63,14 @@ pub mod border_seen {
 pub mod bound {
     pub const DEPTH_SHARE: f32 = 1.5;
 }
+pub mod boundary_operands {
+    pub const FRAGMENT_LEAVES: u32 = 0x80000000;
+    pub const FRAGMENT_OPERAND: u32 = 0x0fffffff;
+    pub const FRAGMENT_PATCH: u32 = 0x20000000;
+    pub const FRAGMENT_SKIRT: u32 = 0x40000000;
+    pub const FRAGMENT_WITHIN: u32 = 0x10000000;
+    pub const NO_PLANE: u32 = 0xffffffff;
+}
 pub mod cone {
     pub const EYE_ROUNDING: f32 = 1e-5;
 }
@@ -75,6 +83,11 @@ pub mod coverage {
 }
 pub mod depth_pyramid {
     pub const SQUARE: u32 = 4;
+}
+pub mod dispatch_arguments {
+    pub const GROUP: u32 = 128;
+    pub const MOST_NUMBERED: u32 = 0x80000000;
+    pub const SCAN_BLOCK: u32 = 1024;
 }
 pub mod edge_covered {
     pub const COVERS_OWN_OFF: f32 = 7.0;
@@ -270,19 +283,6 @@ pub mod shade {
     pub const UNSEEN: f32 = 3.0e38;
     pub const ZEBRA_STRIPES: f32 = 12.0;
 }
-pub mod shells {
-    pub const FRAGMENT_LEAVES: u32 = 0x80000000;
-    pub const FRAGMENT_PATCH: u32 = 0x20000000;
-    pub const FRAGMENT_SHELL: u32 = 0x0fffffff;
-    pub const FRAGMENT_SKIRT: u32 = 0x40000000;
-    pub const FRAGMENT_WITHIN: u32 = 0x10000000;
-    pub const NO_PLANE: u32 = 0xffffffff;
-}
-pub mod sizes {
-    pub const GROUP: u32 = 128;
-    pub const MOST_NUMBERED: u32 = 0x80000000;
-    pub const SCAN_BLOCK: u32 = 1024;
-}
 pub mod solid_change {
     pub const CHANGE_END: u32 = 3;
     pub const CHANGE_FOLD: u32 = 2;
@@ -331,6 +331,7 @@ pub mod solid_walk {
 pub mod solids {
     pub const EXIT_FALSE: u32 = 0xfffffffe;
     pub const EXIT_TRUE: u32 = 0xffffffff;
+    pub const LEAF_BOUNDARY: u32 = 8;
     pub const LEAF_CAP: u32 = 128;
     pub const LEAF_ELSEWHERE: u32 = 16;
     pub const LEAF_FALLS: u32 = 4;
@@ -338,7 +339,6 @@ pub mod solids {
     pub const LEAF_NEGATIVE: u32 = 2;
     pub const LEAF_PLANES: u32 = 32;
     pub const LEAF_ROUNDS: u32 = 64;
-    pub const LEAF_SHELL: u32 = 8;
     pub const LEAF_UNBOUNDED: u32 = 1;
     pub const MOST_STEPS: u32 = 30;
     pub const NEVER: f32 = 3.0e38;

@@ -26,8 +26,8 @@ pub mod constant {
     pub const SHOWS_CURVATURE: u32 = 31;
     pub const SOLIDS_ARE_FOLLOWED: u32 = 14;
     pub const SOLIDS_HAVE: u32 = 5;
+    pub const SOLIDS_HAVE_BOUNDARY_OPERANDS: u32 = 13;
     pub const SOLIDS_HAVE_PATCHES: u32 = 17;
-    pub const SOLIDS_HAVE_SHELLS: u32 = 13;
     pub const TRIMMED: u32 = 2;
     pub const TRIMS_HAVE_BINS: u32 = 21;
 }
@@ -149,9 +149,9 @@ pub(super) const SOLID_LAYERS_SUN_FRAG: Interface = Interface { group: [0, 0, 0]
 pub(super) const CARRY_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 4, bindings: &[Binding::Uniform, Binding::TexelBuffer, Binding::Storage, Binding::Storage], constants: &[] };
 pub(super) const CROSS_COMP: Interface = Interface { group: [128, 1, 1], push_bytes: 0, bindings: &[Binding::Uniform, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage], constants: &[1, 23, 26] };
 pub(super) const DENSITY_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 0, bindings: &[Binding::Uniform, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage], constants: &[1] };
+pub(super) const DISPATCH_ARGUMENTS_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 0, bindings: &[Binding::Uniform, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage], constants: &[1] };
 pub(super) const LINES_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 0, bindings: &[Binding::Uniform, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage], constants: &[1] };
 pub(super) const SEGMENTS_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 0, bindings: &[Binding::Uniform, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer, Binding::Storage, Binding::Storage, Binding::Storage], constants: &[1] };
-pub(super) const SIZES_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 0, bindings: &[Binding::Uniform, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage], constants: &[1] };
 pub(super) const SORT_COMP: Interface = Interface { group: [128, 1, 1], push_bytes: 0, bindings: &[Binding::Uniform, Binding::TexelBuffer, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage], constants: &[1] };
 pub(super) const MESH_FRAG: Interface = Interface { group: [0, 0, 0], push_bytes: 0, bindings: &[], constants: &[] };
 pub(super) const MESH_VERT: Interface = Interface { group: [0, 0, 0], push_bytes: 0, bindings: &[Binding::Uniform, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage], constants: &[4] };

@@ -1,9 +1,10 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `emit`: writes the list of sub-patches, and the draws that cover it. One thread for each item in sight.
+// Pass `emit`: writes the list of sub-patches, and the draws that cover it. One thread for each patch instance in
+// sight.
 //
-//   vertices before an item  0 ..... draw_vertices ..... 2 draw_vertices ....
+//   vertices before a patch instance  0 ..... draw_vertices ..... 2 draw_vertices ....
 //   draw that covers it      |   0   |        1         |        2
 //
 // A draw starts with the first sub-patch of its interval, so none holds more than draw_vertices and
@@ -29,7 +30,7 @@ layout(scalar, binding = 6) buffer CountersBuffer { Counters counters; };
 #include "in_sight.glsl"
 
 void main() {
-    uint n = frame.items_in_sight;
+    uint n = frame.patch_instances_in_sight;
     uint place = thread_number();
     if (place >= n) return;
     if (place == 0u) {
@@ -46,14 +47,14 @@ void main() {
     uint first = sub_patch_starts[slot];
     uint count = sub_patch_starts[slot + 1u] - first;
     if (count == 0u) return;
-    uint item = item_at(place);
+    uint patch_instance = patch_instance_at(place);
     uint vertices = (vertex_starts[slot + 1u] - vertex_starts[slot]) / count;
     uint before = vertex_starts[slot] - (group == 0u ? 0u : vertex_starts[n]);
-    uint across = factors[item].splits & 0xffffu;
+    uint across = factors[patch_instance].splits & 0xffffu;
     for (uint k = 0u; k < count; ++k) {
         uint at = first + k;
         if (at >= frame.sub_patch_capacity) return;
-        sub_patches[at] = SubPatch(item, (k % across) | (k / across) << 8);
+        sub_patches[at] = SubPatch(patch_instance, (k % across) | (k / across) << 8);
         uint draw = (before + k * vertices) / frame.draw_vertices;
         if (group == 0u) atomicMax(counters.plain_draws, min(draw + 1u, frame.draw_capacity));
         else atomicMax(counters.trimmed_draws, min(draw + 1u, frame.draw_capacity));

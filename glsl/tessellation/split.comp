@@ -2,10 +2,10 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `split`: one number of segments for each shared side, and enough sub-patches that no number exceeds the
-// hardware's limit. One thread for each item in sight. Twin: src/twin/split.rs.
+// hardware's limit. One thread for each patch instance in sight. Twin: src/twin/split.rs.
 #include "split.glsl"
 
-uint first_item;
+uint first_patch_instance;
 uvec2 count;
 bvec2 closed;
 
@@ -19,17 +19,17 @@ uint tau_at(ivec2 place, uint axis, int steps) {
         at = (at + 2 * n) % n; // a single patch is its own neighbour two steps away; % must not get a negative number
     }
     place[across] = at;
-    return tau_along(taus[first_item + uint(place.y) * count.x + uint(place.x)], axis);
+    return tau_along(taus[first_patch_instance + uint(place.y) * count.x + uint(place.x)], axis);
 }
 
 void main() {
     uint place_ = thread_number();
-    if (place_ >= frame.items_in_sight) return;
-    uint item = item_at(place_);
-    FaceInstance fi = face_instances[item_face_instance[item]];
+    if (place_ >= frame.patch_instances_in_sight) return;
+    uint patch_instance = patch_instance_at(place_);
+    FaceInstance fi = face_instances[patch_instances[patch_instance]];
     Face face = faces[fi.face];
-    uint n = item - fi.first_item;
-    first_item = fi.first_item;
+    uint n = patch_instance - fi.first_patch_instance;
+    first_patch_instance = fi.first_patch_instance;
     count = uvec2(face.count_u, face.count_v);
     closed = bvec2((face.flags & FACE_CLOSED_U) != 0u, (face.flags & FACE_CLOSED_V) != 0u);
     ivec2 place = ivec2(n % count.x, n / count.x);
@@ -39,5 +39,5 @@ void main() {
         uvec2 others_splits = uvec2(splits_for(t[0], t[1], t[2]), splits_for(t[2], t[3], t[4]));
         decide(axis, t[2], uvec2(t[1], t[3]), others_splits);
     }
-    write(place_, item, face.first_patch + n);
+    write(place_, patch_instance, face.first_patch + n);
 }

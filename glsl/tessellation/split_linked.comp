@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `split` in scenes where faces share sides (Link). One thread an item in sight. Twin: src/twin/split.rs.
+// Pass `split` in scenes where faces share sides (Link). One thread a patch instance in sight. Twin: src/twin/split.rs.
 //
 // Numbers of segments are compared as numbers for the whole curve of the ring: a side that is a quarter of it needs
 // four times as many there, and gets a quarter of the result.
@@ -11,9 +11,9 @@ layout(scalar, binding = 10) readonly buffer Links { Link links[]; };
 
 const uint NO_PATCH = 0xffffffffu;
 
-uint item_of_patch_0; // items of a placed part have the order of its patches
+uint instance_of_patch_0; // patch instances of a placed part have the order of its patches
 
-uint tau_at(uint patch_, uint axis) { return tau_along(taus[item_of_patch_0 + patch_], axis); }
+uint tau_at(uint patch_, uint axis) { return tau_along(taus[instance_of_patch_0 + patch_], axis); }
 
 uint axis_of(uint side) { return 1u - (side & 1u); }
 
@@ -84,16 +84,16 @@ uint splits_beyond(uint patch_, uint side) {
 
 void main() {
     uint place_ = thread_number();
-    if (place_ >= frame.items_in_sight) return;
-    uint item = item_at(place_);
-    FaceInstance fi = face_instances[item_face_instance[item]];
-    item_of_patch_0 = fi.first_item - faces[fi.face].first_patch;
-    uint patch_ = item - item_of_patch_0;
+    if (place_ >= frame.patch_instances_in_sight) return;
+    uint patch_instance = patch_instance_at(place_);
+    FaceInstance fi = face_instances[patch_instances[patch_instance]];
+    instance_of_patch_0 = fi.first_patch_instance - faces[fi.face].first_patch;
+    uint patch_ = patch_instance - instance_of_patch_0;
     for (uint axis = 0u; axis < 2u; ++axis) {
         uvec2 sides = sides_of(axis);
         uvec2 others = uvec2(asked_beyond(patch_, sides.x), asked_beyond(patch_, sides.y));
         uvec2 others_splits = uvec2(splits_beyond(patch_, sides.x), splits_beyond(patch_, sides.y));
         decide(axis, tau_at(patch_, axis), others, others_splits);
     }
-    write(place_, item, patch_);
+    write(place_, patch_instance, patch_);
 }

@@ -16,7 +16,7 @@ layout(local_size_x = 64) in;
 #include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1) uniform usamplerBuffer strips;
-layout(scalar, binding = 2) readonly buffer WideStrips { uint wide_strips[]; }; // bin items
+layout(scalar, binding = 2) readonly buffer WideStrips { uint wide_strips[]; }; // bin instances
 layout(scalar, binding = 3) buffer RowWindings { int row_windings[]; };
 
 layout(scalar, push_constant) uniform Push { uint wide_strip_count; } push;

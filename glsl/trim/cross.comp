@@ -29,7 +29,7 @@ layout(binding = 1) uniform usamplerBuffer face_instances;
 layout(binding = 2) uniform usamplerBuffer faces;
 layout(binding = 3) uniform usamplerBuffer curves;
 layout(binding = 4) uniform samplerBuffer curve_points;
-layout(binding = 5) uniform usamplerBuffer curve_items; // the placed face of each
+layout(binding = 5) uniform usamplerBuffer curve_instances; // the placed face of each
 layout(binding = 6) uniform usamplerBuffer strips;
 layout(binding = 7) uniform usamplerBuffer segment_starts;
 layout(binding = 8) uniform usamplerBuffer row_starts;
@@ -46,9 +46,9 @@ layout(scalar, binding = 12) buffer RowWindings { int row_windings[]; }; // with
 #include "ordered.glsl"
 #include "words.glsl"
 
-uint first_segment(uint item) { return word_at(segment_starts, item); }
+uint first_segment(uint curve_instance) { return word_at(segment_starts, curve_instance); }
 
-// The curve item that contains segment `segment`.
+// The curve instance that contains segment `segment`.
 uint curve_of(uint segment) {
     uint lo = 0u;
     uint hi = frame.curve_count;
@@ -61,12 +61,12 @@ uint curve_of(uint segment) {
 }
 
 // Marks the bands of a bin from `lo` to `hi` of its strip, 0 to 1, clamped to the strip.
-void mark(uint bin_item, float lo, float hi, uvec4 columns) {
+void mark(uint bin_instance, float lo, float hi, uvec4 columns) {
     float last_band = float(BORDER_BANDS - 1u);
     uint first = uint(clamp(floor(lo * float(BORDER_BANDS)), 0.0, last_band));
     uint last = uint(clamp(floor(hi * float(BORDER_BANDS)), 0.0, last_band));
     for (uint band = first; band <= last; ++band) {
-        uint at = 4u * (bin_item * BORDER_BANDS + band);
+        uint at = 4u * (bin_instance * BORDER_BANDS + band);
         for (uint word = 0u; word < 4u; ++word) {
             if (columns[word] != 0u) atomicOr(border_cells[at + word], columns[word]);
         }
@@ -77,13 +77,13 @@ void main() {
     uint segment = thread_number();
     uint total = first_segment(frame.curve_count);
     if (segment >= total) return;
-    uint item = curve_of(segment);
-    uint first_of_item = first_segment(item);
-    uint n = first_segment(item + 1u) - first_of_item;
-    uint i = segment - first_of_item;
-    FaceInstance fi = face_instance_at(word_at(curve_items, item));
+    uint curve_instance = curve_of(segment);
+    uint first_of_curve = first_segment(curve_instance);
+    uint n = first_segment(curve_instance + 1u) - first_of_curve;
+    uint i = segment - first_of_curve;
+    FaceInstance fi = face_instance_at(word_at(curve_instances, curve_instance));
     Face face = face_at(fi.face);
-    Curve curve = curve_at(face.first_curve + item - fi.first_curve);
+    Curve curve = curve_at(face.first_curve + curve_instance - fi.first_curve);
     vec2 a = curve_point(curve, i, n);
     vec2 b = curve_point(curve, i + 1u, n);
     uint upwards = a.y < b.y ? 1u : 0u;
@@ -99,8 +99,8 @@ void main() {
     float left = min(a.x, b.x);
     float right = max(a.x, b.x);
     for (uint k = first; k <= last; ++k) {
-        uint item = fi.first_bin + k * bins;
-        StripRows rows = strip_rows(strips, item);
+        uint bin_instance = fi.first_bin + k * bins;
+        StripRows rows = strip_rows(strips, bin_instance);
         if (rows.lines == 0u) continue;
         // right of all visible bins, or part of a loop that is left of all of them
         if (SCENE_HAS_BINS && (bin_of(left, bins) > last_bin(rows) || bin_of(curve.range_u.y, bins) < rows.first_bin)) continue;
@@ -113,7 +113,8 @@ void main() {
             precise float above = high + around;
             uint last_marked = min(bin_of(right, bins), last_bin(rows));
             for (uint bin = max(bin_of(left, bins), rows.first_bin); bin <= last_marked; ++bin) {
-                mark(item + bin, below, above, columns_between(within_bin(left, bin, bins), within_bin(right, bin, bins)));
+                uvec4 columns = columns_between(within_bin(left, bin, bins), within_bin(right, bin, bins));
+                mark(bin_instance + bin, below, above, columns);
             }
         }
         // one line too many on each side: the comparison below decides

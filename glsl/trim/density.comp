@@ -24,7 +24,7 @@ layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
 layout(scalar, binding = 3) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 4) readonly buffer Faces { Face faces[]; };
 layout(scalar, binding = 5) readonly buffer Cells { Cell cells[]; };
-layout(scalar, binding = 6) readonly buffer CellItems { uint cell_face_instance[]; };
+layout(scalar, binding = 6) readonly buffer CellInstances { uint cell_face_instance[]; };
 layout(scalar, binding = 7) buffer StripHeights { uint strip_heights[]; }; // float bits, pixels
 layout(scalar, binding = 8) buffer FaceSpeeds { uint face_speeds[]; };     // float bits, pixels per unit u, v
 layout(scalar, binding = 9) buffer SeenBins { uint seen_bins[]; }; // a bit for each bin of a strip, with SCENE_HAS_BINS
@@ -44,12 +44,12 @@ float pixels_of(FaceInstance fi, Face face, Cell cell) {
 }
 
 void main() {
-    uint item = thread_number();
-    if (item >= frame.cell_count) return;
-    uint placed = cell_face_instance[item];
+    uint cell_instance = thread_number();
+    if (cell_instance >= frame.cell_count) return;
+    uint placed = cell_face_instance[cell_instance];
     FaceInstance fi = face_instances[placed];
     Face face = faces[fi.face];
-    Cell cell = cells[face.first_cell + item - fi.first_cell];
+    Cell cell = cells[face.first_cell + cell_instance - fi.first_cell];
     if (cell.speed_v < 0.0) return; // no loop meets its patch
     float pixels = pixels_of(fi, face, cell);
     if (pixels < 0.0) return;

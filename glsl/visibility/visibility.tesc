@@ -18,7 +18,7 @@ layout(scalar, binding = 8) readonly buffer SubPatches { SubPatch sub_patches[];
 #include "patch.glsl"
 
 layout(location = 0) flat in uint sub_patch[];
-layout(location = 0) patch out uint out_item;
+layout(location = 0) patch out uint out_patch_instance;
 layout(location = 1) patch out uint out_instance;
 layout(location = 2) patch out uint out_patch;
 layout(location = 3) patch out uvec2 out_place;
@@ -42,14 +42,14 @@ bool seen(Patch patch_, View view, vec2 lo, vec2 hi, float far) {
 
 void main() {
     SubPatch sub = sub_patches[sub_patch[0]];
-    FaceInstance fi = face_instance_at(face_instance_of(sub.item));
-    uint index = face_at(fi.face).first_patch + sub.item - fi.first_item;
-    Factors f = factors[sub.item];
+    FaceInstance fi = face_instance_at(face_instance_of(sub.patch_instance));
+    uint index = face_at(fi.face).first_patch + sub.patch_instance - fi.first_patch_instance;
+    Factors f = factors[sub.patch_instance];
     uvec2 splits = uvec2(f.splits & 0xffffu, f.splits >> 16);
     uvec2 place = uvec2(sub.place & 0xffu, sub.place >> 8);
     uvec2 inner = uvec2(f.inner & 0xffffu, f.inner >> 16) / splits;
     uvec4 edges = uvec4(f.edge_v & 0xffffu, f.edge_u & 0xffffu, f.edge_v >> 16, f.edge_u >> 16);
-    out_item = sub.item;
+    out_patch_instance = sub.patch_instance;
     out_instance = fi.instance;
     out_patch = index;
     out_place = place;

@@ -26,7 +26,7 @@ pub struct EdgeLine {
 /// A placed piece.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
-pub struct EdgeItem {
+pub struct PieceInstance {
     pub piece: u32,
     pub placement: u32,
     pub instance: u32,
@@ -40,6 +40,6 @@ pub struct Chord {
     pub b: [f32; 2],
     pub w: [f32; 2],
     pub t: [f32; 2],
-    pub item: u32,
+    pub piece_instance: u32,
     pub style: u32,
 }

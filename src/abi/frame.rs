@@ -29,7 +29,7 @@ pub struct Frame {
     pub chord_px: f32,
     pub table_density: f32,
     pub fixed_factor: u32,
-    pub items_in_sight: u32,
+    pub patch_instances_in_sight: u32,
     pub run_count: u32,
     pub cell_count: u32,
     pub bin_count: u32,
@@ -109,7 +109,7 @@ pub struct Counters {
     pub failed: u32,
 }
 
-/// Tessellation of one item.
+/// Tessellation of one patch instance.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
 pub struct Factors {
@@ -127,18 +127,18 @@ pub struct GapCandidate {
     pub word: [u32; 2],
 }
 
-/// A run of consecutive items in sight: its first item, and that item's place among all items in sight.
+/// A run of consecutive patch instances in sight: its first one, and the place of that among all in sight.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
-pub struct ItemRun {
+pub struct PatchRun {
     pub place: u32,
-    pub item: u32,
+    pub patch_instance: u32,
 }
 
 /// One entry of the draw list.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
 pub struct SubPatch {
-    pub item: u32,
+    pub patch_instance: u32,
     pub place: u32,
 }

@@ -170,7 +170,7 @@ pub struct Face {
 pub struct FaceInstance {
     pub face: u32,
     pub instance: u32,
-    pub first_item: u32,
+    pub first_patch_instance: u32,
     pub first_bin: u32,
     pub first_cell: u32,
     pub first_curve: u32,
@@ -186,7 +186,7 @@ pub struct Instance {
     pub scale: f32,
     pub colour: u32,
     pub mirrored: u32,
-    pub shell: u32,
+    pub operand: u32,
     /// Padding to whole texels.
     pub unused: [u32; 3],
 }

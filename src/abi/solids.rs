@@ -1,11 +1,11 @@
 //! Boolean solids: leaves, their surfaces, and the tiles that may show them.
 
-pub use crate::abi::constants::shells::NO_PLANE;
+pub use crate::abi::constants::boundary_operands::NO_PLANE;
 #[cfg(any(test, feature = "baselines"))]
-pub use crate::abi::constants::shells::{FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_SKIRT, FRAGMENT_WITHIN};
+pub use crate::abi::constants::boundary_operands::{FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_SKIRT, FRAGMENT_WITHIN};
 pub use crate::abi::constants::solids::{
-    EXIT_FALSE, EXIT_TRUE, LEAF_CAP, LEAF_ELSEWHERE, LEAF_FALLS, LEAF_FLAG_BITS, LEAF_NEGATIVE, LEAF_PLANES,
-    LEAF_ROUNDS, LEAF_SHELL, LEAF_UNBOUNDED, OWN_PLANE, SIDE_MORE, SIDE_NEGATIVE, SIDE_PLANE, SIDE_SHIFT,
+    EXIT_FALSE, EXIT_TRUE, LEAF_BOUNDARY, LEAF_CAP, LEAF_ELSEWHERE, LEAF_FALLS, LEAF_FLAG_BITS, LEAF_NEGATIVE,
+    LEAF_PLANES, LEAF_ROUNDS, LEAF_UNBOUNDED, OWN_PLANE, SIDE_MORE, SIDE_NEGATIVE, SIDE_PLANE, SIDE_SHIFT,
     SURFACE_PLANE, SURFACE_QUADRIC, SURFACE_TORUS,
 };
 pub use crate::abi::constants::tiles::{BLOCK, LEAF_RUN, TILE};
@@ -48,7 +48,7 @@ pub struct Leaf {
 }
 
 impl Leaf {
-    /// One word with its first side, or its shell's number, and its flags.
+    /// One word with its first side, or its operand's number, and its flags.
     pub fn own(&self) -> u32 {
         self.first << LEAF_FLAG_BITS | self.flags & ((1 << LEAF_FLAG_BITS) - 1)
     }
@@ -77,7 +77,7 @@ pub struct TileLeaf {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
 pub struct OperandMesh {
-    pub shell: u32,
+    pub operand: u32,
     pub instance: u32,
     pub first_triangle: u32,
     pub first_plane: u32,
@@ -89,7 +89,7 @@ pub struct OperandMesh {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
 pub struct Fragment {
-    pub shell: u32,
+    pub operand: u32,
     pub depth: f32,
     pub what: u32,
     pub uv: u32,

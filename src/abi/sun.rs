@@ -34,7 +34,7 @@ pub struct SunTile {
 pub struct SunTriangle {
     pub corners: [[f32; 2]; 3],
     pub heights: [f32; 3],
-    pub shell: u32,
+    pub operand: u32,
     pub surface: u32,
     pub slack: f32,
 }

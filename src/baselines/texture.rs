@@ -28,7 +28,7 @@ use crate::twin;
 pub fn wanted_bytes(model: &Model, camera: &Camera, eighths: u32) -> Result<f64, UndrawnSolid> {
     let baseline = SceneOptions { trim: Some(TrimMethod::Texture { eighths }), ..SceneOptions::default() };
     let data = SceneData::new(model, SceneRequest { baseline, ..SceneRequest::default() })?;
-    let frame = Frame { cell_count: data.cell_items.len() as u32, bin_count: data.bin_count, ..Frame::default() };
+    let frame = Frame { cell_count: data.cell_instances.len() as u32, bin_count: data.bin_count, ..Frame::default() };
     let frame = seen_by(camera, frame);
     let pixels = camera.pixel_matrix();
     let views: Vec<_> = data.placements.iter().map(|p| view(pixels, *p)).collect();
@@ -38,7 +38,7 @@ pub fn wanted_bytes(model: &Model, camera: &Camera, eighths: u32) -> Result<f64,
         face_instances: &data.face_instances,
         faces: &data.faces,
         cells: &data.cells,
-        cell_items: &data.cell_items,
+        cell_instances: &data.cell_instances,
         ..twin::Scene::default()
     };
     let texels = f64::from(eighths) / 8.0;

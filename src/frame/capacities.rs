@@ -115,7 +115,7 @@ mod tests {
     }
 
     fn first() -> Capacities {
-        let counts = Counts { items: 1000, bins: 8, trim: Some(TakenWay::Table), ..Default::default() };
+        let counts = Counts { patch_instances: 1000, bins: 8, trim: Some(TakenWay::Table), ..Default::default() };
         Capacities::first(counts, u32::MAX)
     }
 
@@ -165,7 +165,7 @@ mod tests {
     #[test]
     fn what_no_buffer_holds_says_how_much_it_wants() {
         const HUNDRED_MILLION: u32 = 100_000_000;
-        let counts = Counts { items: HUNDRED_MILLION, trim: Some(TakenWay::Table), ..Default::default() };
+        let counts = Counts { patch_instances: HUNDRED_MILLION, trim: Some(TakenWay::Table), ..Default::default() };
         let rows = Counters { wanted_rows: HUNDRED_MILLION, failed: 4, ..Default::default() };
         assert!(counts.check(u32::MAX).is_ok());
         let grown = |range| first().grown(&rows, counts, (640, 480), both(range));

@@ -3,7 +3,7 @@
 use super::common::kernel::MOST_THREADS;
 use super::solids::lists::{Limits, Lists};
 use super::trim::BorderCells;
-use crate::abi::{EdgeItem, Factors, Leaf, MeshInstance, StripRows};
+use crate::abi::{Factors, Leaf, MeshInstance, PieceInstance, StripRows};
 use crate::picture::{Samples, TakenWay};
 use crate::scene::SceneData;
 use std::fmt;
@@ -11,7 +11,7 @@ use std::fmt;
 /// The scene's counts, summed over placed faces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Counts {
-    pub items: u32,
+    pub patch_instances: u32,
     pub cells: u32,
     pub bins: u32,
     /// v-strips with several bins.
@@ -27,7 +27,7 @@ pub(crate) struct Counts {
     /// Leaves of Boolean solids.
     pub leaves: u32,
     /// Operands of Boolean solids without equations.
-    pub shells: u32,
+    pub boundary_operands: u32,
     /// Patches bound some operands.
     pub operand_patches: bool,
     /// [`SolidWay::Blister`](crate::picture::SolidWay::Blister) draws the solids.
@@ -57,7 +57,7 @@ pub(crate) struct Counts {
     /// Number of things that cast no shadow, in a scene with a sun.
     pub shadowless: u32,
     /// Placed pieces of edges along which lines are drawn.
-    pub edge_items: u32,
+    pub piece_instances: u32,
     /// There are lines, along edges or silhouettes.
     pub lines: bool,
 }
@@ -67,17 +67,17 @@ impl Counts {
         let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         let by_view = !matches!(data.trim_way(), None | Some(TakenWay::Exact)) || data.has_lines();
         Self {
-            items: data.items.len() as u32,
-            cells: data.cell_items.len() as u32,
+            patch_instances: data.patch_instances.len() as u32,
+            cells: data.cell_instances.len() as u32,
             bins: data.bin_count,
             wide_strips: count(data.wide_strips.len()),
-            curves: data.curve_items.len() as u32,
+            curves: data.curve_instances.len() as u32,
             face_instances: data.face_instances.len() as u32,
             views_all: by_view || data.has_meshes() || data.has_operands || !data.solids.leaves.is_empty(),
             hides: data.hides(),
             has_surfaces: data.has_surfaces(),
             leaves: data.solids.leaves.len() as u32,
-            shells: data.solids.shell_leaves.len() as u32,
+            boundary_operands: data.solids.operand_leaves.len() as u32,
             operand_patches: data.has_operands,
             blister: data.solids.blister.is_some(),
             events: data.solids.is_by_events(),
@@ -94,15 +94,17 @@ impl Counts {
             thickness: data.thickness,
             open: count(data.open),
             shadowless: count(data.shadowless),
-            edge_items: data.edges.as_ref().map_or(0, |edges| count(edges.items.len())),
+            piece_instances: data.edges.as_ref().map_or(0, |edges| count(edges.piece_instances.len())),
             lines: data.has_lines(),
         }
     }
 
     /// What grows when a model joins the scene.
     fn sizes(&mut self) -> [&mut u32; 8] {
-        let Self { items, cells, bins, wide_strips, curves, face_instances, triangles, mesh_instances, .. } = self;
-        [items, cells, bins, wide_strips, curves, face_instances, triangles, mesh_instances]
+        let Self {
+            patch_instances, cells, bins, wide_strips, curves, face_instances, triangles, mesh_instances, ..
+        } = self;
+        [patch_instances, cells, bins, wide_strips, curves, face_instances, triangles, mesh_instances]
     }
 
     /// With those of a model that joins the scene: parts, and nothing that the scene has none of.
@@ -126,7 +128,7 @@ impl Counts {
 
     /// The crossings of rays with operands are stored.
     pub(crate) fn has_fragments(self) -> bool {
-        self.shells > 0 && !self.blister
+        self.boundary_operands > 0 && !self.blister
     }
 
     /// Limits of the event lists, for storage buffers of `range` bytes.
@@ -144,7 +146,7 @@ impl Counts {
         let border_cells = if self.operand_patches { size_of::<BorderCells>() } else { 0 };
         let word = size_of::<u32>();
         let all = [
-            ("patches", self.items, MOST_SEEN - 1, size_of::<Factors>(), FEWER_PARTS),
+            ("patches", self.patch_instances, MOST_SEEN - 1, size_of::<Factors>(), FEWER_PARTS),
             ("cells", self.cells, MOST_THREADS, word, EXACT),
             ("bins of v-strips", self.bins, MOST_THREADS, border_cells.max(size_of::<StripRows>()), EXACT),
             ("v-strips with several bins", self.wide_strips, MOST_THREADS, word, EXACT),
@@ -152,7 +154,13 @@ impl Counts {
             ("triangles", self.triangles, MOST_TRIANGLES, 3 * word, "draw fewer of the meshes, or coarser ones"),
             ("primitives", self.leaves, MOST_THREADS, size_of::<Leaf>(), FEWER_SOLIDS),
             ("placed meshes", self.mesh_instances, MOST_SEEN, size_of::<MeshInstance>(), FEWER_PARTS),
-            ("pieces of edges", self.edge_items, MOST_THREADS, size_of::<EdgeItem>(), "draw lines along fewer edges"),
+            (
+                "pieces of edges",
+                self.piece_instances,
+                MOST_THREADS,
+                size_of::<PieceInstance>(),
+                "draw lines along fewer edges",
+            ),
             ("sides of primitives", self.sides, MOST_SEEN, word, FEWER_SOLIDS),
         ];
         let over = all.into_iter().find_map(|(what, count, most, bytes, help)| {

@@ -18,7 +18,7 @@ impl Frame<'_> {
         let read = Access::COMPUTE_READ | Access::FRAGMENT_READ;
         let v = &self.stages.visibility;
         barrier::memory(cmd, read, Access::TRANSFER_READ);
-        into.record_pixels(cmd, &[&v.image, v.of_others()], at, PIXEL_BYTES);
+        into.record_pixels(cmd, &[&v.image, v.of_meshes_and_solids()], at, PIXEL_BYTES);
         barrier::memory(cmd, Access::TRANSFER_READ, read);
     }
 }

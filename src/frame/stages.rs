@@ -127,8 +127,8 @@ impl Stages {
         size: (u32, u32),
     ) -> Result<Self, GpuError> {
         let room = &Room { device, counts, capacities, size };
-        let (trimmed, edges) = ([counts.bins, counts.curves, capacities.trim.rows], counts.edge_items);
-        let scanned = [2 * counts.items, counts.face_instances, edges].into_iter().chain(trimmed);
+        let (trimmed, edges) = ([counts.bins, counts.curves, capacities.trim.rows], counts.piece_instances);
+        let scanned = [2 * counts.patch_instances, counts.face_instances, edges].into_iter().chain(trimmed);
         let scanned = scanned.fold(solids::buffers::scanned(room), u32::max);
         let p = passes;
         Ok(Self {

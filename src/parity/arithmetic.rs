@@ -157,7 +157,7 @@ fn compared_passes_are_not_contracted() {
         ("lines", &LINES_COMP),
         ("seen_squares", &SEEN_SQUARES_COMP),
         ("segments", &SEGMENTS_COMP),
-        ("sizes", &SIZES_COMP),
+        ("dispatch_arguments", &DISPATCH_ARGUMENTS_COMP),
         ("solid_blocks", &SOLID_BLOCKS_COMP),
         ("solid_fold", &SOLID_FOLD_COMP),
         ("solid_tiles", &SOLID_TILES_COMP),

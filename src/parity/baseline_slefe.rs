@@ -17,7 +17,7 @@ use glam::{DAffine3, DVec3, DVec4};
 /// Single precision, relative to the factor.
 const ROUNDING: f64 = 1e-4;
 
-/// The factor of each item of a model; 0 if it is not visible, infinite if there is no factor.
+/// The factor of each patch instance of a model; 0 if it is not visible, infinite if there is no factor.
 fn asked(model: &Model, camera: &Camera, tolerance_px: f64, segments: usize) -> Vec<f64> {
     let trials = Trial::of_model(model, camera, tolerance_px);
     trials.iter().map(|trial| if trial.tau == [0; 2] { 0.0 } else { ipass(trial, segments) }).collect()
@@ -31,7 +31,7 @@ fn is_near(tau: u32, asked: f64) -> bool {
 }
 
 fn compare(gpu: &Gpu, given: &Case, asked: &[f64], segments: usize) -> Result<Counters, Mismatch> {
-    let count = given.data.items.len();
+    let count = given.data.patch_instances.len();
     let s = SceneBuffers::new(gpu, given);
     let taus = gpu.upload("taus", &vec![u32::MAX; count]);
     let counters = gpu.upload("counters", &[Counters::default()]);
@@ -93,10 +93,10 @@ fn a_difference_is_seen() {
     let (model, cameras) = model_and_cameras();
     let asked = asked(&model, &cameras[0], 0.5, USUAL_SEGMENTS);
     let mut bent = Case::new(&model, &cameras[0], 0.5);
-    let item = 3; // of the ball, whose patches come first
-    let middle = bent.data.patches[item].first as usize + 4;
+    let patch_instance = 3; // of the ball, whose patches come first
+    let middle = bent.data.patches[patch_instance].first as usize + 4;
     bent.data.points[middle][2] += 1.0;
     let mismatch = compare(&gpu, &bent, &asked, USUAL_SEGMENTS).unwrap_err();
-    assert_eq!((mismatch.buffer, mismatch.index), ("taus", item));
+    assert_eq!((mismatch.buffer, mismatch.index), ("taus", patch_instance));
     gpu.finish();
 }

@@ -11,7 +11,7 @@ use crate::twin;
 use glam::{DAffine3, DVec3};
 
 fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
-    let count = given.data.items.len();
+    let count = given.data.patch_instances.len();
     let s = SceneBuffers::new(gpu, given);
     let taus = gpu.upload("taus", &vec![UNTOUCHED; count]);
     let counters = gpu.upload("counters", &[Counters::default()]);
@@ -60,13 +60,13 @@ fn seamless() -> Vec<(Camera, Case)> {
     (0..12).map(case).collect()
 }
 
-/// Whether every outward normal of an item's patch points away from the viewer: in double precision, at 13 by 13
-/// points.
-fn faces_away(case: &Case, camera: &Camera, item: usize) -> bool {
+/// Whether every outward normal of a patch instance's patch points away from the viewer: in double precision, at 13 by
+/// 13 points.
+fn faces_away(case: &Case, camera: &Camera, patch_instance: usize) -> bool {
     let data = &case.data;
-    let placed = data.face_instances[data.items[item] as usize];
+    let placed = data.face_instances[data.patch_instances[patch_instance] as usize];
     let face = data.faces[placed.face as usize];
-    let packed = &data.patches[face.first_patch as usize + item - placed.first_item as usize];
+    let packed = &data.patches[face.first_patch as usize + patch_instance - placed.first_patch_instance as usize];
     let patch = case.patch(packed);
     let to_model = data.placements[placed.instance as usize];
     let outward = if face.flags & FACE_SAME_SENSE != 0 { 1.0 } else { -1.0 } * to_model.matrix3.determinant().signum();
@@ -92,12 +92,12 @@ fn parity_of_what_looks_away() {
         all.data.cones.clear();
         let with = twin::bound::bound(&case.frame, &case.scene(), &mut Counters::default());
         let without = twin::bound::bound(&all.frame, &all.scene(), &mut Counters::default());
-        let left_out = || (0..with.len()).filter(|&item| with[item] != without[item]);
-        assert!(left_out().all(|item| with[item] == 0));
+        let left_out = || (0..with.len()).filter(|&patch_instance| with[patch_instance] != without[patch_instance]);
+        assert!(left_out().all(|patch_instance| with[patch_instance] == 0));
         let share = left_out().count() as f64 / with.len() as f64;
         assert!((0.15..0.5).contains(&share), "{share} of the patches are left out");
-        for item in left_out() {
-            assert!(faces_away(case, camera, item), "item {item}");
+        for patch_instance in left_out() {
+            assert!(faces_away(case, camera, patch_instance), "patch_instance {patch_instance}");
         }
     }
     let case = &cases[1].1;
@@ -130,9 +130,9 @@ fn a_difference_is_seen() {
     let gpu = Gpu::new();
     let case = &cases()[0];
     let mut bent = case.clone();
-    let item = 3; // of the ball, whose patches come first
-    bent.data.patches[item].bend[0] *= 16.0; // four times the factor, whatever it was
+    let patch_instance = 3; // of the ball, whose patches come first
+    bent.data.patches[patch_instance].bend[0] *= 16.0; // four times the factor, whatever it was
     let mismatch = compare(&gpu, &bent, case).unwrap_err();
-    assert_eq!((mismatch.buffer, mismatch.index), ("taus", item));
+    assert_eq!((mismatch.buffer, mismatch.index), ("taus", patch_instance));
     gpu.finish();
 }

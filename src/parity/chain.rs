@@ -10,7 +10,7 @@ use crate::twin::split::Split;
 /// The contents of a buffer that no pass has written.
 pub(super) const UNTOUCHED: u32 = 0xA5A5_A5A5;
 /// [`UNTOUCHED`] as an entry of the draw list.
-pub(super) const UNTOUCHED_SUB_PATCH: SubPatch = SubPatch { item: UNTOUCHED, place: UNTOUCHED };
+pub(super) const UNTOUCHED_SUB_PATCH: SubPatch = SubPatch { patch_instance: UNTOUCHED, place: UNTOUCHED };
 
 /// Every buffer of a frame.
 #[derive(Clone, Debug, Default)]
@@ -66,8 +66,9 @@ impl Chain {
         c.strip_starts = starts(&c.strip_counts);
         c.segment_counts = twin::segments::segments(frame, scene, &c.density, &c.strip_starts);
         c.segment_starts = starts(&c.segment_counts);
-        c.dispatches = twin::sizes::sizes(frame, &c.strip_starts, &c.segment_starts, &mut c.counters);
-        c.strips = twin::sizes::strips(&c.strip_starts, &c.density.seen_bins);
+        c.dispatches =
+            twin::dispatch_arguments::dispatch_arguments(frame, &c.strip_starts, &c.segment_starts, &mut c.counters);
+        c.strips = twin::dispatch_arguments::strips(&c.strip_starts, &c.density.seen_bins);
         (c.row_counts, c.rows_add_up) = twin::cross::count(frame, scene, &c.strips, &c.segment_starts);
         c.border_cells = twin::cross::border_cells(frame, scene, &c.strips, &c.segment_starts);
         c.row_windings = c.rows_add_up.clone();

@@ -38,7 +38,7 @@ fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> Left {
         faces: &s.faces,
         curves: &s.curves,
         curve_points: &s.curve_points,
-        curve_items: &s.curve_items,
+        curve_instances: &s.curve_instances,
         strips: &strips,
         segment_starts: &segment_starts,
         row_starts: &row_starts,

@@ -21,12 +21,12 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
         face_instances: &s.face_instances,
         faces: &s.faces,
         cells: &s.cells,
-        cell_items: &s.cell_items,
+        cell_instances: &s.cell_instances,
         strip_heights: &strip_heights,
         face_speeds: &face_speeds,
         seen_bins: bins.then_some(&seen_bins),
     };
-    gpu.run(|cmd| pass.record(cmd, &bindings, given.data.cell_items.len() as u32));
+    gpu.run(|cmd| pass.record(cmd, &bindings, given.data.cell_instances.len() as u32));
     let twin = twin::density::density(&expected.frame, &expected.scene());
     floats("strip heights", &gpu.read(&strip_heights, strips), &twin.strip_heights, gpu.slack())?;
     if bins {

@@ -37,7 +37,7 @@ impl View {
         let edges = self.data.edges.as_ref().unwrap();
         Given {
             views: &self.views,
-            items: &edges.items,
+            piece_instances: &edges.piece_instances,
             pieces: &edges.pieces,
             points: &edges.points,
             lines: &edges.lines,
@@ -61,10 +61,11 @@ fn views() -> Vec<View> {
 }
 
 fn compare(gpu: &Gpu, given: &View, expected: &View) -> Result<(), Mismatch> {
-    let (edges, n) = (given.data.edges.as_ref().unwrap(), given.given().items.len());
+    let (edges, n) = (given.data.edges.as_ref().unwrap(), given.given().piece_instances.len());
     let frame = gpu.upload("frame", &[given.frame]);
     let views = gpu.upload("views", &given.views);
-    let [items, pieces] = [gpu.upload("items", &edges.items), gpu.upload("pieces", &edges.pieces)];
+    let [piece_instances, pieces] =
+        [gpu.upload("piece_instances", &edges.piece_instances), gpu.upload("pieces", &edges.pieces)];
     let points = gpu.upload_texels("points", &edges.points, Texel::F32x4);
     let lines = gpu.upload("lines", &edges.lines);
     let (twin, clamps) = divide(&expected.frame, &expected.given());
@@ -79,7 +80,7 @@ fn compare(gpu: &Gpu, given: &View, expected: &View) -> Result<(), Mismatch> {
     let bindings = Bindings {
         frame: &frame,
         views: &views,
-        items: &items,
+        piece_instances: &piece_instances,
         pieces: &pieces,
         points: &points,
         counts: &chord_counts,
@@ -90,7 +91,7 @@ fn compare(gpu: &Gpu, given: &View, expected: &View) -> Result<(), Mismatch> {
         draw: &draw,
     };
     let pass = Divide::new(gpu.device()).unwrap();
-    let params = Params { item_count: n as u32, margin_px: MARGIN_PX };
+    let params = Params { instance_count: n as u32, margin_px: MARGIN_PX };
     gpu.run(|cmd| pass.count(cmd, &bindings, params));
     gpu.run(|cmd| pass.emit(cmd, &bindings, params, ROOM));
     counts("edge chord counts", &gpu.read(&chord_counts, n), &twin_counts, gpu.slack())?;
@@ -119,8 +120,12 @@ fn a_difference_is_seen() {
     let gpu = Gpu::new();
     let (view, mut bent) = (views().remove(0), views().remove(0));
     let edges = bent.data.edges.as_mut().unwrap();
-    let item = edges.items.iter().position(|item| edges.pieces[item.piece as usize].degree > 1).unwrap();
-    let piece = edges.pieces[edges.items[item].piece as usize];
+    let piece_instance = edges
+        .piece_instances
+        .iter()
+        .position(|piece_instance| edges.pieces[piece_instance.piece as usize].degree > 1)
+        .unwrap();
+    let piece = edges.pieces[edges.piece_instances[piece_instance].piece as usize];
     edges.points[piece.first as usize + 1][2] += 50.0;
     assert!(compare(&gpu, &bent, &view).is_err());
     gpu.finish();

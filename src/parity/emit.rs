@@ -3,7 +3,7 @@
 use super::chain::{Chain, UNTOUCHED_SUB_PATCH};
 use super::harness::{Gpu, Mismatch, same};
 use super::shapes::cases;
-use crate::abi::{Counters, Frame, ItemRun};
+use crate::abi::{Counters, Frame, PatchRun};
 use crate::frame::tessellation::emit::{Bindings, Emit};
 use crate::twin;
 
@@ -26,9 +26,9 @@ fn compare(gpu: &Gpu, frame: &Frame, given: &Chain, expected: &Chain) -> Result<
         sub_patches: &sub_patches,
         draws: &draws,
         counters: &counters,
-        in_sight: &gpu.upload("items in sight", &[ItemRun::default()]),
+        in_sight: &gpu.upload("patch_instances in sight", &[PatchRun::default()]),
     };
-    gpu.run(|cmd| pass.record(cmd, &bindings, frame.items_in_sight));
+    gpu.run(|cmd| pass.record(cmd, &bindings, frame.patch_instances_in_sight));
     let (mut twin_list, mut twin_draws, mut twin_counters) = (list, empty, Counters::default());
     twin::emit::emit(
         frame,
@@ -59,13 +59,13 @@ fn a_difference_is_seen() {
     let gpu = Gpu::new();
     let frame = &cases()[1].frame;
     let chain = Chain::new(&cases()[1]);
-    // an item in several sub-patches, plain or trimmed
+    // a patch instance in several sub-patches, plain or trimmed
     let slot = chain.split.sub_patch_counts.iter().position(|&count| count > 1).unwrap();
     let mut other = chain.clone();
-    other.split.factors[slot % frame.items_in_sight as usize].splits += 1;
+    other.split.factors[slot % frame.patch_instances_in_sight as usize].splits += 1;
     assert_eq!(compare(&gpu, frame, &other, &chain).unwrap_err().buffer, "sub-patches");
     let mut other = chain.clone();
-    // all later items come one draw later
+    // all later patch instances come one draw later
     other.vertex_starts[slot + 1..].iter_mut().for_each(|start| *start += frame.draw_vertices);
     assert_eq!(compare(&gpu, frame, &other, &chain).unwrap_err().buffer, "draws");
     gpu.finish();

@@ -1,57 +1,61 @@
-//! Parity of passes `bound`, `split` and `emit` where some placed parts are out of sight. The twins compute all items.
-//! For items in sight the passes write the same, and for the others nothing. Exact.
+//! Parity of passes `bound`, `split` and `emit` where some placed parts are out of sight. The twins compute all patch
+//! instances. For patch instances in sight the passes write the same, and for the others nothing. Exact.
 
 use super::Case;
 use super::chain::{Chain, UNTOUCHED, UNTOUCHED_SUB_PATCH};
 use super::harness::{Gpu, Mismatch, SceneBuffers, halves, same};
 use super::shapes::model_and_cameras;
-use crate::abi::{Counters, Factors, Frame, ItemRun};
+use crate::abi::{Counters, Factors, Frame, PatchRun};
 use crate::frame::tessellation::{bound, emit, split};
 use crate::twin;
-use crate::twin::in_sight::item_at;
+use crate::twin::in_sight::patch_instance_at;
 use std::ops::Range;
 
-/// The items of each placed part.
+/// The patch instances of each placed part.
 fn parts(case: &Case) -> Vec<Range<u32>> {
     let of = &case.data.face_instances;
-    let firsts: Vec<u32> = of.chunk_by(|a, b| a.instance == b.instance).map(|faces| faces[0].first_item).collect();
-    let ends = firsts[1..].iter().copied().chain([case.data.items.len() as u32]);
+    let firsts: Vec<u32> =
+        of.chunk_by(|a, b| a.instance == b.instance).map(|faces| faces[0].first_patch_instance).collect();
+    let ends = firsts[1..].iter().copied().chain([case.data.patch_instances.len() as u32]);
     firsts.iter().copied().zip(ends).map(|(first, end)| first..end).collect()
 }
 
 /// The case with two placed parts of every three in sight.
 fn two_thirds(mut case: Case) -> Case {
-    let (mut runs, mut place): (Vec<ItemRun>, u32) = (Vec::new(), 0);
-    for (nth, items) in parts(&case).into_iter().enumerate().filter(|(nth, _)| nth % 3 != 0) {
+    let (mut runs, mut place): (Vec<PatchRun>, u32) = (Vec::new(), 0);
+    for (nth, patch_instances) in parts(&case).into_iter().enumerate().filter(|(nth, _)| nth % 3 != 0) {
         if nth % 3 == 1 {
-            runs.push(ItemRun { place, item: items.start });
+            runs.push(PatchRun { place, patch_instance: patch_instances.start });
         }
-        place += items.end - items.start;
+        place += patch_instances.end - patch_instances.start;
     }
-    case.frame = Frame { items_in_sight: place, run_count: runs.len() as u32, ..case.frame };
+    case.frame = Frame { patch_instances_in_sight: place, run_count: runs.len() as u32, ..case.frame };
     case.runs = runs;
     case
 }
 
-/// The values of the items in sight, in the order of their places.
+/// The values of the patch instances in sight, in the order of their places.
 fn gathered<T: Copy>(case: &Case, all: &[T]) -> Vec<T> {
-    (0..case.frame.items_in_sight).map(|place| all[item_at(&case.runs, place) as usize]).collect()
+    (0..case.frame.patch_instances_in_sight).map(|place| all[patch_instance_at(&case.runs, place) as usize]).collect()
 }
 
-/// The values of all items, with `untouched` for those out of sight.
+/// The values of all patch instances, with `untouched` for those out of sight.
 fn masked<T: Copy>(case: &Case, all: &[T], untouched: T) -> Vec<T> {
     let mut left = vec![untouched; all.len()];
-    (0..case.frame.items_in_sight).map(|place| item_at(&case.runs, place) as usize).for_each(|i| left[i] = all[i]);
+    (0..case.frame.patch_instances_in_sight)
+        .map(|place| patch_instance_at(&case.runs, place) as usize)
+        .for_each(|i| left[i] = all[i]);
     left
 }
 
-/// The GPU gets `given`; the twins get `case`, which also decides which items are in sight.
+/// The GPU gets `given`; the twins get `case`, which also decides which patch instances are in sight.
 fn compare(gpu: &Gpu, given: &Case, case: &Case) -> Result<(), Mismatch> {
     let all = Chain::new(&Case {
-        frame: Frame { items_in_sight: case.data.items.len() as u32, ..case.frame },
+        frame: Frame { patch_instances_in_sight: case.data.patch_instances.len() as u32, ..case.frame },
         ..case.clone()
     });
-    let (s, n, total) = (SceneBuffers::new(gpu, given), case.frame.items_in_sight, case.data.items.len());
+    let (s, n, total) =
+        (SceneBuffers::new(gpu, given), case.frame.patch_instances_in_sight, case.data.patch_instances.len());
 
     let taus = gpu.upload("taus", &vec![UNTOUCHED; total]);
     let counters = gpu.upload("counters", &[Counters::default()]);
@@ -97,7 +101,7 @@ fn compare(gpu: &Gpu, given: &Case, case: &Case) -> Result<(), Mismatch> {
         in_sight: &s.in_sight,
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, n));
-    // the twin gets only the items in sight, and numbers them by their places
+    // the twin gets only the patch instances in sight, and numbers them by their places
     let (mut twin_list, mut twin_draws, mut twin_counters) = (list, empty, zero);
     twin::emit::emit(
         &case.frame,
@@ -107,8 +111,8 @@ fn compare(gpu: &Gpu, given: &Case, case: &Case) -> Result<(), Mismatch> {
         (&mut twin_list, &mut twin_draws),
         &mut twin_counters,
     );
-    let listed = twin_list.iter_mut().filter(|sub_patch| sub_patch.item != UNTOUCHED);
-    listed.for_each(|sub_patch| sub_patch.item = item_at(&case.runs, sub_patch.item));
+    let listed = twin_list.iter_mut().filter(|sub_patch| sub_patch.patch_instance != UNTOUCHED);
+    listed.for_each(|sub_patch| sub_patch.patch_instance = patch_instance_at(&case.runs, sub_patch.patch_instance));
     same("sub-patches", &gpu.read(&sub_patches, twin_list.len()), &twin_list)?;
     same("draws", &gpu.read(&draws, twin_draws.len()), &twin_draws)?;
     same("counters", &gpu.read(&counters, 1), &[twin_counters])
@@ -125,7 +129,9 @@ fn cases() -> Vec<Case> {
 fn parity() {
     let gpu = Gpu::new();
     for case in cases() {
-        assert!(case.runs.len() > 1 && (case.frame.items_in_sight as usize) < case.data.items.len());
+        assert!(
+            case.runs.len() > 1 && (case.frame.patch_instances_in_sight as usize) < case.data.patch_instances.len()
+        );
         compare(&gpu, &case, &case).unwrap();
     }
     gpu.finish();
@@ -136,15 +142,15 @@ fn a_difference_is_seen() {
     let gpu = Gpu::new();
     let case = &cases()[0];
     let mut other = case.clone();
-    other.runs[1].item += 1;
+    other.runs[1].patch_instance += 1;
     assert_eq!(compare(&gpu, &other, case).unwrap_err().buffer, "taus");
     gpu.finish();
 }
 
-/// Each place has the item that was counted by hand.
+/// Each place has the patch instance that was counted by hand.
 #[test]
-fn places_have_the_items_of_their_runs() {
-    let runs = [(0, 3), (2, 9), (3, 20)].map(|(place, item)| ItemRun { place, item });
-    let items: Vec<u32> = (0..6).map(|place| item_at(&runs, place)).collect();
-    assert_eq!(items, [3, 4, 9, 20, 21, 22]);
+fn places_have_the_patch_instances_of_their_runs() {
+    let runs = [(0, 3), (2, 9), (3, 20)].map(|(place, patch_instance)| PatchRun { place, patch_instance });
+    let patch_instances: Vec<u32> = (0..6).map(|place| patch_instance_at(&runs, place)).collect();
+    assert_eq!(patch_instances, [3, 4, 9, 20, 21, 22]);
 }

@@ -40,6 +40,8 @@ mod cross;
 #[cfg(feature = "headless")]
 mod density;
 #[cfg(feature = "headless")]
+mod dispatch_arguments;
+#[cfg(feature = "headless")]
 mod edges;
 #[cfg(feature = "headless")]
 mod emit;
@@ -63,8 +65,6 @@ mod operand_sort;
 mod reset;
 #[cfg(feature = "headless")]
 mod segments;
-#[cfg(feature = "headless")]
-mod sizes;
 #[cfg(feature = "headless")]
 mod solid_lists;
 #[cfg(feature = "headless")]

@@ -35,7 +35,7 @@ fn taus(case: &Case) -> Vec<u32> {
 }
 
 fn compare_cull_early(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<(), Mismatch> {
-    let n = case.data.items.len();
+    let n = case.data.patch_instances.len();
     let s = SceneBuffers::new(gpu, case);
     let mut twin_taus = taus(case);
     let (hidden, taus) = (gpu.upload("hidden", given), gpu.upload("taus", &twin_taus));
@@ -59,7 +59,7 @@ fn parity_of_hide_is_exact_and_sees_a_difference() {
     let gpu = Gpu::new();
     let case = &crowd()[0];
     let mut random = Random::new(9);
-    let hidden: Vec<u32> = case.data.items.iter().map(|_| u32::from(random.integer(0, 3) > 0)).collect();
+    let hidden: Vec<u32> = case.data.patch_instances.iter().map(|_| u32::from(random.integer(0, 3) > 0)).collect();
     compare_cull_early(&gpu, case, &hidden, &hidden).unwrap();
     let mut other = hidden.clone();
     let seen = taus(case).iter().position(|tau| *tau != 0).unwrap();
@@ -104,14 +104,15 @@ fn parity_of_farthest_is_exact_and_sees_a_difference() {
     gpu.finish();
 }
 
-/// The pass, against the twin with and without slack; returns the numbers of hidden items and of visible ones.
+/// The pass, against the twin with and without slack; returns the numbers of hidden patch instances and of visible
+/// ones.
 fn compare_cull_late(
     gpu: &Gpu,
     case: &Case,
     given: &Farthest,
     expected: &Farthest,
 ) -> Result<(usize, usize), Mismatch> {
-    let n = case.data.items.len();
+    let n = case.data.patch_instances.len();
     let s = SceneBuffers::new(gpu, case);
     let mut old = taus(case);
     // every third was not drawn before
@@ -129,7 +130,7 @@ fn compare_cull_late(
         faces: &s.faces,
         patches: &s.patches,
         points: &s.points,
-        items: &s.items,
+        patch_instances: &s.patch_instances,
         farthest: &farthest,
         taus: &taus,
         hidden: &hidden,
@@ -139,10 +140,13 @@ fn compare_cull_late(
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
     let on_gpu: Vec<u32> = gpu.read(&hidden, n);
-    let twin = |item: usize, slack: f64| {
-        old[item] != 0 && lies_behind(&case.frame, &case.scene(), item, old[item], expected, slack)
+    let twin = |patch_instance: usize, slack: f64| {
+        old[patch_instance] != 0
+            && lies_behind(&case.frame, &case.scene(), patch_instance, old[patch_instance], expected, slack)
     };
-    let is_wrong = |(item, &behind): (usize, &u32)| if behind == 1 { !twin(item, -SLACK) } else { twin(item, SLACK) };
+    let is_wrong = |(patch_instance, &behind): (usize, &u32)| {
+        if behind == 1 { !twin(patch_instance, -SLACK) } else { twin(patch_instance, SLACK) }
+    };
     if let Some((index, behind)) = on_gpu.iter().enumerate().find(|found| is_wrong(*found)) {
         return Err(Mismatch { buffer: "hidden", index, values: format!("GPU {behind}") });
     }

@@ -4,19 +4,19 @@ use super::Random;
 use super::harness::{Gpu, Mismatch, same};
 use crate::abi::{Counters, FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_SKIRT, Fragment, Frame, Leaf};
 use crate::frame::solids::operand_sort::{Bindings, OperandSort};
-use crate::twin::operand_sort::{Shells, operand_sort};
+use crate::twin::operand_sort::{BoundaryOperands, operand_sort};
 
 const WIDTH: u32 = 70;
 /// Height of the band, which is not the first one: three rows of tiles.
 const HEIGHT: u32 = 37;
 const TOP: u32 = 48;
 
-/// Shells 0 and 1 are meshes, 2 and 3 have faces; the near plane cuts 1 and 3, the far plane 3.
+/// Boundary operands 0 and 1 are meshes, 2 and 3 have faces; the near plane cuts 1 and 3, the far plane 3.
 struct Case {
     frame: Frame,
     leaves: Vec<Leaf>,
     centres: Vec<[f32; 3]>,
-    shell_leaves: Vec<u32>,
+    operand_leaves: Vec<u32>,
     starts: Vec<u32>,
     fragments: Vec<Fragment>,
 }
@@ -28,15 +28,15 @@ fn case(random: &mut Random, most: u32) -> Case {
     let (mut starts, mut fragments) = (vec![0], Vec::new());
     for _ in 0..WIDTH * HEIGHT {
         for _ in 0..random.integer(0, most) {
-            let shell = random.integer(0, 3);
+            let operand = random.integer(0, 3);
             let mut bits = if random.integer(0, 1) == 0 { FRAGMENT_LEAVES } else { 0 };
-            if shell > 1 {
+            if operand > 1 {
                 bits |= FRAGMENT_PATCH | if random.integer(0, 2) == 0 { FRAGMENT_SKIRT } else { 0 };
             }
             // few depths, so that some are equal
             let depth = 1.0 + random.integer(0, 40) as f32;
             fragments.push(Fragment {
-                shell: shell | bits,
+                operand: operand | bits,
                 depth,
                 what: random.integer(0, 9),
                 uv: random.integer(0, 9),
@@ -54,7 +54,7 @@ fn case(random: &mut Random, most: u32) -> Case {
         fragment_capacity: fragments.len() as u32,
         ..Frame::default()
     };
-    Case { frame, leaves, centres, shell_leaves: vec![0, 1, 2, 3], starts, fragments }
+    Case { frame, leaves, centres, operand_leaves: vec![0, 1, 2, 3], starts, fragments }
 }
 
 /// The fragments that stay, pixel by pixel.
@@ -67,7 +67,7 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
     let frame = gpu.upload("frame", &[given.frame]);
     let leaves = gpu.upload("leaves", &given.leaves);
     let leaf_centres = gpu.upload("centres", &given.centres);
-    let shell_leaves = gpu.upload("shell leaves", &given.shell_leaves);
+    let operand_leaves = gpu.upload("operand leaves", &given.operand_leaves);
     let starts = gpu.upload("starts", &given.starts);
     let counts = gpu.upload("counts", &vec![0u32; given.starts.len() - 1]);
     let fragments = gpu.upload("fragments", &given.fragments);
@@ -77,7 +77,7 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
         frame: &frame,
         leaves: &leaves,
         leaf_centres: &leaf_centres,
-        shell_leaves: &shell_leaves,
+        operand_leaves: &operand_leaves,
         starts: &starts,
         counts: &counts,
         fragments: &fragments,
@@ -85,9 +85,10 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, 0..WIDTH, 0..HEIGHT));
     let c = expected;
-    let shells = Shells { leaves: &c.leaves, centres: &c.centres, shell_leaves: &c.shell_leaves };
+    let boundary_operands =
+        BoundaryOperands { leaves: &c.leaves, centres: &c.centres, operand_leaves: &c.operand_leaves };
     let (mut twin, mut twin_counters) = (c.fragments.clone(), Counters::default());
-    let twin_counts = operand_sort(&c.frame, shells, &c.starts, &mut twin, &mut twin_counters);
+    let twin_counts = operand_sort(&c.frame, boundary_operands, &c.starts, &mut twin, &mut twin_counters);
     let gpu_counts = gpu.read(&counts, twin_counts.len());
     same("counts", &gpu_counts, &twin_counts)?;
     let found = gpu.read(&fragments, twin.len());
@@ -124,21 +125,22 @@ fn parity() {
 }
 
 fn fragment(bits: u32, depth: f32) -> Fragment {
-    Fragment { shell: 2 | FRAGMENT_PATCH | bits, depth, ..Fragment::default() }
+    Fragment { operand: 2 | FRAGMENT_PATCH | bits, depth, ..Fragment::default() }
 }
 
-/// Depths that stay of one ray through shell 2, and the counters.
+/// Depths that stay of one ray through operand 2, and the counters.
 fn one(fragments: &[Fragment]) -> (Vec<f32>, u32, u32) {
     one_from(-99.0, fragments)
 }
 
-/// The same with a near plane; the shell's box is from 20 to 60.
+/// The same with a near plane; the operand's box is from 20 to 60.
 fn one_from(near: f32, fragments: &[Fragment]) -> (Vec<f32>, u32, u32) {
     let c = case(&mut Random::new(1), 1);
-    let shells = Shells { leaves: &c.leaves, centres: &c.centres, shell_leaves: &c.shell_leaves };
+    let boundary_operands =
+        BoundaryOperands { leaves: &c.leaves, centres: &c.centres, operand_leaves: &c.operand_leaves };
     let (mut all, mut counters) = (fragments.to_vec(), Counters::default());
     let frame = Frame { fragment_capacity: 99, near, ..c.frame };
-    let count = operand_sort(&frame, shells, &[0, all.len() as u32], &mut all, &mut counters)[0];
+    let count = operand_sort(&frame, boundary_operands, &[0, all.len() as u32], &mut all, &mut counters)[0];
     (all[..count as usize].iter().map(|f| f.depth).collect(), counters.mended, counters.unpaired)
 }
 

@@ -9,7 +9,7 @@ use crate::gpu::Texel;
 use crate::twin;
 
 fn compare(gpu: &Gpu, given: &Case, expected: &Case, chain: &Chain) -> Result<(), Mismatch> {
-    let n = given.data.curve_items.len();
+    let n = given.data.curve_instances.len();
     let s = SceneBuffers::new(gpu, given);
     let face_speeds = gpu.upload("face speeds", &chain.density.face_speeds);
     let strip_starts = gpu.upload_texels("strip starts", &chain.strip_starts, Texel::Words);
@@ -22,7 +22,7 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case, chain: &Chain) -> Result<()
         face_instances: &s.face_instances,
         faces: &s.faces,
         curves: &s.curves,
-        curve_items: &s.curve_items,
+        curve_instances: &s.curve_instances,
         strip_starts: &strip_starts,
         face_speeds: &face_speeds,
         segment_counts: &segment_counts,
@@ -52,9 +52,9 @@ fn a_difference_is_seen() {
     let gpu = Gpu::new();
     let case = &cases()[0];
     let mut bent = case.clone();
-    let item = case.data.curves.iter().position(|c| c.degree == 3).unwrap();
-    bent.data.curves[item].bend[0] *= 4.0;
+    let curve_instance = case.data.curves.iter().position(|c| c.degree == 3).unwrap();
+    bent.data.curves[curve_instance].bend[0] *= 4.0;
     let mismatch = compare(&gpu, &bent, case, &Chain::new(case)).unwrap_err();
-    assert_eq!(mismatch.index, item);
+    assert_eq!(mismatch.index, curve_instance);
     gpu.finish();
 }

@@ -38,7 +38,7 @@ fn parity() {
         let (case, mut random) = (&cases()[0], Random::new(1));
         for _ in 0..20 {
             let mut tau = || (1 << random.integer(0, 12)).max(random.integer(1, 4096)).min(random.integer(1, 4096));
-            let mut taus: Vec<u32> = case.data.items.iter().map(|_| tau() | tau() << 16).collect();
+            let mut taus: Vec<u32> = case.data.patch_instances.iter().map(|_| tau() | tau() << 16).collect();
             taus.iter_mut().step_by(5).for_each(|t| *t = 0);
             compare(&gpu, case, &taus, &taus).unwrap();
         }
@@ -59,7 +59,7 @@ fn parity_of_shared_sides() {
     compare(&gpu, &case, &taus, &taus).unwrap();
     for largest in [1, 3, 20, 64, 300, 4096] {
         let mut tau = || random.integer(1, largest);
-        let mut taus: Vec<u32> = case.data.items.iter().map(|_| tau() | tau() << 16).collect();
+        let mut taus: Vec<u32> = case.data.patch_instances.iter().map(|_| tau() | tau() << 16).collect();
         taus.iter_mut().step_by(5).for_each(|t| *t = 0);
         compare(&gpu, &case, &taus, &taus).unwrap();
         // a changed patch changes the other patches at its sides

@@ -107,7 +107,7 @@ pub(super) fn drawn(gpu: &Gpu, case: &Case, random: &mut Random, count: u32, siz
 fn compare(
     gpu: &Gpu,
     case: &Case,
-    (visibility, others): (&Image, &Image),
+    (visibility, meshes_and_solids): (&Image, &Image),
     sees: impl Fn(usize) -> bool,
 ) -> Result<Vec<u32>, Mismatch> {
     let (width, height) = visibility.size();
@@ -115,7 +115,7 @@ fn compare(
     let squares = gpu.upload("seen squares", &vec![99u32; tiles]);
     let pass = SeenSquares::new(gpu.device()).unwrap();
     let frame = &gpu.upload("frame", &[case.frame]);
-    gpu.run(|cmd| pass.record(cmd, &Bindings { frame, visibility, others, squares: &squares }));
+    gpu.run(|cmd| pass.record(cmd, &Bindings { frame, visibility, meshes_and_solids, squares: &squares }));
     let found = gpu.read(&squares, tiles);
     same("seen squares", &found, &seen_squares([width, height], |[x, y]| sees((y * width + x) as usize)))?;
     Ok(found)

@@ -32,7 +32,7 @@ impl Renderer {
             passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
             reused: slot.reused,
             trim: slot.counts.trim.and_then(TakenWay::reported),
-            patches: u64::from(slot.counts.items),
+            patches: u64::from(slot.counts.patch_instances),
             triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),
             sub_patches: u64::from(c.plain) + u64::from(c.trimmed),
             trim_rows: u64::from(c.rows),

@@ -26,10 +26,10 @@ const SCOPES: u32 = 17;
 pub(super) struct Slot {
     pub(super) constants: Buffer,
     pub(super) views: Option<TexelBuffer>,
-    /// [`ItemRun`](abi::ItemRun)s of the items in sight.
+    /// [`PatchRun`](abi::PatchRun)s of the patch instances in sight.
     pub(super) in_sight: Option<Buffer>,
-    /// How many items are in sight.
-    pub(super) items_in_sight: u32,
+    /// How many patch instances are in sight.
+    pub(super) patch_instances_in_sight: u32,
     /// Constants and views for each of a pixel's samples, where there are several.
     pub(super) samples: Vec<ViewBuffers>,
     /// What the trim table is made of, where that is another view.
@@ -66,7 +66,7 @@ impl Slot {
             constants: upload_buffer(device, "frame constants", size_of::<abi::Frame>() as u64)?,
             views: None,
             in_sight: None,
-            items_in_sight: 0,
+            patch_instances_in_sight: 0,
             samples: Vec::new(),
             table: None,
             centres: SlotCentres::default(),
@@ -133,17 +133,17 @@ impl Slot {
         Ok(())
     }
 
-    /// Writes the runs of the items in sight.
+    /// Writes the runs of the patch instances in sight.
     fn write_in_sight(&mut self, device: &Device, in_sight: &InSight) -> Result<(), GpuError> {
         let bytes = size_of_val(in_sight.runs.as_slice()) as u64;
         if self.in_sight.as_ref().is_none_or(|b| b.bytes() < bytes) {
-            let made = upload_buffer(device, "items in sight", bytes.next_power_of_two())?;
+            let made = upload_buffer(device, "patch_instances in sight", bytes.next_power_of_two())?;
             self.retired.extend(self.in_sight.replace(made).map(Retired::Buffer));
         }
         if let Some(buffer) = &mut self.in_sight {
             buffer.write(0, &in_sight.runs);
         }
-        self.items_in_sight = in_sight.items;
+        self.patch_instances_in_sight = in_sight.patch_instances;
         Ok(())
     }
 

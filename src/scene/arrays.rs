@@ -45,7 +45,7 @@ macro_rules! at {
             EditTarget::Faces => Some($texels(& $($mutable)? scene.faces)),
             EditTarget::FaceInstances => Some($texels(& $($mutable)? scene.face_instances)),
             EditTarget::Instances => Some($texels(& $($mutable)? scene.instances)),
-            EditTarget::Items => Some($texels(& $($mutable)? scene.items)),
+            EditTarget::Items => Some($texels(& $($mutable)? scene.patch_instances)),
             EditTarget::Sources => scene.sources.$as_ref().map($texels),
             EditTarget::Mesh(nth) => scene.meshes.$as_ref().and_then(|meshes| match nth {
                 0 => Some($structs(& $($mutable)? meshes.meshes)),
@@ -57,13 +57,15 @@ macro_rules! at {
             }),
             of_trims => match (of_trims, scene.trims.$as_ref()) {
                 (EditTarget::Cells, Some(Trims::Table(trims))) => Some($structs(& $($mutable)? trims.cells)),
-                (EditTarget::CellItems, Some(Trims::Table(trims))) => Some($structs(& $($mutable)? trims.cell_items)),
+                (EditTarget::CellInstances, Some(Trims::Table(trims))) => {
+                    Some($structs(& $($mutable)? trims.cell_instances))
+                }
                 (EditTarget::Curves, Some(Trims::Table(trims))) => Some($texels(& $($mutable)? trims.curves)),
                 (EditTarget::CurvePoints, Some(Trims::Table(trims))) => {
                     Some($texels(& $($mutable)? trims.curve_points))
                 }
-                (EditTarget::CurveItems, Some(Trims::Table(trims))) => {
-                    Some($texels(& $($mutable)? trims.curve_items))
+                (EditTarget::CurveInstances, Some(Trims::Table(trims))) => {
+                    Some($texels(& $($mutable)? trims.curve_instances))
                 }
                 (EditTarget::WideStrips, Some(Trims::Table(trims))) => trims.wide_strips.$as_ref().map($structs),
                 (EditTarget::Exact(0), Some(Trims::Exact(trims))) => Some($texels(& $($mutable)? trims.faces)),

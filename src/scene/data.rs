@@ -53,13 +53,13 @@ pub(crate) struct SceneData {
     pub faces: Vec<abi::Face>,
     pub face_instances: Vec<abi::FaceInstance>,
     pub instances: Vec<abi::Instance>,
-    /// Face instance of each patch instance, cell item and curve item.
-    pub items: Vec<u32>,
-    pub cell_items: Vec<u32>,
-    pub curve_items: Vec<u32>,
+    /// Face instance of each patch instance, cell instance and curve instance.
+    pub patch_instances: Vec<u32>,
+    pub cell_instances: Vec<u32>,
+    pub curve_instances: Vec<u32>,
     /// Number of bins in all strips of all placed faces.
     pub bin_count: u32,
-    /// Bin items of strips with several bins.
+    /// Bin instances of strips with several bins.
     pub wide_strips: Vec<u32>,
     pub cells: Vec<abi::Cell>,
     pub curves: Vec<abi::Curve>,
@@ -365,9 +365,9 @@ impl SceneData {
         self.hides_with(0)
     }
 
-    /// The same with so many more items.
+    /// The same with so many more patch instances.
     pub(super) fn hides_with(&self, more: usize) -> bool {
-        self.items.len() + more >= FEWEST_HIDDEN && !self.has_operands && self.samples == Samples::One
+        self.patch_instances.len() + more >= FEWEST_HIDDEN && !self.has_operands && self.samples == Samples::One
     }
 
     /// Some mesh is placed.
@@ -403,7 +403,7 @@ impl SceneData {
             let instance = Instance { part: 0, transform, colour: None, name: String::new() };
             let number = self.instances.len() as u32;
             operand.placed = Some((number, first));
-            self.push_instance(&instance, operand.origin, faces, operand.shell);
+            self.push_instance(&instance, operand.origin, faces, operand.number);
             for mesh in operand.meshes.clone() {
                 self.solids.operand_meshes[mesh].instance = number;
             }
@@ -458,8 +458,8 @@ impl SceneData {
         self.curve_points.append(&mut f.curve_points);
     }
 
-    fn push_instance(&mut self, i: &Instance, origin: DVec3, faces: Range<usize>, shell: u32) {
-        self.instances.push(placed_part(i.transform, Shown::default().over(i.colour), shell));
+    fn push_instance(&mut self, i: &Instance, origin: DVec3, faces: Range<usize>, operand: u32) {
+        self.instances.push(placed_part(i.transform, Shown::default().over(i.colour), operand));
         self.placements.push(i.transform * DAffine3::from_translation(origin));
         let instance = self.instances.len() as u32 - 1;
         for face in faces {
@@ -472,10 +472,10 @@ impl SceneData {
             self.face_instances.push(abi::FaceInstance {
                 face: face as u32,
                 instance,
-                first_item: self.items.len() as u32,
+                first_patch_instance: self.patch_instances.len() as u32,
                 first_bin: self.bin_count,
-                first_cell: self.cell_items.len() as u32,
-                first_curve: self.curve_items.len() as u32,
+                first_cell: self.cell_instances.len() as u32,
+                first_curve: self.curve_instances.len() as u32,
                 ..abi::FaceInstance::default()
             });
             let (strips, bins) = (f.strip_count(), f.bin_count());
@@ -484,9 +484,9 @@ impl SceneData {
             }
             self.bin_count += strips * bins;
             let repeat = |list: &mut Vec<u32>, n: u32| list.extend(std::iter::repeat_n(placed, n as usize));
-            repeat(&mut self.items, f.count_u * f.count_v);
-            repeat(&mut self.cell_items, cells);
-            repeat(&mut self.curve_items, curves);
+            repeat(&mut self.patch_instances, f.count_u * f.count_v);
+            repeat(&mut self.cell_instances, cells);
+            repeat(&mut self.curve_instances, curves);
         }
     }
 }

@@ -3,7 +3,7 @@
 //! ```text
 //!   Part::edges ─▶ EdgeLine, one an edge that is drawn ─▶ own faces: numbers of the scene's, or triangles
 //!              └─▶ EdgePiece, one a rational Bézier piece ─▶ control points
-//!   placed parts ─▶ EdgeItem: a piece, its view, its instance
+//!   placed parts ─▶ PieceInstance: a piece, its view, its instance
 //! ```
 //!
 //! A pixel belongs to an edge's own face if it has the face's key, here its number in the scene, and the same instance
@@ -26,7 +26,7 @@ pub(crate) struct EdgeData {
     pub points: Vec<[f32; 4]>,
     pub lines: Vec<abi::EdgeLine>,
     pub own_faces: Vec<u32>,
-    pub items: Vec<abi::EdgeItem>,
+    pub piece_instances: Vec<abi::PieceInstance>,
     /// A key for each face of the scene.
     pub face_keys: Vec<u32>,
     /// The edges of each part of the model.
@@ -70,7 +70,7 @@ impl SceneData {
         let has_solids = self.solids.kinds().is_some();
         let has = |edges: &EdgeData| {
             let EdgeSettings { which, silhouettes, .. } = edges.settings;
-            !edges.items.is_empty()
+            !edges.piece_instances.is_empty()
                 || silhouettes && (self.has_patches || has_solids)
                 || which != EdgeChoice::None && has_solids
         };
@@ -90,7 +90,7 @@ impl EdgeData {
             points: Vec::new(),
             lines: Vec::new(),
             own_faces: Vec::new(),
-            items: Vec::new(),
+            piece_instances: Vec::new(),
             face_keys: (0..faces as u32).collect(),
             found,
         }
@@ -122,7 +122,11 @@ impl EdgeData {
                 placements.len() as u32 - 1
             });
             let pieces = drawn[instance.part].clone();
-            data.items.extend(pieces.map(|piece| abi::EdgeItem { piece: piece as u32, placement, instance: key }));
+            data.piece_instances.extend(pieces.map(|piece| abi::PieceInstance {
+                piece: piece as u32,
+                placement,
+                instance: key,
+            }));
         }
         data
     }

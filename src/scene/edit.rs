@@ -108,10 +108,10 @@ pub(crate) enum EditTarget {
     /// The part and the instance of the model of each of them.
     Sources,
     Cells,
-    CellItems,
+    CellInstances,
     Curves,
     CurvePoints,
-    CurveItems,
+    CurveInstances,
     WideStrips,
     /// An array of [`ExactScene`](super::ExactScene): faces, cells, arcs.
     Exact(usize),

@@ -1,9 +1,9 @@
-//! Finds the placed parts that a view may see. The passes over patches run only for the items of those parts.
+//! Finds the placed parts that a view may see. The passes over patches run only for the patch instances of those parts.
 //!
 //! ```text
 //!   part ─▶ box of its patches ──placement, camera──▶ outside the picture, before the near plane, behind the far
 //!                                                     plane, or no pixel's centre within reach?  ─▶ out of sight
-//!   in sight: runs of consecutive items (abi::ItemRun), and the views of those parts
+//!   in sight: runs of consecutive patch instances (abi::PatchRun), and the views of those parts
 //! ```
 //!
 //! The box of a part contains the boxes of its patches, and its margins are wider than those of pass `bound`. So that
@@ -14,7 +14,7 @@
 
 use super::data::SceneData;
 use super::view::view;
-use crate::abi::{self, ItemRun};
+use crate::abi::{self, PatchRun};
 use crate::model::Camera;
 use glam::{DAffine3, DMat4, DVec3, DVec4};
 use rayon::prelude::*;
@@ -29,13 +29,13 @@ const ROUNDING_PX: f64 = 0.03125;
 /// Error of a depth in single precision, relative to the sum of the magnitudes of its terms.
 const SINGLE_ROUNDING: f64 = 1e-5;
 
-/// The box of the patches of a placed part, and its items.
+/// The box of the patches of a placed part, and its patch instances.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PlacedBox {
     /// Centre and half size of the box, part coordinates.
     centre: DVec3,
     half: DVec3,
-    /// First item, and number of items; 0 of a part without patches.
+    /// First patch instance, and number of patch instances; 0 of a part without patches.
     first: u32,
     count: u32,
     /// The part is an operand, which the far plane does not cut off.
@@ -51,23 +51,23 @@ pub(crate) struct Reach {
     pub beyond_px: f64,
 }
 
-/// The placed parts and items that a view may see.
+/// The placed parts and patch instances that a view may see.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct InSight {
     /// Numbers of the placed parts with patches, ascending.
     pub parts: Vec<u32>,
-    /// Their items.
-    pub runs: Vec<ItemRun>,
-    /// How many items all runs have.
-    pub items: u32,
+    /// Their patch instances.
+    pub runs: Vec<PatchRun>,
+    /// How many patch instances all runs have.
+    pub patch_instances: u32,
 }
 
 /// The boxes of all placed parts of a scene.
 pub(super) fn boxes(data: &SceneData) -> Vec<PlacedBox> {
     let mut boxes = vec![PlacedBox::default(); data.instances.len()];
     let mut known: HashMap<(u32, usize), (DVec3, DVec3)> = HashMap::new();
-    let items = data.items.len() as u32;
-    let mut end = items;
+    let patch_instances = data.patch_instances.len() as u32;
+    let mut end = patch_instances;
     for faces in data.face_instances.chunk_by(|a, b| a.instance == b.instance).rev() {
         let (first, last) = (faces[0], faces[faces.len() - 1]);
         let from = data.faces[first.face as usize].first_patch as usize;
@@ -82,11 +82,11 @@ pub(super) fn boxes(data: &SceneData) -> Vec<PlacedBox> {
         boxes[first.instance as usize] = PlacedBox {
             centre: 0.5 * (low + high),
             half: 0.5 * (high - low),
-            first: first.first_item,
-            count: end - first.first_item,
+            first: first.first_patch_instance,
+            count: end - first.first_patch_instance,
             is_operand: data.faces[first.face as usize].flags & abi::FACE_OPERAND != 0,
         };
-        end = first.first_item;
+        end = first.first_patch_instance;
     }
     boxes
 }
@@ -101,9 +101,9 @@ struct Range {
 }
 
 impl PlacedBox {
-    /// The same of a part that comes behind so many items; one without any stays as it is.
-    pub(super) fn behind(self, items: u32) -> Self {
-        Self { first: if self.count > 0 { self.first + items } else { 0 }, ..self }
+    /// The same of a part that comes behind so many patch instances; one without any stays as it is.
+    pub(super) fn behind(self, patch_instances: u32) -> Self {
+        Self { first: if self.count > 0 { self.first + patch_instances } else { 0 }, ..self }
     }
 
     fn range(&self, row: DVec4) -> Range {
@@ -149,7 +149,7 @@ impl PlacedBox {
 }
 
 impl SceneData {
-    /// The placed parts and items that a camera may see.
+    /// The placed parts and patch instances that a camera may see.
     pub(crate) fn in_sight(&self, camera: &Camera, reach: Reach) -> InSight {
         let pixels = camera.pixel_matrix();
         let is_in_sight = |n: &usize| {
@@ -166,16 +166,16 @@ impl SceneData {
             _ => firsts.into_par_iter().map(of_chunk).collect(),
         };
         let parts = chunks.concat();
-        let mut runs: Vec<ItemRun> = Vec::new();
-        let mut items = 0;
+        let mut runs: Vec<PatchRun> = Vec::new();
+        let mut patch_instances = 0;
         for PlacedBox { first, count, .. } in parts.iter().map(|&n| self.boxes[n as usize]) {
-            let follows = runs.last().is_some_and(|run| run.item + (items - run.place) == first);
+            let follows = runs.last().is_some_and(|run| run.patch_instance + (patch_instances - run.place) == first);
             if !follows {
-                runs.push(ItemRun { place: items, item: first });
+                runs.push(PatchRun { place: patch_instances, patch_instance: first });
             }
-            items += count;
+            patch_instances += count;
         }
-        InSight { parts, runs, items }
+        InSight { parts, runs, patch_instances }
     }
 
     /// Views of the placed parts in sight, in their order.

@@ -119,7 +119,7 @@ impl SceneData {
             self.instances[number].colour = colour.map_or(0, pack_colour);
         }
         // edge lines may have placements of their own
-        let lines = self.edges.iter().flat_map(|edges| &edges.items);
+        let lines = self.edges.iter().flat_map(|edges| &edges.piece_instances);
         let hidden: Vec<u32> = lines.filter(|i| !shown[i.instance as usize - 1].visible).map(|i| i.placement).collect();
         hidden.into_iter().for_each(|placement| self.hide(placement, true));
         self.settle();
@@ -148,9 +148,9 @@ fn nowhere() -> abi::View {
     abi::View { x: beyond, y: beyond, depth: [0.0; 4], w: [0.0, 0.0, 0.0, 1.0] }
 }
 
-/// The record that shaders read of a placed part. `colour` is drawn over its faces' colours, by its opacity; `shell` is
-/// the number of its operand.
-pub(super) fn placed_part(transform: DAffine3, colour: Option<Colour>, shell: u32) -> abi::Instance {
+/// The record that shaders read of a placed part. `colour` is drawn over its faces' colours, by its opacity; `operand`
+/// is the number of its operand.
+pub(super) fn placed_part(transform: DAffine3, colour: Option<Colour>, operand: u32) -> abi::Instance {
     let linear = transform.matrix3;
     // normals transform by the cofactor matrix: the inverse transpose times the determinant, which also exists for
     // singular transforms; the sign of the determinant is stored separately
@@ -165,7 +165,7 @@ pub(super) fn placed_part(transform: DAffine3, colour: Option<Colour>, shell: u3
         scale: (stretch(linear) as f32).next_up(),
         colour: colour.map_or(0, pack_colour),
         mirrored: u32::from(linear.determinant() < 0.0),
-        shell,
+        operand,
         ..abi::Instance::default()
     }
 }

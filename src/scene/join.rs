@@ -1,13 +1,13 @@
 //! A model that joins a scene: its arrays go behind the scene's.
 //!
 //! ```text
-//!   scene    patches ████████░░░     items ██████░░░░     …          ░ room, in buffers that have been larger once
-//!   model            ▓▓                    ▓▓▓            numbers + lengths of the scene ─▶ Writes of the next frame
+//!   scene    patches ████████░░░     instances ██████░░░░     …     ░ room, in buffers that have been larger once
+//!   model            ▓▓                        ▓▓▓            numbers + lengths of the scene ─▶ Writes of the next frame
 //! ```
 //!
-//! An upload lays parts one behind the other, then instances. So each array of a model, made by itself, is what an upload of
-//! both has behind the scene's, once the numbers in it count on from the scene's. Pipelines stay, and so does which arrays
-//! there are. A model that wants others ([`Kinds`]) does not join: the scene is made anew with it.
+//! An upload lays parts one behind the other, then instances. So each array of a model, made by itself, is what an
+//! upload of both has behind the scene's, once the numbers in it count on from the scene's. Pipelines stay, and so does
+//! which arrays there are. A model that wants others ([`Kinds`]) does not join: the scene is made anew with it.
 //!
 //! Cost: what the model costs.
 
@@ -31,13 +31,13 @@ struct Lengths {
     faces: u32,
     face_instances: u32,
     instances: u32,
-    items: u32,
+    patch_instances: u32,
     bins: u32,
     cells: u32,
-    cell_items: u32,
+    cell_instances: u32,
     curves: u32,
     curve_points: u32,
-    curve_items: u32,
+    curve_instances: u32,
     wide_strips: u32,
     exact: [u32; 3],
     meshes: [u32; 5],
@@ -74,13 +74,13 @@ impl Lengths {
             faces: n(data.faces.len()),
             face_instances: n(data.face_instances.len()),
             instances: n(data.instances.len()),
-            items: n(data.items.len()),
+            patch_instances: n(data.patch_instances.len()),
             bins: data.bin_count,
             cells: n(data.cells.len()),
-            cell_items: n(data.cell_items.len()),
+            cell_instances: n(data.cell_instances.len()),
             curves: n(data.curves.len()),
             curve_points: n(data.curve_points.len()),
-            curve_items: n(data.curve_items.len()),
+            curve_instances: n(data.curve_instances.len()),
             wide_strips: n(data.wide_strips.len()),
             exact: [data.exact.faces.len(), data.exact.cells.len(), data.exact.arcs.len()].map(n),
             meshes: [m.meshes.len(), m.instances.len(), m.positions.len(), m.triangles.len(), m.normals.len()].map(n),
@@ -100,13 +100,13 @@ impl Lengths {
             faces: both(self.faces, more.faces)?,
             face_instances: both(self.face_instances, more.face_instances)?,
             instances: both(self.instances, more.instances)?,
-            items: both(self.items, more.items)?,
+            patch_instances: both(self.patch_instances, more.patch_instances)?,
             bins: both(self.bins, more.bins)?,
             cells: both(self.cells, more.cells)?,
-            cell_items: both(self.cell_items, more.cell_items)?,
+            cell_instances: both(self.cell_instances, more.cell_instances)?,
             curves: both(self.curves, more.curves)?,
             curve_points: both(self.curve_points, more.curve_points)?,
-            curve_items: both(self.curve_items, more.curve_items)?,
+            curve_instances: both(self.curve_instances, more.curve_instances)?,
             wide_strips: both(self.wide_strips, more.wide_strips)?,
             exact,
             meshes,
@@ -157,8 +157,8 @@ pub(crate) struct Joinable {
 }
 
 impl Joinable {
-    /// Of a scene of a whole model; `None` where models do not join it: it has something that follows from all of it, or
-    /// that is not arrays of parts one behind the other.
+    /// Of a scene of a whole model; `None` where models do not join it: it has something that follows from all of it,
+    /// or that is not arrays of parts one behind the other.
     pub(crate) fn of(data: &SceneData, model: &Model, request: SceneRequest) -> Option<Self> {
         let whole =
             request.sun.is_some() || request.thickness || request.highlight.is_some() || request.edges.is_some();
@@ -174,14 +174,14 @@ impl Joinable {
         Some(Self { lengths: Lengths::of(data), kinds: Kinds::of(data), hides: data.hides(), request })
     }
 
-    /// The arrays of a model that is to join, in a scene that is so wide; `None` where the scene has to be made anew with
-    /// it.
+    /// The arrays of a model that is to join, in a scene that is so wide; `None` where the scene has to be made anew
+    /// with it.
     pub(crate) fn arrays_of(&self, model: &Model, extent: f64) -> Option<SceneData> {
         if !is_of_parts(model) || !model.is_opaque() {
             return None;
         }
         let data = SceneData::joining(model, self.request, extent).ok()?;
-        let hides = self.hides || data.hides_with(self.lengths.items as usize);
+        let hides = self.hides || data.hides_with(self.lengths.patch_instances as usize);
         (self.kinds.has(Kinds::of(&data)) && hides == self.hides).then_some(data)
     }
 }
@@ -192,8 +192,8 @@ fn is_of_parts(model: &Model) -> bool {
 }
 
 impl SceneData {
-    /// Puts the arrays of `model` behind those of the scene. `None` where 32 bits do not number all of both; then nothing
-    /// has changed.
+    /// Puts the arrays of `model` behind those of the scene. `None` where 32 bits do not number all of both; then
+    /// nothing has changed.
     pub(crate) fn join(
         &mut self,
         (model, mut new): (&Model, SceneData),
@@ -217,7 +217,7 @@ impl SceneData {
         let numbers = first.instance..first.instance + new.live.len();
         self.live.resize(self.live.len().max(numbers.end), None);
         self.live[numbers].iter_mut().zip(behind).for_each(|(live, new)| *live = Some(new));
-        self.boxes.extend(new.boxes.iter().map(|of_part| of_part.behind(at.items)));
+        self.boxes.extend(new.boxes.iter().map(|of_part| of_part.behind(at.patch_instances)));
         if let Some(trimmed) = &mut self.trimmed {
             trimmed.join(new.trimmed.take(), new.placements.len());
         }
@@ -243,13 +243,13 @@ impl SceneData {
         arrays.put(&mut self.links, new.links, EditTarget::Links, 4 * at.patches);
         arrays.put(&mut self.faces, new.faces, EditTarget::Faces, at.faces);
         arrays.put(&mut self.face_instances, new.face_instances, EditTarget::FaceInstances, at.face_instances);
-        arrays.put(&mut self.items, new.items, EditTarget::Items, at.items);
+        arrays.put(&mut self.patch_instances, new.patch_instances, EditTarget::Items, at.patch_instances);
         arrays.put(&mut self.sources, new.sources, EditTarget::Sources, at.instances);
         arrays.put(&mut self.cells, new.cells, EditTarget::Cells, at.cells);
-        arrays.put(&mut self.cell_items, new.cell_items, EditTarget::CellItems, at.cell_items);
+        arrays.put(&mut self.cell_instances, new.cell_instances, EditTarget::CellInstances, at.cell_instances);
         arrays.put(&mut self.curves, new.curves, EditTarget::Curves, at.curves);
         arrays.put(&mut self.curve_points, new.curve_points, EditTarget::CurvePoints, at.curve_points);
-        arrays.put(&mut self.curve_items, new.curve_items, EditTarget::CurveItems, at.curve_items);
+        arrays.put(&mut self.curve_instances, new.curve_instances, EditTarget::CurveInstances, at.curve_instances);
         arrays.put(&mut self.wide_strips, new.wide_strips, EditTarget::WideStrips, at.wide_strips);
         // each by itself: a change of it takes the place of its write
         for (instance, number) in new.instances.into_iter().zip(at.instances..) {
@@ -281,12 +281,12 @@ impl SceneData {
         for placed in &mut self.face_instances {
             placed.face += at.faces;
             placed.instance += at.instances;
-            placed.first_item += at.items;
+            placed.first_patch_instance += at.patch_instances;
             placed.first_bin += at.bins;
-            placed.first_cell += at.cell_items;
-            placed.first_curve += at.curve_items;
+            placed.first_cell += at.cell_instances;
+            placed.first_curve += at.curve_instances;
         }
-        let lists = [&mut self.items, &mut self.cell_items, &mut self.curve_items];
+        let lists = [&mut self.patch_instances, &mut self.cell_instances, &mut self.curve_instances];
         lists.into_iter().flatten().for_each(|placed| *placed += at.face_instances);
         self.wide_strips.iter_mut().for_each(|bin| *bin += at.bins);
         self.curves.iter_mut().for_each(|curve| curve.first += at.curve_points);

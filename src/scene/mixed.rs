@@ -19,7 +19,7 @@ impl SceneData {
 
     /// The scene has Boolean solids that points are asked for: all operands have equations.
     pub(crate) fn has_smooth_solids(&self) -> bool {
-        self.solids.kinds().is_some() && self.solids.shell_leaves.is_empty()
+        self.solids.kinds().is_some() && self.solids.operand_leaves.is_empty()
     }
 
     /// Pass `resolve` draws linear colours and depths for later passes. In scenes with layers it draws them into the

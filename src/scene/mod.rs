@@ -73,7 +73,7 @@ pub(crate) use trimmed::TableView;
 pub(crate) use upload::BaselineScene;
 #[cfg(feature = "baselines")]
 pub(crate) use upload::TableScene;
-pub(crate) use upload::{EdgeBuffers, ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles};
+pub(crate) use upload::{BoundaryOperands, EdgeBuffers, ExactScene, MeshBuffers, Scene, Solids, SunTiles};
 pub use view::seen_by;
 #[cfg(any(test, feature = "baselines"))]
 pub(crate) use view::view;

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   operand ─Part::edges─▶ edges ──────────────┐ pieces on the kept side of the solid's sections
-//!           ─Part::cut, by its sections─▶ outlines, bold ─▶ EdgeLine, EdgePiece, EdgeItem, as those of placed parts
+//!           ─Part::cut, by its sections─▶ outlines, bold ─▶ EdgeLine, EdgePiece, PieceInstance, as those of placed parts
 //! ```
 //!
 //! Where other primitives cut the solid, a line is drawn only where a pixel beside it sees a face of its own.
@@ -66,7 +66,7 @@ impl SceneData {
         };
         let mut known = Known::default();
         // what rays are followed through is drawn as parts are, or seen through
-        let is_seen = |operand: &&Operand| self.solids.shell_leaves[operand.shell as usize] < self.solids.followed;
+        let is_seen = |operand: &&Operand| self.solids.operand_leaves[operand.number as usize] < self.solids.followed;
         for operand in self.solids.operands.iter().filter(is_seen) {
             let Some(edges) = known.of(&operand.primitive.shape, model)? else { continue };
             let meshes = &self.solids.operand_meshes[operand.meshes.clone()];
@@ -90,7 +90,7 @@ impl EdgeData {
             for piece in pieces {
                 let piece = self.push_piece(&piece.points, operand.origin);
                 // of no instance of the model
-                self.items.push(abi::EdgeItem { piece, placement, instance: 0 });
+                self.piece_instances.push(abi::PieceInstance { piece, placement, instance: 0 });
             }
         };
         let face = |face: usize| (first_face + face) as u32;

@@ -1,7 +1,7 @@
 //! The meaning of a pixel of the visibility images, as a point of the model in `f64`.
 //!
 //! ```text
-//!   word, (u, v) of a triangle  ─▶ item ─▶ face of an instance ──Newton in f64──▶ exact point under the pixel's centre
+//!   word, (u, v) of a triangle  ─▶ patch ─▶ face of an instance ──Newton in f64──▶ exact point under the pixel's centre
 //!   word, triangle of a mesh    ─▶ mesh of an instance         ──plane──────────▶
 //!   word, depth of a solid      ─▶ primitive                   ──ray────────────▶
 //! ```
@@ -62,7 +62,7 @@ pub struct Hit {
 /// The meaning of the scene's numbers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Picking {
-    /// First item of each placed face, its face and its instance in the scene.
+    /// First patch instance of each placed face, its face and its instance in the scene.
     placed: Vec<[u32; 3]>,
     faces: Vec<PickFace>,
     /// Rectangle of each patch in the unit square of its face.
@@ -121,7 +121,7 @@ impl SceneData {
         let triangles =
             of_meshes.flat_map(|(mesh, corners)| std::iter::repeat_n(of_leaf(mesh.leaf), corners.len() / 3));
         Picking {
-            placed: self.face_instances.iter().map(|f| [f.first_item, f.face, f.instance]).collect(),
+            placed: self.face_instances.iter().map(|f| [f.first_patch_instance, f.face, f.instance]).collect(),
             faces,
             patches: self.patches.iter().map(|patch| patch.domain).collect(),
             sources: self.sources.iter().map(|source| source[1]).collect(),
@@ -165,7 +165,9 @@ impl Picking {
         match seen & SEEN_KIND {
             SEEN_MESH => self.mesh(of, number, second as usize),
             SEEN_SOLID => Some(of.on_solid(*self.sides.get(number)?, second)),
-            SEEN_OPERAND => Some(of.on_solid(self.faces[self.placed_item(number - 1)[1] as usize].id, second)),
+            SEEN_OPERAND => {
+                Some(of.on_solid(self.faces[self.placed_patch_instance(number - 1)[1] as usize].id, second))
+            }
             _ => {
                 let hit = self.patch(of, number - 1, second)?;
                 Some(Hit { edge: self.edge(of, &hit), ..hit })
@@ -196,19 +198,20 @@ impl Picking {
         found.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(number, _)| number)
     }
 
-    fn placed_item(&self, item: usize) -> [u32; 3] {
-        let next = self.placed.partition_point(|placed| placed[0] as usize <= item);
-        self.placed[next - 1] // a placed face without patches has the first item of the next one
+    fn placed_patch_instance(&self, patch_instance: usize) -> [u32; 3] {
+        let next = self.placed.partition_point(|placed| placed[0] as usize <= patch_instance);
+        self.placed[next - 1] // a placed face without patches has the first patch instance of the next one
     }
 
-    fn patch(&self, of: &Picked<'_>, item: usize, second: u32) -> Option<Hit> {
-        let [first_item, face, instance] = self.placed_item(item);
+    fn patch(&self, of: &Picked<'_>, patch_instance: usize, second: u32) -> Option<Hit> {
+        let [first_patch_instance, face, instance] = self.placed_patch_instance(patch_instance);
         let made = self.faces[face as usize];
         let instance = (self.sources[instance as usize] as usize).checked_sub(1)?;
         let part = of.model.instances[instance].part;
         let number = made.face? as usize;
         let face = &of.model.parts[part].faces[number];
-        let patch = self.patches[made.first_patch as usize + item - first_item as usize].map(f64::from);
+        let patch =
+            self.patches[made.first_patch as usize + patch_instance - first_patch_instance as usize].map(f64::from);
         let within = [second & 0xffff, second >> 16].map(|x| f64::from(x) / 65535.0 * 3.0 - 1.0);
         let at = |k: usize| made.domain[k] + made.domain[2 + k] * (patch[k] + patch[2 + k] * within[k]);
         let (uv, point, normal) = of.refined(face, &of.transforms[instance], DVec2::new(at(0), at(1)));

@@ -10,9 +10,9 @@
 //! `f64` and is given relative to the eye every frame.
 
 mod blister;
+mod boundary_operand;
 mod order;
 mod seen;
-mod shell;
 mod surface;
 
 use super::face::pack_colour;
@@ -21,8 +21,8 @@ use crate::csg::Blist;
 use crate::model::{Bounds, Items, Primitive, Shape, Solid, SolidError, SurfaceTable};
 use crate::picture::{SolidWay, TakenWay};
 pub(crate) use blister::{Asked, Blister};
+pub(super) use boundary_operand::Operand;
 use glam::DVec3;
-pub(super) use shell::Operand;
 use std::borrow::Cow;
 use std::ops::Range;
 pub(super) use surface::Surface;
@@ -42,9 +42,9 @@ pub(crate) struct SolidData {
     /// The place of each surface.
     pub places: Vec<Placed>,
     /// For each operand without equations, a leaf that shows it.
-    pub shell_leaves: Vec<u32>,
+    pub operand_leaves: Vec<u32>,
     /// The box around each operand without equations.
-    pub(super) shell_boxes: Vec<Bounds>,
+    pub(super) operand_boxes: Vec<Bounds>,
     /// The meshes of operands: triangles, vertices relative to the middle of the operand's box, and the corners to draw
     /// of each mesh.
     pub operand_meshes: Vec<abi::OperandMesh>,
@@ -55,7 +55,7 @@ pub(crate) struct SolidData {
     pub operand_planes: Vec<u32>,
     pub operand_draws: Vec<Range<u32>>,
     /// The operands without equations, until their data is uploaded.
-    pub(super) operands: Vec<shell::Operand>,
+    pub(super) operands: Vec<boundary_operand::Operand>,
     /// For [`SolidWay::Cst`]: the leaves in the order of drawing.
     pub order: Vec<u32>,
     /// For [`SolidWay::Blister`].
@@ -114,8 +114,8 @@ struct Shared {
     /// Numbers of the table's surfaces; [`NO_PLANE`](abi::NO_PLANE) for planes that belong to one triangle.
     surface_of: Vec<u32>,
     middle: DVec3,
-    /// The shell number of each primitive without equations.
-    shells: Vec<Option<u32>>,
+    /// The operand number of each primitive without equations.
+    boundary_operands: Vec<Option<u32>>,
     /// The first leaf of each primitive in the union: where it is added, and where it is subtracted.
     leaf_of: Vec<[Option<u32>; 2]>,
     /// The surface of primitives without volume.
@@ -132,9 +132,9 @@ impl SolidData {
         let table = SurfaceTable::new(&whole, coincidence);
         let middle = middle_of(&lists.solids);
         let surface_of = data.push_surfaces(&whole, &table, middle);
-        let shells = vec![None; whole.primitives().len()];
+        let boundary_operands = vec![None; whole.primitives().len()];
         let leaf_of = vec![[None; 2]; whole.primitives().len()];
-        let mut shared = Shared { whole, table, surface_of, middle, shells, leaf_of, nothing: None };
+        let mut shared = Shared { whole, table, surface_of, middle, boundary_operands, leaf_of, nothing: None };
         let some = (lists.opaque < lists.solids.len()).then(|| Solid::union(&lists.solids[..lists.opaque]));
         let some = some.transpose()?;
         let seen = some.as_ref().unwrap_or(&shared.whole);
@@ -152,7 +152,7 @@ impl SolidData {
             }
             first += solid.primitives().len() as u32;
         }
-        if data.leaf_surfaces.len().max(data.shell_leaves.len()) >> (u32::BITS - abi::LEAF_FLAG_BITS) != 0 {
+        if data.leaf_surfaces.len().max(data.operand_leaves.len()) >> (u32::BITS - abi::LEAF_FLAG_BITS) != 0 {
             return Err(UndrawnSolid::Sides);
         }
         number_exits(&mut data.leaves);
@@ -164,7 +164,7 @@ impl SolidData {
                 leaf.flags |= abi::LEAF_UNBOUNDED;
             }
         }
-        if way == SolidWay::Cst && data.shell_leaves.is_empty() && !data.is_followed() {
+        if way == SolidWay::Cst && data.operand_leaves.is_empty() && !data.is_followed() {
             let mut used = vec![false; data.places.len()];
             let again = |side: &abi::LeafSurface| {
                 std::mem::replace(&mut used[(side.surface >> abi::SIDE_SHIFT) as usize], true)
@@ -190,7 +190,7 @@ impl SolidData {
         for (p, primitive) in primitives() {
             let faces = table.faces(p).iter().map(|face| face.surface as usize);
             if let Shape::Mesh(mesh) = &primitive.shape {
-                let thin = shell::Thin::of(primitive);
+                let thin = boundary_operand::Thin::of(primitive);
                 for (t, surface) in faces.enumerate() {
                     if numbers[surface] == abi::NO_PLANE && (users[surface] > 1 || thin.is(mesh.corners(t))) {
                         numbers[surface] = self.push_surface(surface::of_triangle(primitive, mesh.corners(t), middle));
@@ -261,15 +261,15 @@ impl SolidData {
             };
             let p = first_primitive + entry.primitive();
             let primitive = &shared.whole.primitives()[p as usize];
-            // whether a point is within a shell is decided by its box
-            let is_shell = shell::is_shell(primitive);
-            let bounds = if is_shell { primitive.bounds() } else { reaches[entry.primitive() as usize] };
+            // whether a point is within a boundary operand is decided by its box
+            let is_boundary_operand = boundary_operand::is_boundary_operand(primitive);
+            let bounds = if is_boundary_operand { primitive.bounds() } else { reaches[entry.primitive() as usize] };
             let bounded = bounds.is_empty() || bounds.min.is_finite() && bounds.max.is_finite();
             let (centre, half) = match bounded {
                 true if bounds.is_empty() => (shared.middle, DVec3::ZERO), // a single point, anywhere
                 // faces lie on the surface that they share, which may be that of a larger primitive
                 true => {
-                    let beyond = if is_shell { 0.0 } else { shared.table.distance() };
+                    let beyond = if is_boundary_operand { 0.0 } else { shared.table.distance() };
                     (bounds.centre(), (bounds.max - bounds.min) * 0.5 + beyond)
                 }
                 false => (shared.middle, DVec3::INFINITY),
@@ -279,20 +279,20 @@ impl SolidData {
             flags |= if entry.negative() { abi::LEAF_NEGATIVE } else { 0 };
             let leaf = self.leaves.len() as u32;
             shared.leaf_of[p as usize][usize::from(entry.negative())].get_or_insert(leaf);
-            let shell = is_shell.then(|| {
-                let known = &mut shared.shells[p as usize];
+            let operand = is_boundary_operand.then(|| {
+                let known = &mut shared.boundary_operands[p as usize];
                 *known.get_or_insert_with(|| {
                     let surfaces = shared.table.faces(p).iter().map(|f| shared.surface_of[f.surface as usize]);
-                    self.push_shell(surfaces, primitive, leaf)
+                    self.push_boundary_operand(surfaces, primitive, leaf)
                 })
             });
-            flags |= if is_shell { abi::LEAF_SHELL } else { 0 };
+            flags |= if is_boundary_operand { abi::LEAF_BOUNDARY } else { 0 };
             let first = self.leaf_surfaces.len() as u32;
-            let faces = if is_shell { &[] } else { shared.table.faces(p) };
+            let faces = if is_boundary_operand { &[] } else { shared.table.faces(p) };
             let sides =
                 faces.iter().map(|f| shared.surface_of[f.surface as usize] << abi::SIDE_SHIFT | u32::from(f.flipped));
             self.leaf_surfaces.extend(sides.map(|surface| abi::LeafSurface { surface, leaf }));
-            if faces.is_empty() && !is_shell {
+            if faces.is_empty() && !is_boundary_operand {
                 // no point is within a primitive without volume
                 let nowhere = || self.push_surface(Some(surface::nowhere(shared.middle)));
                 let nothing = *shared.nothing.get_or_insert_with(nowhere);
@@ -301,7 +301,7 @@ impl SolidData {
             self.leaf_centres.push(centre);
             self.leaves.push(abi::Leaf {
                 half_size: half.as_vec3().to_array().map(f32::next_up),
-                first: shell.unwrap_or(first),
+                first: operand.unwrap_or(first),
                 count: self.leaf_surfaces.len() as u32 - first,
                 colour: pack_colour(primitive.colour),
                 id: primitive.id,
@@ -340,7 +340,7 @@ impl SolidData {
             return Ok(None);
         }
         let mut data = Self::new(&Lists::union(std::slice::from_ref(volume)), coincidence, SolidWay::Events)?;
-        if !data.shell_leaves.is_empty() {
+        if !data.operand_leaves.is_empty() {
             return Err(UndrawnSolid::Volume);
         }
         if data.leaves.is_empty() {
@@ -370,8 +370,8 @@ impl SolidData {
 
     /// The part that frames still need after the upload.
     pub(crate) fn centres_only(self) -> Self {
-        let Self { leaf_centres, places, shell_boxes, .. } = self;
-        Self { leaf_centres, places, shell_boxes, ..Self::default() }
+        let Self { leaf_centres, places, operand_boxes, .. } = self;
+        Self { leaf_centres, places, operand_boxes, ..Self::default() }
     }
 }
 

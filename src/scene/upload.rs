@@ -27,7 +27,7 @@ pub(crate) struct Scene {
     pub faces: TexelBuffer,
     pub face_instances: TexelBuffer,
     pub instances: TexelBuffer,
-    pub items: TexelBuffer,
+    pub patch_instances: TexelBuffer,
     /// Slefes and their table; `None` if bounds divide the patches.
     #[cfg(feature = "baselines")]
     slefes: Option<Buffer>,
@@ -53,7 +53,7 @@ pub(crate) struct EdgeBuffers {
     pub points: TexelBuffer,
     pub lines: Buffer,
     pub own_faces: Buffer,
-    pub items: Buffer,
+    pub piece_instances: Buffer,
     pub face_keys: TexelBuffer,
 }
 
@@ -84,11 +84,11 @@ pub(crate) struct Solids {
     /// For way `blister`: the walk, and the order of its leaves.
     pub blister: Option<(Blister, Buffer)>,
     /// `None` if every operand has equations.
-    pub shells: Option<Shells>,
+    pub boundary_operands: Option<BoundaryOperands>,
 }
 
 /// Operands without equations: a leaf of each, and their meshes.
-pub(crate) struct Shells {
+pub(crate) struct BoundaryOperands {
     pub leaves: Buffer,
     pub meshes: Buffer,
     pub triangles: Buffer,
@@ -149,11 +149,11 @@ impl ExactScene {
 /// Trim curves, and the cells from which their scan lines' density is computed.
 pub(crate) struct TableScene {
     pub cells: Buffer,
-    pub cell_items: Buffer,
+    pub cell_instances: Buffer,
     pub curves: TexelBuffer,
     pub curve_points: TexelBuffer,
-    pub curve_items: TexelBuffer,
-    /// Bin items of strips with several bins; `None` without any.
+    pub curve_instances: TexelBuffer,
+    /// Bin instances of strips with several bins; `None` without any.
     pub wide_strips: Option<Buffer>,
 }
 
@@ -214,7 +214,7 @@ impl Scene {
             face_instances: &self.face_instances,
             faces: &self.faces,
             patches: &self.patches,
-            items: &self.items,
+            patch_instances: &self.patch_instances,
             points: &self.points,
         }
     }
@@ -237,7 +237,7 @@ impl Scene {
             faces: read_both(&mut uploads, cmd, "faces", &data.faces, Texel::U32x4)?,
             face_instances: read_both(&mut uploads, cmd, "face instances", &data.face_instances, Texel::U32x4)?,
             instances: read_both(&mut uploads, cmd, "instances", &data.instances, Texel::U32x4)?,
-            items: read_both(&mut uploads, cmd, "items", &data.items, Texel::Words)?,
+            patch_instances: read_both(&mut uploads, cmd, "patch_instances", &data.patch_instances, Texel::Words)?,
             #[cfg(feature = "baselines")]
             slefes: match &data.division {
                 Division::Bound => None,
@@ -268,8 +268,8 @@ impl Scene {
                             Texel::U32x2,
                         )?,
                         surfaces: surfaces(&mut uploads, cmd, "solid surfaces", &data.solids)?,
-                        shells: (!data.solids.shell_leaves.is_empty())
-                            .then(|| shells(&mut uploads, cmd, &data.solids))
+                        boundary_operands: (!data.solids.operand_leaves.is_empty())
+                            .then(|| boundary_operands(&mut uploads, cmd, &data.solids))
                             .transpose()?,
                         order: (!data.solids.order.is_empty())
                             .then(|| persistent(&mut uploads, cmd, "solid order", &data.solids.order))
@@ -316,7 +316,7 @@ impl Scene {
             sources: (data.has_numbers || data.has_lines())
                 .then(|| texels(&mut uploads, cmd, "instance sources", &data.sources, Texel::U32x2))
                 .transpose()?,
-            edges: (data.edges.as_ref().filter(|edges| !edges.items.is_empty()))
+            edges: (data.edges.as_ref().filter(|edges| !edges.piece_instances.is_empty()))
                 .map(|edges| edge_buffers(&mut uploads, cmd, edges))
                 .transpose()?,
             sun: (data.sun.as_ref().filter(|sun| sun.has_casters()))
@@ -344,7 +344,7 @@ fn edge_buffers(uploads: &mut Uploads, cmd: &Commands<'_>, edges: &EdgeData) -> 
         points: texels(uploads, cmd, "edge points", &edges.points, Texel::F32x4)?,
         lines: persistent(uploads, cmd, "edge lines", &edges.lines)?,
         own_faces: persistent(uploads, cmd, "edge faces", &edges.own_faces)?,
-        items: persistent(uploads, cmd, "edge items", &edges.items)?,
+        piece_instances: persistent(uploads, cmd, "piece instances", &edges.piece_instances)?,
         face_keys: texels(uploads, cmd, "edge face keys", &edges.face_keys, Texel::Words)?,
     })
 }
@@ -352,10 +352,10 @@ fn edge_buffers(uploads: &mut Uploads, cmd: &Commands<'_>, edges: &EdgeData) -> 
 fn table_scene(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SceneData) -> Result<TableScene, GpuError> {
     Ok(TableScene {
         cells: persistent(uploads, cmd, "trim cells", &data.cells)?,
-        cell_items: persistent(uploads, cmd, "trim cell items", &data.cell_items)?,
+        cell_instances: persistent(uploads, cmd, "trim cell instances", &data.cell_instances)?,
         curves: texels(uploads, cmd, "trim curves", &data.curves, Texel::U32x4)?,
         curve_points: texels(uploads, cmd, "trim curve points", &data.curve_points, Texel::Numbers)?,
-        curve_items: texels(uploads, cmd, "trim curve items", &data.curve_items, Texel::Words)?,
+        curve_instances: texels(uploads, cmd, "trim curve instances", &data.curve_instances, Texel::Words)?,
         wide_strips: (!data.wide_strips.is_empty())
             .then(|| persistent(uploads, cmd, "trim wide strips", &data.wide_strips))
             .transpose()?,
@@ -390,9 +390,13 @@ fn baseline_scene(
     })
 }
 
-fn shells(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SolidData) -> Result<Shells, GpuError> {
-    Ok(Shells {
-        leaves: persistent(uploads, cmd, "operand leaves", &data.shell_leaves)?,
+fn boundary_operands(
+    uploads: &mut Uploads,
+    cmd: &Commands<'_>,
+    data: &SolidData,
+) -> Result<BoundaryOperands, GpuError> {
+    Ok(BoundaryOperands {
+        leaves: persistent(uploads, cmd, "operand leaves", &data.operand_leaves)?,
         meshes: persistent(uploads, cmd, "operand meshes", &data.operand_meshes)?,
         triangles: persistent(uploads, cmd, "operand triangles", &data.operand_triangles)?,
         positions: persistent(uploads, cmd, "operand positions", &data.operand_positions)?,

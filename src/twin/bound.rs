@@ -8,12 +8,12 @@ pub use crate::abi::constants::bound::DEPTH_SHARE;
 use crate::abi::{Counters, Frame, Patch, Side, View};
 use glam::Vec3;
 
-/// `tau_u | tau_v << 16` of each item; 0 for an item that is not visible. Counts factors above [`MOST_SEGMENTS`] in
-/// `counters.clamps`.
+/// `tau_u | tau_v << 16` of each patch instance; 0 for a patch instance that is not visible. Counts factors above
+/// [`MOST_SEGMENTS`] in `counters.clamps`.
 pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u32> {
-    (0..frame.items_in_sight as usize)
-        .map(|item| {
-            let (placed, face, patch) = scene.item(item);
+    (0..frame.patch_instances_in_sight as usize)
+        .map(|patch_instance| {
+            let (placed, face, patch) = scene.patch_instance(patch_instance);
             let view = &scene.views[placed.instance as usize];
             if patch.side() == Side::Outside {
                 return 0;
@@ -25,7 +25,8 @@ pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u
             if !covers_a_centre(&seen, frame.deviation_px + frame.spread_px + skirt) {
                 return 0;
             }
-            let cone = scene.cones.get(face.first_patch as usize + item - placed.first_item as usize);
+            let cone =
+                scene.cones.get(face.first_patch as usize + patch_instance - placed.first_patch_instance as usize);
             if cone.is_some_and(|cone| looks_away(view, frame, &patch, *cone)) {
                 return 0;
             }

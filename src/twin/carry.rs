@@ -8,7 +8,8 @@
 
 use crate::abi::{Frame, StripRows};
 
-/// For the strips that begin at the bin items `wide_strips`; rows of all others start with 0, which is already stored.
+/// For the strips that begin at the bin instances `wide_strips`; rows of all others start with 0, which is already
+/// stored.
 pub fn carry(frame: &Frame, strips: &[StripRows], wide_strips: &[u32], row_windings: &mut [i32]) {
     for &strip in wide_strips {
         let rows = strips[strip as usize];

@@ -27,7 +27,7 @@
 
 use super::border_cells::columns_between;
 use super::curve::curve_point;
-use super::sizes::MOST_SEGMENTS;
+use super::dispatch_arguments::MOST_SEGMENTS;
 use super::sort::from_ordered;
 use super::u_bins::{bin_of, within_bin};
 use super::{Scene, strips_of};
@@ -113,7 +113,7 @@ pub fn border_cells(frame: &Frame, scene: &Scene<'_>, strips: &[StripRows], segm
         for bin in first..=bin_of(right, chord.bins).min(chord.rows.last_bin()) {
             let columns = columns_between(within_bin(left, bin, chord.bins), within_bin(right, bin, chord.bins));
             for k in band(chord.of_strip(chord.low) - around)..=band(chord.of_strip(chord.high) + around) {
-                let words = &mut cells[((chord.item + bin) * BORDER_BANDS + k) as usize];
+                let words = &mut cells[((chord.bin_instance + bin) * BORDER_BANDS + k) as usize];
                 words.iter_mut().zip(columns).for_each(|(word, bits)| *word |= bits);
             }
         }
@@ -126,8 +126,8 @@ struct Chord {
     low: [f32; 2],
     high: [f32; 2],
     upwards: bool,
-    /// The strip's first bin item; the strip's number in its face.
-    item: u32,
+    /// The strip's first bin instance; the strip's number in its face.
+    bin_instance: u32,
     of_face: f32,
     /// Strips of the face, and bins of each.
     strips: f32,
@@ -193,11 +193,11 @@ fn chords(
     segment_starts: &[u32],
     mut visit: impl FnMut(&Chord),
 ) {
-    for item in 0..frame.curve_count as usize {
-        let n = segment_starts[item + 1] - segment_starts[item];
-        let (placed, face, curve) = scene.curve(item);
+    for curve_instance in 0..frame.curve_count as usize {
+        let n = segment_starts[curve_instance + 1] - segment_starts[curve_instance];
+        let (placed, face, curve) = scene.curve(curve_instance);
         // segments beyond the limit of one dispatch have no thread
-        for i in 0..n.min(MOST_SEGMENTS.saturating_sub(segment_starts[item])) {
+        for i in 0..n.min(MOST_SEGMENTS.saturating_sub(segment_starts[curve_instance])) {
             let from = curve_point(&curve, scene.curve_points, i, n);
             let to = curve_point(&curve, scene.curve_points, i + 1, n);
             let upwards = from[1] < to[1];
@@ -207,14 +207,14 @@ fn chords(
             let (first, last) = strips_of(low[1], high[1], face.strip_count());
             let bins = face.bin_count();
             for k in first..=last {
-                let item = placed.first_bin + k * bins;
-                let rows = strips[item as usize];
+                let bin_instance = placed.first_bin + k * bins;
+                let rows = strips[bin_instance as usize];
                 let (of_face, strip_count) = (k as f32, face.strip_count() as f32);
                 let chord = Chord {
                     low,
                     high,
                     upwards,
-                    item,
+                    bin_instance,
                     of_face,
                     strips: strip_count,
                     bins,

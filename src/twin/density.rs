@@ -43,11 +43,11 @@ pub fn density(frame: &Frame, scene: &Scene<'_>) -> Density {
         face_speeds: vec![[0.0; 2]; scene.face_instances.len()],
         seen_bins: vec![0; frame.bin_count as usize],
     };
-    for item in 0..frame.cell_count as usize {
-        let placed_index = scene.cell_items[item] as usize;
+    for cell_instance in 0..frame.cell_count as usize {
+        let placed_index = scene.cell_instances[cell_instance] as usize;
         let placed = scene.face_instances[placed_index];
         let face = scene.faces[placed.face as usize];
-        let cell = scene.cells[face.first_cell as usize + item - placed.first_cell as usize];
+        let cell = scene.cells[face.first_cell as usize + cell_instance - placed.first_cell as usize];
         if cell.speed_v < 0.0 {
             continue;
         }

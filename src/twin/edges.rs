@@ -5,7 +5,7 @@
 
 use super::view::to_pixel;
 use crate::abi::constants::edge_divide::{EDGE_HALVINGS, EDGE_MOST_CHORDS, EDGE_TOLERANCE_PX};
-use crate::abi::{Chord, EdgeItem, EdgeLine, EdgePiece, Frame, View};
+use crate::abi::{Chord, EdgeLine, EdgePiece, Frame, PieceInstance, View};
 
 /// Most chords of a piece; a piece that needs more is halved.
 pub const MOST_CHORDS: u32 = EDGE_MOST_CHORDS;
@@ -16,7 +16,7 @@ pub struct Given<'a> {
     /// Part to pixel, for each placement.
     pub views: &'a [View],
     /// Placed pieces.
-    pub items: &'a [EdgeItem],
+    pub piece_instances: &'a [PieceInstance],
     /// Pieces of all edges.
     pub pieces: &'a [EdgePiece],
     /// Their control points.
@@ -27,16 +27,16 @@ pub struct Given<'a> {
     pub margin_px: f32,
 }
 
-/// Chords of each item, and the number of pieces that bend too much after the last halving.
+/// Chords of each piece instance, and the number of pieces that bend too much after the last halving.
 pub fn divide(frame: &Frame, given: &Given<'_>) -> (Vec<Vec<Chord>>, u32) {
     let mut clamps = 0;
     let chords = (0..)
-        .zip(given.items)
-        .map(|(number, item)| {
-            let piece = given.pieces[item.piece as usize];
+        .zip(given.piece_instances)
+        .map(|(number, piece_instance)| {
+            let piece = given.pieces[piece_instance.piece as usize];
             let points = &given.points[piece.first as usize..=(piece.first + piece.degree) as usize];
             let style = given.lines[piece.edge as usize].style;
-            let walk = Walk { frame, view: &given.views[item.placement as usize], margin: given.margin_px };
+            let walk = Walk { frame, view: &given.views[piece_instance.placement as usize], margin: given.margin_px };
             let (chords, clamped) = walk.divide(points, (number, style));
             clamps += u32::from(clamped);
             chords
@@ -139,7 +139,7 @@ impl Walk<'_> {
         }
     }
 
-    fn divide(&self, points: &[Point], (item, style): (u32, u32)) -> (Vec<Chord>, bool) {
+    fn divide(&self, points: &[Point], (piece_instance, style): (u32, u32)) -> (Vec<Chord>, bool) {
         let (mut level, mut place, mut clamped, mut chords) = (0u32, 0u32, false, Vec::new());
         loop {
             let width = 1.0 / (1u32 << level) as f32;
@@ -157,7 +157,7 @@ impl Walk<'_> {
                 Fate::Chords(chords) => chords,
                 Fate::Outside | Fate::Halves { near: true } => 0,
             };
-            self.put(&net, (a, b), count, (item, style), &mut chords);
+            self.put(&net, (a, b), count, (piece_instance, style), &mut chords);
             place += 1;
             while level > 0 && place & 1 == 0 {
                 (level, place) = (level - 1, place >> 1);
@@ -168,7 +168,14 @@ impl Walk<'_> {
         }
     }
 
-    fn put(&self, net: &[Point], (a, b): (f32, f32), count: u32, (item, style): (u32, u32), chords: &mut Vec<Chord>) {
+    fn put(
+        &self,
+        net: &[Point],
+        (a, b): (f32, f32),
+        count: u32,
+        (piece_instance, style): (u32, u32),
+        chords: &mut Vec<Chord>,
+    ) {
         let pixel = |t: f32| to_pixel(self.view, at(net, t));
         let place = |q: &Point| [q[0] / q[3], q[1] / q[3]];
         let (mut from, mut t0) = (pixel(0.0), a);
@@ -177,7 +184,7 @@ impl Walk<'_> {
             let t1 = if k == count { b } else { a + (b - a) * share };
             let to = pixel(share);
             let ends = (place(&from), place(&to));
-            chords.push(Chord { a: ends.0, b: ends.1, w: [from[3], to[3]], t: [t0, t1], item, style });
+            chords.push(Chord { a: ends.0, b: ends.1, w: [from[3], to[3]], t: [t0, t1], piece_instance, style });
             (from, t0) = (to, t1);
         }
     }

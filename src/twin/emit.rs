@@ -1,11 +1,11 @@
 //! Twin of the pass `emit`: writes the list of sub-patches, and the draws that cover it.
 //!
 //! ```text
-//!   vertices before an item  0 ..... draw_vertices ..... 2 draw_vertices ....
+//!   vertices before a patch instance  0 ..... draw_vertices ..... 2 draw_vertices ....
 //!   draw that covers it      |   0   |        1         |        2
 //! ```
 //!
-//! Only sums and extrema: the order of the items does not matter.
+//! Only sums and extrema: the order of the patch instances does not matter.
 
 use super::{FAILED_DRAWS, FAILED_SUB_PATCHES};
 use crate::abi::{Counters, Factors, Frame, SubPatch};
@@ -37,15 +37,15 @@ pub fn emit(
     (sub_patches, draws): (&mut [SubPatch], &mut [Draw]),
     counters: &mut Counters,
 ) {
-    let n = frame.items_in_sight as usize;
+    let n = frame.patch_instances_in_sight as usize;
     counters.plain += sub_patch_starts[n];
     counters.trimmed += sub_patch_starts[2 * n] - sub_patch_starts[n];
     if sub_patch_starts[2 * n] > frame.sub_patch_capacity {
         counters.failed |= FAILED_SUB_PATCHES;
     }
-    for item in 0..n {
-        let trimmed = sub_patch_starts[item + 1] == sub_patch_starts[item];
-        let slot = if trimmed { n + item } else { item };
+    for patch_instance in 0..n {
+        let trimmed = sub_patch_starts[patch_instance + 1] == sub_patch_starts[patch_instance];
+        let slot = if trimmed { n + patch_instance } else { patch_instance };
         let first = sub_patch_starts[slot];
         let count = sub_patch_starts[slot + 1] - first;
         if count == 0 {
@@ -53,13 +53,14 @@ pub fn emit(
         }
         let vertices = (vertex_starts[slot + 1] - vertex_starts[slot]) / count;
         let before = vertex_starts[slot] - if trimmed { vertex_starts[n] } else { 0 };
-        let across = factors[item].splits & 0xffff;
+        let across = factors[patch_instance].splits & 0xffff;
         for k in 0..count {
             let at = first + k;
             if at >= frame.sub_patch_capacity {
                 break;
             }
-            sub_patches[at as usize] = SubPatch { item: item as u32, place: (k % across) | (k / across) << 8 };
+            sub_patches[at as usize] =
+                SubPatch { patch_instance: patch_instance as u32, place: (k % across) | (k / across) << 8 };
             let draw = (before + k * vertices) / frame.draw_vertices;
             let used = if trimmed { &mut counters.trimmed_draws } else { &mut counters.plain_draws };
             *used = (*used).max((draw + 1).min(frame.draw_capacity));

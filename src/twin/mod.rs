@@ -19,6 +19,7 @@ pub mod coverage;
 pub mod cross;
 pub mod curve;
 pub mod density;
+pub mod dispatch_arguments;
 pub mod edges;
 pub mod emit;
 pub mod exact;
@@ -33,7 +34,6 @@ pub mod operand_sort;
 pub mod reset;
 pub mod scan;
 pub mod segments;
-pub mod sizes;
 pub mod solid_blocks;
 pub mod solid_fold;
 pub mod solid_rects;
@@ -75,33 +75,33 @@ pub struct Scene<'a> {
     pub cones: &'a [[f32; 4]],
     /// Sides that faces share, four a patch; empty if there are none.
     pub links: &'a [Link],
-    /// Face instance of each item.
-    pub items: &'a [u32],
+    /// Face instance of each patch instance.
+    pub patch_instances: &'a [u32],
     /// Parts of patches in v-strips.
     pub cells: &'a [Cell],
-    /// Face instance of each cell item.
-    pub cell_items: &'a [u32],
+    /// Face instance of each cell instance.
+    pub cell_instances: &'a [u32],
     /// Trim curves.
     pub curves: &'a [Curve],
     /// Control points of curves, three numbers each.
     pub curve_points: &'a [f32],
-    /// Face instance of each curve item.
-    pub curve_items: &'a [u32],
+    /// Face instance of each curve instance.
+    pub curve_instances: &'a [u32],
 }
 
 impl Scene<'_> {
-    /// The placed face of an item, its face, and the item's patch.
-    fn item(&self, item: usize) -> (FaceInstance, Face, Patch) {
-        let placed = self.face_instances[self.items[item] as usize];
+    /// The placed face of a patch instance, its face, and its patch.
+    fn patch_instance(&self, patch_instance: usize) -> (FaceInstance, Face, Patch) {
+        let placed = self.face_instances[self.patch_instances[patch_instance] as usize];
         let face = self.faces[placed.face as usize];
-        (placed, face, self.patches[face.first_patch as usize + item - placed.first_item as usize])
+        (placed, face, self.patches[face.first_patch as usize + patch_instance - placed.first_patch_instance as usize])
     }
 
-    /// The placed face of a curve item, its face, and the curve.
-    fn curve(&self, item: usize) -> (FaceInstance, Face, Curve) {
-        let placed = self.face_instances[self.curve_items[item] as usize];
+    /// The placed face of a curve instance, its face, and the curve.
+    fn curve(&self, curve_instance: usize) -> (FaceInstance, Face, Curve) {
+        let placed = self.face_instances[self.curve_instances[curve_instance] as usize];
         let face = self.faces[placed.face as usize];
-        (placed, face, self.curves[face.first_curve as usize + item - placed.first_curve as usize])
+        (placed, face, self.curves[face.first_curve as usize + curve_instance - placed.first_curve as usize])
     }
 }
 

@@ -126,12 +126,19 @@ struct Cover {
     beside: f64,
 }
 
-/// Whether an item with these taus is hidden behind all depths of `farthest`, in double precision. Pixels are widened
-/// by `slack` pixels, and depths by a thousandth of it: single precision must agree if slightly more and slightly less
-/// slack give the same result.
-pub fn lies_behind(frame: &Frame, scene: &Scene<'_>, item: usize, tau: u32, farthest: &Farthest, slack: f64) -> bool {
-    let (placed, face, patch) = scene.item(item);
-    let index = (face.first_patch + item as u32 - placed.first_item) as usize;
+/// Whether a patch instance with these taus is hidden behind all depths of `farthest`, in double precision. Pixels are
+/// widened by `slack` pixels, and depths by a thousandth of it: single precision must agree if slightly more and
+/// slightly less slack give the same result.
+pub fn lies_behind(
+    frame: &Frame,
+    scene: &Scene<'_>,
+    patch_instance: usize,
+    tau: u32,
+    farthest: &Farthest,
+    slack: f64,
+) -> bool {
+    let (placed, face, patch) = scene.patch_instance(patch_instance);
+    let index = (face.first_patch + patch_instance as u32 - placed.first_patch_instance) as usize;
     let (degree_u, degree_v) = patch.degrees();
     let points = &scene.points[patch.first as usize..][..(degree_u + 1) * (degree_v + 1)];
     let homogeneous = |p: &[f32; 4]| {

@@ -1,4 +1,4 @@
-//! Twin of `glsl/solids/operand_sort.comp`: sorts the fragments of each pixel by shell and depth, so that entries and
+//! Twin of `glsl/solids/operand_sort.comp`: sorts the fragments of each pixel by operand and depth, so that entries and
 //! exits alternate.
 //!
 //! ```text
@@ -17,22 +17,22 @@ use crate::abi::{
 
 const FLAGS: u32 = FRAGMENT_LEAVES | FRAGMENT_SKIRT | FRAGMENT_PATCH | FRAGMENT_WITHIN;
 
-/// Leaves, their centres relative to the eye, and a leaf of each shell.
+/// Leaves, their centres relative to the eye, and a leaf of each operand.
 #[derive(Clone, Copy, Debug)]
-pub struct Shells<'a> {
+pub struct BoundaryOperands<'a> {
     /// All leaves of the Blist.
     pub leaves: &'a [Leaf],
     /// Centres of their boxes.
     pub centres: &'a [[f32; 3]],
     /// Indices into `leaves`.
-    pub shell_leaves: &'a [u32],
+    pub operand_leaves: &'a [u32],
 }
 
 /// Sorts the fragments of each pixel of a band, and returns the number that stays of each; these come first. Pixel `n`
 /// has `starts[n]` to `starts[n + 1]`.
 pub fn operand_sort(
     frame: &Frame,
-    shells: Shells<'_>,
+    boundary_operands: BoundaryOperands<'_>,
     starts: &[u32],
     fragments: &mut [Fragment],
     counters: &mut Counters,
@@ -56,18 +56,18 @@ pub fn operand_sort(
         let here = &mut fragments[ends[0] as usize..end as usize];
         here.sort_by(|a, b| {
             let depth = a.depth.partial_cmp(&b.depth).expect("depths are numbers");
-            let rest = (a.what, a.shell, a.uv).cmp(&(b.what, b.shell, b.uv));
-            shell_of(a).cmp(&shell_of(b)).then(depth).then(rest)
+            let rest = (a.what, a.operand, a.uv).cmp(&(b.what, b.operand, b.uv));
+            operand_of(a).cmp(&operand_of(b)).then(depth).then(rest)
         });
         let mut kept = Vec::with_capacity(here.len());
-        for of_one in here.chunk_by(|a, b| shell_of(a) == shell_of(b)) {
-            let cuts = cuts(frame, shells, shell_of(&of_one[0]));
-            let real: Vec<Fragment> = of_one.iter().filter(|f| f.shell & FRAGMENT_SKIRT == 0).copied().collect();
+        for of_one in here.chunk_by(|a, b| operand_of(a) == operand_of(b)) {
+            let cuts = cuts(frame, boundary_operands, operand_of(&of_one[0]));
+            let real: Vec<Fragment> = of_one.iter().filter(|f| f.operand & FRAGMENT_SKIRT == 0).copied().collect();
             let sum: i32 = real.iter().map(|f| if leaves(f) { 1 } else { -1 }).sum();
             let number = if cuts.0 { sum } else { 0 };
             let before = kept.len();
             let mended = counters.mended;
-            let patches = of_one[0].shell & FRAGMENT_PATCH != 0;
+            let patches = of_one[0].operand & FRAGMENT_PATCH != 0;
             let turns = if patches {
                 in_turn(of_one, cuts.0, &mut kept, counters)
             } else {
@@ -88,20 +88,20 @@ pub fn operand_sort(
     starts.windows(2).map(pixel).collect()
 }
 
-fn shell_of(f: &Fragment) -> u32 {
-    f.shell & !FLAGS
+fn operand_of(f: &Fragment) -> u32 {
+    f.operand & !FLAGS
 }
 
 fn leaves(f: &Fragment) -> bool {
-    f.shell & FRAGMENT_LEAVES != 0
+    f.operand & FRAGMENT_LEAVES != 0
 }
 
-/// Whether the near and the far plane cut the box around a shell.
-fn cuts(frame: &Frame, shells: Shells<'_>, shell: u32) -> (bool, bool) {
-    let leaf = shells.shell_leaves[shell as usize] as usize;
+/// Whether the near and the far plane cut the box around a boundary operand.
+fn cuts(frame: &Frame, boundary_operands: BoundaryOperands<'_>, operand: u32) -> (bool, bool) {
+    let leaf = boundary_operands.operand_leaves[operand as usize] as usize;
     let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let middle = dot(frame.forward, shells.centres[leaf]);
-    let reach = dot(frame.forward.map(f32::abs), shells.leaves[leaf].half_size);
+    let middle = dot(frame.forward, boundary_operands.centres[leaf]);
+    let reach = dot(frame.forward.map(f32::abs), boundary_operands.leaves[leaf].half_size);
     (middle - reach < frame.near, middle + reach > frame.far)
 }
 
@@ -119,8 +119,8 @@ fn by_winding(all: &[Fragment], mut number: i32, kept: &mut Vec<Fragment>) -> bo
         }
         if (number != 0) != before {
             let side = if before { FRAGMENT_LEAVES } else { 0 };
-            let shell = owner.shell & !FRAGMENT_LEAVES | start | side;
-            kept.push(Fragment { shell, ..owner });
+            let operand = owner.operand & !FRAGMENT_LEAVES | start | side;
+            kept.push(Fragment { operand, ..owner });
         }
     }
     number == 0
@@ -136,18 +136,18 @@ struct InTurn {
 
 /// For spline faces.
 fn in_turn(all: &[Fragment], cut: bool, kept: &mut Vec<Fragment>, counters: &mut Counters) -> InTurn {
-    let first = all.iter().find(|f| f.shell & FRAGMENT_SKIRT == 0);
+    let first = all.iter().find(|f| f.operand & FRAGMENT_SKIRT == 0);
     let mut within = cut && first.is_some_and(leaves);
     let start = if within { FRAGMENT_WITHIN } else { 0 };
     let mut skirts: [Option<Fragment>; 2] = [None; 2]; // entry, exit
     let mut lost = [false; 2]; // entry, exit
     let mut mend = |skirt: Fragment, kept: &mut Vec<Fragment>| {
-        kept.push(Fragment { shell: skirt.shell & !FRAGMENT_SKIRT | start, ..skirt });
+        kept.push(Fragment { operand: skirt.operand & !FRAGMENT_SKIRT | start, ..skirt });
         counters.mended += 1;
     };
     for f in all {
         let kind = usize::from(leaves(f));
-        if f.shell & FRAGMENT_SKIRT != 0 {
+        if f.operand & FRAGMENT_SKIRT != 0 {
             skirts[kind].get_or_insert(*f);
             continue;
         }
@@ -162,7 +162,7 @@ fn in_turn(all: &[Fragment], cut: bool, kept: &mut Vec<Fragment>, counters: &mut
         }
         within = !leaves(f);
         skirts = [None; 2];
-        kept.push(Fragment { shell: f.shell | start, ..*f });
+        kept.push(Fragment { operand: f.operand | start, ..*f });
     }
     if let (true, Some(skirt)) = (within, skirts[1]) {
         mend(skirt, kept);

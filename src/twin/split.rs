@@ -32,44 +32,47 @@ use crate::abi::{FACE_CLOSED_U, FACE_CLOSED_V, Factors, Frame, Side};
 /// What the pass writes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Split {
-    /// One for each item.
+    /// One for each patch instance.
     pub factors: Vec<Factors>,
-    /// All items as plain, then all as trimmed.
+    /// All patch instances as plain, then all as trimmed.
     pub sub_patch_counts: Vec<u32>,
     /// Tessellated vertices, likewise.
     pub vertex_counts: Vec<u32>,
 }
 
-/// Decides the segments of each item's sides from the factors of all patches of its part.
+/// Decides the segments of each patch instance's sides from the factors of all patches of its part.
 pub fn split(frame: &Frame, scene: &Scene<'_>, taus: &[u32]) -> Split {
-    let n = frame.items_in_sight as usize;
+    let n = frame.patch_instances_in_sight as usize;
     let mut out =
         Split { factors: Vec::with_capacity(n), sub_patch_counts: vec![0; 2 * n], vertex_counts: vec![0; 2 * n] };
-    for item in 0..n {
-        let (placed, face, patch) = scene.item(item);
-        let part = Part { scene, taus, first_item: placed.first_item, first_patch: face.first_patch };
-        let (factors, sub_patches, vertices) =
-            part.patch_factors(face.first_patch + item as u32 - placed.first_item, is_drawn(taus[item]));
+    for patch_instance in 0..n {
+        let (placed, face, patch) = scene.patch_instance(patch_instance);
+        let part =
+            Part { scene, taus, first_patch_instance: placed.first_patch_instance, first_patch: face.first_patch };
+        let (factors, sub_patches, vertices) = part.patch_factors(
+            face.first_patch + patch_instance as u32 - placed.first_patch_instance,
+            is_drawn(taus[patch_instance]),
+        );
         out.factors.push(factors);
-        let slot = if patch.side() == Side::Inside { item } else { n + item };
+        let slot = if patch.side() == Side::Inside { patch_instance } else { n + patch_instance };
         out.sub_patch_counts[slot] = sub_patches;
         out.vertex_counts[slot] = vertices;
     }
     out
 }
 
-/// A placed part; its items have the order of its patches.
+/// A placed part; its patch instances have the order of its patches.
 struct Part<'a> {
     scene: &'a Scene<'a>,
     taus: &'a [u32],
-    /// First item of one of its faces.
-    first_item: u32,
+    /// First patch instance of one of its faces.
+    first_patch_instance: u32,
     first_patch: u32,
 }
 
 impl Part<'_> {
     fn tau(&self, patch: u32, axis: u32) -> u32 {
-        self.taus[(self.first_item + patch - self.first_patch) as usize] >> (16 * axis) & 0x7fff
+        self.taus[(self.first_patch_instance + patch - self.first_patch) as usize] >> (16 * axis) & 0x7fff
     }
 
     /// The patch of the same face beyond a side: 0 to 3 for `u = 0`, `v = 0`, `u = 1`, `v = 1`.

@@ -24,8 +24,8 @@ pub struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// Whether the normalised `(u, v)` is inside the placed `face`, whose bin items begin at `first_bin`. True for a
-    /// row beyond the capacity: the host enlarges the table and records again.
+    /// Whether the normalised `(u, v)` is inside the placed `face`, whose bin instances begin at `first_bin`. True for
+    /// a row beyond the capacity: the host enlarges the table and records again.
     pub fn inside(&self, first_bin: u32, face: &Face, uv: [f32; 2]) -> bool {
         self.along(first_bin, face, uv, 0.0) & ALONG_INSIDE != 0
     }
@@ -74,8 +74,8 @@ impl Table<'_> {
         if last > first + 1 {
             return false;
         }
-        let item = first_bin + strip * bins + bin;
-        let band = |k: u32| self.border_cells[(item * BORDER_BANDS + k - strip * BORDER_BANDS) as usize];
+        let bin_instance = first_bin + strip * bins + bin;
+        let band = |k: u32| self.border_cells[(bin_instance * BORDER_BANDS + k - strip * BORDER_BANDS) as usize];
         let columns = columns_between(within_bin(lo[0], bin, bins), within_bin(hi[0], bin, bins));
         (0..4).all(|w| (band(first)[w] | band(last)[w]) & columns[w] == 0)
     }

@@ -16,7 +16,7 @@ pub(crate) struct BorderMean {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub visibility: &'a Image,
-    pub others: &'a Image,
+    pub meshes_and_solids: &'a Image,
     /// Linear colour and depth.
     pub resolved: &'a Image,
     pub list: ListBindings<'a>,
@@ -24,15 +24,18 @@ pub(crate) struct Bindings<'a> {
 }
 
 impl BorderMean {
-    /// `shells`: some operand of the scene's solids has no equations.
-    pub(crate) fn new(device: &Device, shells: bool) -> Result<Self, GpuError> {
-        let constants = [(constant::SCENE_HAS_MESHES_OR_SOLIDS, 1), (constant::SOLIDS_HAVE_SHELLS, u32::from(shells))];
+    /// `boundary_operands`: some operand of the scene's solids has no equations.
+    pub(crate) fn new(device: &Device, boundary_operands: bool) -> Result<Self, GpuError> {
+        let constants = [
+            (constant::SCENE_HAS_MESHES_OR_SOLIDS, 1),
+            (constant::SOLIDS_HAVE_BOUNDARY_OPERANDS, u32::from(boundary_operands)),
+        ];
         Ok(Self { kernel: Kernel::new(device, "border mean", &shaders::BORDER_MEAN_COMP, &constants)? })
     }
 
     /// One thread a pixel of the list.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
-        let images = [b.visibility.into(), b.others.into(), b.resolved.into()];
+        let images = [b.visibility.into(), b.meshes_and_solids.into(), b.resolved.into()];
         let lists = [b.list.pixels.into(), b.list.grids.into(), b.points.into()];
         let resources: Vec<_> = [b.frame.into()].into_iter().chain(images).chain(lists).collect();
         self.kernel.record_indirect(cmd, &resources, b.list.of_pixels());

@@ -29,7 +29,7 @@ pub(crate) struct Bindings<'a> {
     pub positions: &'a Buffer,
     pub neighbours: &'a Buffer,
     pub visibility: &'a Image,
-    pub others: &'a Image,
+    pub meshes_and_solids: &'a Image,
     /// Linear colour and depth.
     pub resolved: &'a Image,
     pub list: ListBindings<'a>,
@@ -39,7 +39,8 @@ pub(crate) struct Bindings<'a> {
 }
 
 impl BorderMesh {
-    /// `first`: the scene has no patches. `volume`: the most general kind of surface of the volume that trims the scene.
+    /// `first`: the scene has no patches. `volume`: the most general kind of surface of the volume that trims the
+    /// scene.
     pub(crate) fn new(device: &Device, first: bool, volume: Option<u32>) -> Result<Self, GpuError> {
         let (name, shader) = match volume {
             None => ("border mesh", &shaders::BORDER_MESH_COMP),
@@ -54,7 +55,7 @@ impl BorderMesh {
     /// One thread a pixel of the list.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
         let own = [b.frame, b.views, b.mesh_instances, b.triangles, b.positions, b.neighbours].map(Resource::from);
-        let images = [b.visibility.into(), b.others.into(), b.resolved.into()];
+        let images = [b.visibility.into(), b.meshes_and_solids.into(), b.resolved.into()];
         let lists = [b.list.pixels.into(), b.list.grids.into(), b.points.into()];
         let volume = b.volume.iter().flat_map(Primitives::resources);
         let resources: Vec<_> = own.into_iter().chain(images).chain(lists).chain(volume).collect();

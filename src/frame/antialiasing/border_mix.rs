@@ -1,5 +1,5 @@
-//! Passes `border_find`, `border_mix` and `border_write`: pixels at the borders of faces are mixed from the colours around
-//! them.
+//! Passes `border_find`, `border_mix` and `border_write`: pixels at the borders of faces are mixed from the colours
+//! around them.
 //!
 //! ```text
 //!   visibility, resolved ──find──▶ list of pixels ──mix──▶ their means ──write──▶ resolved
@@ -40,9 +40,9 @@ pub(crate) struct Kinds<'a> {
     pub rational: bool,
     pub fine: bool,
     /// The scene has things that are no patches.
-    pub others: bool,
+    pub meshes_and_solids: bool,
     /// Some operand of its solids has no equations.
-    pub shells: bool,
+    pub boundary_operands: bool,
     /// Layers are drawn over the means.
     pub layered: bool,
     /// Most general kind of surface of the volume that trims the scene.
@@ -62,7 +62,7 @@ pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub placed: Placed<'a>,
     pub visibility: &'a Image,
-    pub others: &'a Image,
+    pub meshes_and_solids: &'a Image,
     /// Linear colour and depth.
     pub resolved: &'a Image,
     pub list: ListBindings<'a>,
@@ -80,11 +80,11 @@ impl BorderMix {
         let Some([alone, within]) = kinds.test.map_or(Some(BORDER_MIX_PLAIN), |test| test.border_mix) else {
             return Ok(None);
         };
-        let others = (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(kinds.others));
-        let shells = (constant::SOLIDS_HAVE_SHELLS, u32::from(kinds.shells));
+        let meshes_and_solids = (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(kinds.meshes_and_solids));
+        let boundary_operands = (constant::SOLIDS_HAVE_BOUNDARY_OPERANDS, u32::from(kinds.boundary_operands));
         let layered = (constant::KEEPS_DEPTH, u32::from(kinds.layered));
         let of_patches = [
-            others,
+            meshes_and_solids,
             (constant::SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
             (constant::SCENE_HAS_FINE, u32::from(kinds.fine)),
         ];
@@ -95,7 +95,12 @@ impl BorderMix {
         let shader = if kinds.volume.is_some() { within } else { alone };
         let mix = || Kernel::new(device, &format!("border mix ({way}{volume})"), shader, &constants);
         Ok(Some(Self {
-            find: Kernel::new(device, "border find", &shaders::BORDER_FIND_COMP, &[others, shells])?,
+            find: Kernel::new(
+                device,
+                "border find",
+                &shaders::BORDER_FIND_COMP,
+                &[meshes_and_solids, boundary_operands],
+            )?,
             mix: kinds.patches.then(mix).transpose()?,
             write: Kernel::new(device, "border write", &shaders::BORDER_WRITE_COMP, &[layered])?,
         }))
@@ -104,10 +109,10 @@ impl BorderMix {
     /// Lists the pixels at borders of some rows.
     pub(crate) fn find(&self, cmd: &Commands<'_>, b: &Bindings<'_>, rows: Range<u32>) {
         let width = b.visibility.size().0;
-        let images = [b.visibility.into(), b.others.into(), b.resolved.into()];
+        let images = [b.visibility.into(), b.meshes_and_solids.into(), b.resolved.into()];
         let lists = [b.list.pixels.into(), b.list.grids.into()];
         let resources: Vec<_> =
-            [b.frame.into(), b.placed.items.into()].into_iter().chain(images).chain(lists).collect();
+            [b.frame.into(), b.placed.patch_instances.into()].into_iter().chain(images).chain(lists).collect();
         let of_rows: Vec<u8> = [rows.start, rows.end].into_iter().flat_map(u32::to_ne_bytes).collect();
         self.find.bind(cmd, &resources, &of_rows);
         cmd.dispatch_grid([width.div_ceil(PART[0]), rows.len().div_ceil(PART[1] as usize) as u32, 1]);

@@ -6,8 +6,8 @@
 //!
 //! Reads: everything that the bindings name. Writes: `points`, nearer than what patches and meshes are there.
 //!
-//! As exact as pass `solid_events`: both walk by `glsl/include/solid_walk.glsl`. Where a driver ends a ray's loop, the point
-//! keeps what was there before.
+//! As exact as pass `solid_events`: both walk by `glsl/include/solid_walk.glsl`. Where a driver ends a ray's loop, the
+//! point keeps what was there before.
 
 use crate::abi;
 use crate::bindings::Primitives;
@@ -40,7 +40,7 @@ pub(crate) struct Bindings<'a> {
     pub tile_leaves: &'a TexelBuffer,
     pub tile_entries: &'a TexelBuffer,
     pub visibility: &'a Image,
-    pub others: &'a Image,
+    pub meshes_and_solids: &'a Image,
     /// Linear colour and depth.
     pub resolved: &'a Image,
     pub list: ListBindings<'a>,
@@ -64,7 +64,7 @@ impl BorderSolid {
         // no leaf has fragments: the list of leaves stands in for theirs
         let tiles: [Resource<'_>; 4] =
             [b.tile_starts.into(), b.tile_leaves.into(), b.tile_entries.into(), b.tile_leaves.into()];
-        let images = [b.visibility.into(), b.others.into(), b.resolved.into()];
+        let images = [b.visibility.into(), b.meshes_and_solids.into(), b.resolved.into()];
         let lists = [b.list.pixels.into(), b.list.grids.into(), b.points.into()];
         let primitives = b.primitives.resources();
         let resources: Vec<_> =

@@ -7,8 +7,8 @@
 //!   band after band of rows:   find and mix 0 │ find and mix 1, write 0 │ find and mix 2, write 1 │ … │ write the last
 //! ```
 //!
-//! A list has room for every pixel of its band. A band reads the rows beside it as no pass has mixed them yet, so means are
-//! written a band later: there are two lists then.
+//! A list has room for every pixel of its band. A band reads the rows beside it as no pass has mixed them yet, so means
+//! are written a band later: there are two lists then.
 
 use super::border_mean::{self, BorderMean};
 use super::border_mesh::{self, BorderMesh};
@@ -46,15 +46,15 @@ impl Passes {
             return Ok(None);
         }
         let (meshes, surfaces) = (data.has_meshes(), data.solids.kinds());
-        let shells = !data.solids.shell_leaves.is_empty();
+        let boundary_operands = !data.solids.operand_leaves.is_empty();
         let volume = data.volume.as_ref().and_then(SolidData::kinds);
         let kinds = border_mix::Kinds {
             test,
             patches: data.has_patches,
             rational: data.has_rational,
             fine: data.has_fine,
-            others: meshes || surfaces.is_some(),
-            shells,
+            meshes_and_solids: meshes || surfaces.is_some(),
+            boundary_operands,
             layered: data.is_layered,
             volume,
         };
@@ -72,7 +72,7 @@ impl Passes {
             mix,
             mesh: meshes.then(mesh).transpose()?,
             solid: surfaces.filter(|_| data.has_smooth_solids()).map(solid).transpose()?,
-            mean: kinds.others.then(|| BorderMean::new(device, shells)).transpose()?,
+            mean: kinds.meshes_and_solids.then(|| BorderMean::new(device, boundary_operands)).transpose()?,
         }))
     }
 }
@@ -184,7 +184,7 @@ impl SmoothBorders {
             frame: frame.constants,
             placed: s.placed(frame.views),
             visibility: &v.image,
-            others: v.of_others(),
+            meshes_and_solids: v.of_meshes_and_solids(),
             resolved,
             list: list.bindings(),
             points: self.points.as_ref(),
@@ -198,17 +198,22 @@ impl SmoothBorders {
         }
         self.passes.mix.mix(cmd, &bindings);
         if let Some(points) = &self.points {
-            self.ask_others(frame, cmd, (resolved, list, points));
+            self.ask_meshes_and_solids(frame, cmd, (resolved, list, points));
         }
         barrier::buffers(cmd, &[(pixels, w, r)]);
     }
 
     /// What points see of meshes and Boolean solids, and their means.
-    fn ask_others(&self, frame: &Frame<'_>, cmd: &Commands<'_>, (resolved, list, points): (&Image, &List, &Buffer)) {
+    fn ask_meshes_and_solids(
+        &self,
+        frame: &Frame<'_>,
+        cmd: &Commands<'_>,
+        (resolved, list, points): (&Image, &List, &Buffer),
+    ) {
         let (w, r) = (Access::COMPUTE_WRITE, Access::COMPUTE_READ);
         let (v, constants) = (&frame.stages.visibility, frame.constants);
         let (list, pixels) = (list.bindings(), &list.pixels);
-        let (visibility, others) = (&v.image, v.of_others());
+        let (visibility, meshes_and_solids) = (&v.image, v.of_meshes_and_solids());
         if let (Some(pass), Some(m)) = (&self.passes.mesh, &frame.scene.meshes)
             && let Some(neighbours) = &m.neighbours
         {
@@ -221,7 +226,7 @@ impl SmoothBorders {
                 positions: &m.positions,
                 neighbours,
                 visibility,
-                others,
+                meshes_and_solids,
                 resolved,
                 list,
                 points,
@@ -240,7 +245,7 @@ impl SmoothBorders {
                 tile_leaves: &tiles.tile_leaves,
                 tile_entries: &tiles.tile_entries,
                 visibility,
-                others,
+                meshes_and_solids,
                 resolved,
                 list,
                 points,
@@ -249,7 +254,8 @@ impl SmoothBorders {
         }
         barrier::buffers(cmd, &[(points, w, r), (pixels, r | w, r | w)]);
         if let Some(mean) = &self.passes.mean {
-            let bindings = border_mean::Bindings { frame: constants, visibility, others, resolved, list, points };
+            let bindings =
+                border_mean::Bindings { frame: constants, visibility, meshes_and_solids, resolved, list, points };
             mean.record(cmd, &bindings);
         }
     }

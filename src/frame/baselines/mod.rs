@@ -113,9 +113,9 @@ pub(super) fn untested(
     data: &SceneData,
     kinds: patches::Kinds<'_>,
 ) -> Result<Option<patches::Visibility>, GpuError> {
-    let others = data.has_meshes() || data.solids.kinds().is_some() || kinds.volume.is_some();
+    let meshes_and_solids = data.has_meshes() || data.solids.kinds().is_some() || kinds.volume.is_some();
     let kinds = patches::Kinds { trimmed: kinds.trimmed.map(|_| &TRIM_UNTRIMMED), ..kinds };
-    let made = data.untested && !others && kinds.trimmed.is_some();
+    let made = data.untested && !meshes_and_solids && kinds.trimmed.is_some();
     made.then(|| patches::Visibility::new(device, kinds)).transpose()
 }
 
@@ -151,7 +151,7 @@ impl Textures {
             face_instances: &s.face_instances,
             faces: &s.faces,
             cells: &scene.cells,
-            cell_items: &scene.cell_items,
+            cell_instances: &scene.cell_instances,
             strip_heights: &t.strip_heights,
             face_speeds: &t.face_speeds,
             seen_bins: None,
@@ -165,7 +165,7 @@ impl Textures {
             faces: &s.faces,
             curves: &scene.curves,
             curve_points: &scene.curve_points,
-            curve_items: &scene.curve_items,
+            curve_instances: &scene.curve_instances,
             face_speeds: &t.face_speeds,
             words: &t.words,
             starts: &t.starts,

@@ -10,8 +10,8 @@
 //! Degrees above the table's, and boxes that reach the near plane, are counted as clamps. Weights are ignored, as in
 //! the source.
 //!
-//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `items`, `cones`, `points`, `slefes`. Writes:
-//! `taus`, `counters`. The same in `f64`: `Way::Ipass` of `src/baselines/factors`.
+//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `patch_instances`, `cones`, `points`,
+//! `slefes`. Writes: `taus`, `counters`. The same in `f64`: `Way::Ipass` of `src/baselines/factors`.
 
 use crate::bindings::Bounded;
 use crate::frame::common::kernel::Kernel;
@@ -37,9 +37,9 @@ impl BaselineSlefe {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of `items`.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
+    /// One thread for each of `patch_instances`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, patch_instances: u32) {
         let resources = [b.bounded.resources().as_slice(), &[b.slefes.into()]].concat();
-        self.kernel.record(cmd, &resources, items);
+        self.kernel.record(cmd, &resources, patch_instances);
     }
 }

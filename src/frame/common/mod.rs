@@ -28,7 +28,7 @@ pub(crate) struct Passes {
 impl Passes {
     pub(super) fn new(device: &Device, data: &SceneData) -> Result<Self, GpuError> {
         let scan = scan::Scan::new(device, data.trim_way() == Some(TakenWay::Table))?;
-        let gate = (!data.items.is_empty()).then(|| gate::Gate::new(device)).transpose()?;
+        let gate = (!data.patch_instances.is_empty()).then(|| gate::Gate::new(device)).transpose()?;
         Ok(Self { reset: reset::Reset::new(device, false)?, scan, gate })
     }
 }

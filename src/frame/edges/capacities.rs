@@ -14,8 +14,8 @@ pub(crate) struct Capacities {
 impl Capacities {
     /// A first guess that fits most scenes in full view.
     pub(crate) fn first(counts: Counts) -> Self {
-        let some = counts.edge_items.saturating_mul(6).saturating_add(1 << 10).min(LINE_SOLID);
-        Self { chords: if counts.edge_items > 0 { some } else { 0 } }
+        let some = counts.piece_instances.saturating_mul(6).saturating_add(1 << 10).min(LINE_SOLID);
+        Self { chords: if counts.piece_instances > 0 { some } else { 0 } }
     }
 
     /// What the frame that reported `c` would have needed.

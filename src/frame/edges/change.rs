@@ -32,17 +32,17 @@ pub(crate) struct Bindings<'a> {
     /// Where each tile's leaves begin, and they; `None` where there are no such lists.
     pub tiles: Option<(&'a TexelBuffer, &'a TexelBuffer)>,
     pub visibility: &'a Image,
-    pub others: &'a Image,
+    pub meshes_and_solids: &'a Image,
     pub scene: &'a Scene,
     pub views: &'a Buffer,
     /// `None` where every operand has equations.
-    pub shells: Option<Shells<'a>>,
+    pub boundary_operands: Option<BoundaryOperands<'a>>,
     /// (u, v) of spline faces that bound operands; not read where there are none.
     pub operand_uv: &'a Image,
 }
 
 /// Of meshes that bound operands, in binding order.
-pub(crate) struct Shells<'a> {
+pub(crate) struct BoundaryOperands<'a> {
     pub meshes: &'a Buffer,
     pub triangles: &'a Buffer,
     pub positions: &'a Buffer,
@@ -59,13 +59,13 @@ struct Params {
 impl Change {
     /// `surfaces`: the most general kind of the solids' surfaces, `abi::SURFACE_*`.
     pub(crate) fn new(device: &Device, data: &SceneData, surfaces: u32) -> Result<Self, GpuError> {
-        let shells = !data.solids.shell_leaves.is_empty();
+        let boundary_operands = !data.solids.operand_leaves.is_empty();
         let constants = [
             (constant::SCENE_HAS_RATIONAL, u32::from(data.has_rational)),
             (constant::SCENE_HAS_FINE, u32::from(data.has_fine)),
             (constant::SCENE_HAS_MESHES_OR_SOLIDS, 1),
             (constant::SOLIDS_HAVE, surfaces),
-            (constant::SOLIDS_HAVE_SHELLS, u32::from(shells)),
+            (constant::SOLIDS_HAVE_BOUNDARY_OPERANDS, u32::from(boundary_operands)),
             (constant::SOLIDS_HAVE_PATCHES, u32::from(data.has_operands)),
         ];
         let colour = [ColourTarget { format: CHANGE_FORMAT, blend: Blend::Replace }];
@@ -84,18 +84,19 @@ impl Change {
         // the shader has these bindings in every scene, and reads them only where there are such operands and lists
         let lists: [Resource<'_>; 2] =
             b.tiles.map_or([b.primitives.leaf_surfaces; 2], |(starts, leaves)| [starts, leaves]).map(Into::into);
-        let shells = b.shells.as_ref();
-        let shells = shells.map_or([b.frame; 4], |m| [m.meshes, m.triangles, m.positions, m.planes]);
+        let boundary_operands = b.boundary_operands.as_ref();
+        let boundary_operands =
+            boundary_operands.map_or([b.frame; 4], |m| [m.meshes, m.triangles, m.positions, m.planes]);
         let s = b.scene;
-        let patches: [&Buffer; 4] = [&s.face_instances, &s.faces, &s.patches, &s.items];
+        let patches: [&Buffer; 4] = [&s.face_instances, &s.faces, &s.patches, &s.patch_instances];
         let instances: &Buffer = &s.instances;
         let resources: Vec<_> = [b.frame.into()]
             .into_iter()
             .chain(b.primitives.resources())
             .chain(lists)
-            .chain([b.visibility, b.others].map(Resource::from))
+            .chain([b.visibility, b.meshes_and_solids].map(Resource::from))
             .chain([instances, b.views].map(Resource::from))
-            .chain(shells.map(Resource::from))
+            .chain(boundary_operands.map(Resource::from))
             .chain([b.operand_uv.into()])
             .chain(patches.map(Resource::from))
             .chain([Resource::from(&s.points)])

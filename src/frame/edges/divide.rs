@@ -4,8 +4,8 @@
 //!   piece, view ──edge_count──▶ how many chords ──(scan)──▶ where they begin ──edge_emit──▶ chords, draw
 //! ```
 //!
-//! Each piece is walked twice, with the same arithmetic: the list has the order of the pieces, whatever the order of the
-//! threads. Chords are within a tenth of a pixel of the curve, in the picture and around it by half a line's width.
+//! Each piece is walked twice, with the same arithmetic: the list has the order of the pieces, whatever the order of
+//! the threads. Chords are within a tenth of a pixel of the curve, in the picture and around it by half a line's width.
 //!
 //! Reads: everything that `Bindings` names. Writes: `counts`, `chords`, `draw`, `counters`. Twin: `src/twin/edges.rs`.
 
@@ -27,10 +27,10 @@ pub(crate) struct Divide {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub views: &'a Buffer,
-    pub items: &'a Buffer,
+    pub piece_instances: &'a Buffer,
     pub pieces: &'a Buffer,
     pub points: &'a TexelBuffer,
-    /// Per item.
+    /// Per piece instance.
     pub counts: &'a Buffer,
     /// Their sums, one more.
     pub starts: &'a Buffer,
@@ -44,7 +44,7 @@ pub(crate) struct Bindings<'a> {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct Params {
-    pub item_count: u32,
+    pub instance_count: u32,
     pub margin_px: f32,
 }
 
@@ -63,20 +63,23 @@ impl Divide {
         })
     }
 
-    /// One thread an item.
+    /// One thread a piece instance.
     pub(crate) fn count(&self, cmd: &Commands<'_>, b: &Bindings<'_>, params: Params) {
-        let [frame, views, items, pieces] = [b.frame, b.views, b.items, b.pieces].map(Resource::from);
-        let resources = [frame, views, items, pieces, b.points.into(), b.counts.into(), b.counters.into()];
+        let [frame, views, piece_instances, pieces] =
+            [b.frame, b.views, b.piece_instances, b.pieces].map(Resource::from);
+        let resources = [frame, views, piece_instances, pieces, b.points.into(), b.counts.into(), b.counters.into()];
         self.count.bind(cmd, &resources, bytemuck::bytes_of(&params));
-        self.count.dispatch(cmd, params.item_count);
+        self.count.dispatch(cmd, params.instance_count);
     }
 
     /// The same, once `starts` has the sums; `chords` has room for `capacity`.
     pub(crate) fn emit(&self, cmd: &Commands<'_>, b: &Bindings<'_>, params: Params, capacity: u32) {
-        let [frame, views, items, pieces] = [b.frame, b.views, b.items, b.pieces].map(Resource::from);
+        let [frame, views, piece_instances, pieces] =
+            [b.frame, b.views, b.piece_instances, b.pieces].map(Resource::from);
         let written = [b.starts, b.counters, b.lines, b.chords, b.draw].map(Resource::from);
-        let resources = [frame, views, items, pieces, b.points.into()].into_iter().chain(written).collect::<Vec<_>>();
+        let resources =
+            [frame, views, piece_instances, pieces, b.points.into()].into_iter().chain(written).collect::<Vec<_>>();
         self.emit.bind(cmd, &resources, bytemuck::bytes_of(&EmitParams { all: params, capacity }));
-        self.emit.dispatch(cmd, params.item_count);
+        self.emit.dispatch(cmd, params.instance_count);
     }
 }

@@ -22,7 +22,7 @@ pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub placed: Placed<'a>,
     pub visibility: &'a Image,
-    pub others: &'a Image,
+    pub meshes_and_solids: &'a Image,
     pub best: &'a Image,
     pub meshes: Option<&'a MeshBuffers>,
     pub solids: SeenSolids<'a>,
@@ -40,7 +40,7 @@ impl Fold {
         let resources: Vec<_> = [b.frame.into()]
             .into_iter()
             .chain(b.placed.resources())
-            .chain([b.visibility.into(), b.others.into(), b.best.into()])
+            .chain([b.visibility.into(), b.meshes_and_solids.into(), b.best.into()])
             .chain(meshes.map(Resource::from))
             .chain(b.solids.resources())
             .collect();

@@ -38,7 +38,7 @@ pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub placed: Placed<'a>,
     pub visibility: &'a Image,
-    pub others: &'a Image,
+    pub meshes_and_solids: &'a Image,
     pub sources: &'a TexelBuffer,
     pub chords: &'a Buffer,
     pub edges: &'a EdgeBuffers,
@@ -77,8 +77,8 @@ impl Line {
     /// What `draw` says, and its number, over a picture of the visibility image's size.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, params: Params, draw: &Buffer) {
         let (e, placed) = (b.edges, b.placed.resources());
-        let seen = [b.visibility.into(), b.others.into(), Resource::from(&e.face_keys), b.sources.into()];
-        let edges = [b.chords, &e.items, &e.pieces, &e.lines, &e.own_faces].map(Resource::from);
+        let seen = [b.visibility.into(), b.meshes_and_solids.into(), Resource::from(&e.face_keys), b.sources.into()];
+        let edges = [b.chords, &e.piece_instances, &e.pieces, &e.lines, &e.own_faces].map(Resource::from);
         let meshes = b.meshes.map_or([b.frame; 3], |m| [&m.instances, &m.triangles, &m.positions]);
         let resources: Vec<_> = [b.frame.into()]
             .into_iter()
@@ -93,7 +93,8 @@ impl Line {
             .collect();
         cmd.rendering(b.visibility.size(), &[], None, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&params));
-            // lavapipe (Mesa 25.0.7) takes the number of draws of a draw without a count from the draw with one before it
+            // lavapipe (Mesa 25.0.7) takes the number of draws of a draw without a count from the draw with one before
+            // it
             cmd.draw_indirect_count(draw, 0, draw, COUNT_OFFSET, 1);
         });
     }

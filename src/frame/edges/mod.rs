@@ -76,12 +76,12 @@ impl Passes {
 
 /// What passes that follow surfaces are told of the scene.
 fn constants(data: &SceneData) -> [(u32, u32); 6] {
-    let others = data.has_meshes() || data.solids.kinds().is_some();
+    let meshes_and_solids = data.has_meshes() || data.solids.kinds().is_some();
     [
         (constant::SCENE_HAS_RATIONAL, u32::from(data.has_rational)),
         (constant::SCENE_HAS_FINE, u32::from(data.has_fine)),
         (constant::SCENE_HAS_MESHES, u32::from(data.has_meshes())),
-        (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(others)),
+        (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(meshes_and_solids)),
         (constant::SCENE_HAS_SOLIDS, u32::from(data.solids.kinds().is_some())),
         (constant::SOLIDS_HAVE_PATCHES, u32::from(data.has_operands)),
     ]
@@ -105,13 +105,13 @@ pub(crate) struct EdgeStage {
 /// What passes that ask whether a point is seen read of Boolean solids.
 fn seen_solids<'a>(parts: Option<&resolve::SolidBindings<'a>>, placed: &Placed<'a>, best: &'a Image) -> SeenSolids<'a> {
     // other things stand in for it in scenes without
-    let shells = parts.and_then(|parts| parts.shells.as_ref());
+    let boundary_operands = parts.and_then(|parts| parts.boundary_operands.as_ref());
     let faces: &Buffer = placed.faces;
     SeenSolids {
         operand_uv: parts.and_then(|parts| parts.operand_uv).unwrap_or(best),
-        leaf_surfaces: parts.map_or(placed.items, |parts| parts.primitives.leaf_surfaces),
+        leaf_surfaces: parts.map_or(placed.patch_instances, |parts| parts.primitives.leaf_surfaces),
         surface_places: parts.map_or(placed.points, |parts| parts.primitives.surface_places),
-        meshes: shells.map_or([faces; 3], |m| [m.meshes, m.triangles, m.positions]),
+        meshes: boundary_operands.map_or([faces; 3], |m| [m.meshes, m.triangles, m.positions]),
     }
 }
 
@@ -122,14 +122,14 @@ const BESIDE_PX: f32 = 2.0;
 
 impl EdgeStage {
     pub(super) fn new(room: &Room<'_>, passes: &Arc<Passes>) -> Result<Self, GpuError> {
-        let items = room.counts.edge_items;
+        let piece_instances = room.counts.piece_instances;
         let half = 0.5 * f64::from(room.size.1) / EdgeSettings::HEIGHT;
         let settings = passes.settings;
         Ok(Self {
             passes: Arc::clone(passes),
             half_px: [settings.width, settings.thin_width, settings.section_width].map(|width| (half * width) as f32),
-            counts: room.words("edge chord counts", items)?,
-            starts: room.words("edge chord starts", items + 1)?,
+            counts: room.words("edge chord counts", piece_instances)?,
+            starts: room.words("edge chord starts", piece_instances + 1)?,
             chords: room.structs::<Chord>("edge chords", room.capacities.edges.chords)?,
             draw: room.indirect::<u32>("edge draw", divide::DRAW_WORDS)?,
             best: room.image("best lines", BEST_FORMAT, COUNTED)?,
@@ -144,7 +144,7 @@ impl EdgeStage {
         let bindings = divide::Bindings {
             frame: frame.constants,
             views: frame.views,
-            items: &edges.items,
+            piece_instances: &edges.piece_instances,
             pieces: &edges.pieces,
             points: &edges.points,
             counts: &self.counts,
@@ -155,10 +155,10 @@ impl EdgeStage {
             draw: &self.draw,
         };
         let margin_px = self.half_px.into_iter().fold(0.0, f32::max) + BESIDE_PX;
-        let params = divide::Params { item_count: frame.counts.edge_items, margin_px };
+        let params = divide::Params { instance_count: frame.counts.piece_instances, margin_px };
         let divide = &self.passes.divide;
         divide.count(cmd, &bindings, params);
-        frame.stages.common.scan(cmd, &self.counts, &self.starts, frame.counts.edge_items);
+        frame.stages.common.scan(cmd, &self.counts, &self.starts, frame.counts.piece_instances);
         cmd.after(w, r | w);
         divide.emit(cmd, &bindings, params, frame.capacities.edges.chords);
         let drawn = Access::VERTEX_READ | Access::FRAGMENT_READ;
@@ -181,7 +181,7 @@ impl EdgeStage {
                 frame: frame.constants,
                 placed: s.placed(frame.views),
                 visibility: &v.image,
-                others: v.of_others(),
+                meshes_and_solids: v.of_meshes_and_solids(),
                 sources,
                 chords: &self.chords,
                 edges,
@@ -199,7 +199,7 @@ impl EdgeStage {
                 frame: frame.constants,
                 placed: s.placed(frame.views),
                 visibility: &v.image,
-                others: v.of_others(),
+                meshes_and_solids: v.of_meshes_and_solids(),
                 best: &self.best,
                 meshes: s.meshes.as_ref(),
                 solids,
@@ -218,7 +218,7 @@ impl EdgeStage {
             chords: &self.chords,
             edges: s.edges.as_ref(),
             visibility: &v.image,
-            others: v.of_others(),
+            meshes_and_solids: v.of_meshes_and_solids(),
         };
         let colours = show::Colours { seen: passes.settings.colour, hidden: passes.settings.hidden_colour };
         let numbers = frame.numbers.iter().filter(|_| passes.has_edge_image);

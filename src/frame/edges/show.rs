@@ -27,7 +27,7 @@ pub(crate) struct Bindings<'a> {
     /// Where lines are drawn along edges.
     pub edges: Option<&'a EdgeBuffers>,
     pub visibility: &'a Image,
-    pub others: &'a Image,
+    pub meshes_and_solids: &'a Image,
 }
 
 /// Of the colour, and of the image of numbers where there is one.
@@ -46,10 +46,10 @@ impl Show {
         let over = ColourTarget { format: colour, blend: Blend::Over };
         let number = numbers.map(|format| ColourTarget { format, blend: Blend::Replace });
         let colour: Vec<_> = [over].into_iter().chain(number).collect();
-        let others = data.has_meshes() || data.solids.kinds().is_some();
+        let meshes_and_solids = data.has_meshes() || data.solids.kinds().is_some();
         let constants = [
             (constant::HAS_EDGE_IMAGE, u32::from(numbers.is_some())),
-            (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(others)),
+            (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(meshes_and_solids)),
         ];
         let draw = Draw::new("edge_show", &shaders::RESOLVE_VERT, &shaders::EDGE_SHOW_FRAG);
         Ok(Self { pipeline: Draw { constants: &constants, colour: &colour, ..draw }.pipeline(device)? })
@@ -58,9 +58,9 @@ impl Show {
     /// One triangle over the targets.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, colours: Colours, into: &[Attachment<'_>]) {
         // not read without
-        let edges = b.edges.map_or([b.frame; 3], |e| [&e.items, &e.pieces, &e.lines]).map(Resource::from);
+        let edges = b.edges.map_or([b.frame; 3], |e| [&e.piece_instances, &e.pieces, &e.lines]).map(Resource::from);
         let lists = [b.frame.into(), b.best.into(), b.chords.into()].into_iter().chain(edges);
-        let images = [b.visibility, b.others].map(Resource::from);
+        let images = [b.visibility, b.meshes_and_solids].map(Resource::from);
         let resources: Vec<_> = lists.chain(images).collect();
         cmd.rendering(b.visibility.size(), into, None, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&colours));

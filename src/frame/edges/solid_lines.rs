@@ -1,4 +1,5 @@
-//! Lines of Boolean solids: their edges are known to no file, but the pixels' centres show between which of them one runs.
+//! Lines of Boolean solids: their edges are known to no file, but the pixels' centres show between which of them one
+//! runs.
 //!
 //! ```text
 //!   what centres see, surfaces' equations ──edge_change──▶ places between centres ──edge_join──▶ each pixel's best line
@@ -62,10 +63,10 @@ impl Passes {
             primitives: parts.primitives,
             tiles: solids.stage.tiles().map(|t| (&t.tile_starts, &t.tile_leaves)),
             visibility: &v.image,
-            others: v.of_others(),
+            meshes_and_solids: v.of_meshes_and_solids(),
             scene: s,
             views: frame.views,
-            shells: parts.shells.map(|m| change::Shells {
+            boundary_operands: parts.boundary_operands.map(|m| change::BoundaryOperands {
                 meshes: m.meshes,
                 triangles: m.triangles,
                 positions: m.positions,

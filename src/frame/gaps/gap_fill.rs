@@ -11,8 +11,8 @@
 //! ```
 //!
 //! Reads: everything that the bindings name but what it writes. Writes: `find`: `candidates`, `dispatch`,
-//! `counters`, and the mark in the visibility image; `record`: `candidates`; `show`: the visibility image. All of them at
-//! gap candidates only.
+//! `counters`, and the mark in the visibility image; `record`: `candidates`; `show`: the visibility image. All of them
+//! at gap candidates only.
 
 use crate::bindings::{Placed, Primitives};
 use crate::frame::common::kernel::Kernel;
@@ -51,7 +51,7 @@ pub(crate) struct Bindings<'a> {
     pub counters: &'a Buffer,
     pub instances: &'a TexelBuffer,
     /// What is no patch; `None` where the scene has nothing else.
-    pub others: Option<Others<'a>>,
+    pub meshes_and_solids: Option<MeshesAndSolids<'a>>,
     /// What the trim test reads, in its order.
     pub trim: &'a [Resource<'a>],
     /// The volume that trims the scene; `None` where there is none.
@@ -60,7 +60,7 @@ pub(crate) struct Bindings<'a> {
 }
 
 /// What is no patch, in binding order.
-pub(crate) struct Others<'a> {
+pub(crate) struct MeshesAndSolids<'a> {
     pub seen: &'a Image,
     /// `None` where the scene has no mesh.
     pub meshes: Option<Meshes<'a>>,
@@ -74,18 +74,18 @@ pub(crate) struct Meshes<'a> {
 }
 
 impl GapFill {
-    /// `test`: how faces are trimmed; `others`: the scene has things that are no patches; `volume`: one trims the
-    /// scene, and its most general kind of surface.
+    /// `test`: how faces are trimmed; `meshes_and_solids`: the scene has things that are no patches; `volume`: one
+    /// trims the scene, and its most general kind of surface.
     pub(crate) fn new(
         device: &Device,
         test: &TrimTest,
-        (rational, others): (bool, bool),
+        (rational, meshes_and_solids): (bool, bool),
         volume: Option<u32>,
     ) -> Result<Self, GpuError> {
         let weights = if rational { "rational" } else { "polynomial" };
         let constants = [
             (constant::SCENE_HAS_RATIONAL, u32::from(rational)),
-            (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(others)),
+            (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(meshes_and_solids)),
             (constant::SOLIDS_HAVE, volume.unwrap_or_default()),
         ];
         let (fill, within, constants) = match test.within.filter(|_| volume.is_some()) {
@@ -119,9 +119,9 @@ impl GapFill {
     /// One thread a gap candidate.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
         // the shader has these bindings in every scene, and reads them only where there are others
-        let seen = b.others.as_ref().map_or(b.visibility, |o| o.seen);
+        let seen = b.meshes_and_solids.as_ref().map_or(b.visibility, |o| o.seen);
         let none = Meshes { instances: b.frame, triangles: b.frame, positions: b.frame };
-        let meshes = b.others.as_ref().and_then(|o| o.meshes.as_ref()).unwrap_or(&none);
+        let meshes = b.meshes_and_solids.as_ref().and_then(|o| o.meshes.as_ref()).unwrap_or(&none);
         let resources = [
             b.visibility.into(),
             b.candidates.into(),

@@ -23,9 +23,9 @@ const BORDER_DEPTH_FORMAT: vk::Format = vk::Format::R32_UINT;
 
 /// The passes of scenes with trims, whose test is `test`.
 pub(super) fn passes(device: &Device, data: &SceneData, test: &TrimTest) -> Result<gap_fill::GapFill, GpuError> {
-    let others = data.has_meshes() || data.solids.kinds().is_some();
+    let meshes_and_solids = data.has_meshes() || data.solids.kinds().is_some();
     let volume = data.volume.as_ref().and_then(SolidData::kinds);
-    gap_fill::GapFill::new(device, test, (data.has_rational, others), volume)
+    gap_fill::GapFill::new(device, test, (data.has_rational, meshes_and_solids), volume)
 }
 
 /// The stage.
@@ -62,8 +62,11 @@ impl Gaps {
         let (w, r) = WRITE_TO_READ;
         let borders = (&self.border_depths, Access::FRAGMENT_WRITE, r);
         barrier::images(cmd, &[(&v.image, Access::COLOUR_WRITE, w), (&v.depth, Access::DEPTH_WRITE, r), borders]);
-        if let Some(others) = &v.others {
-            barrier::images(cmd, &[(others, Access::COLOUR_WRITE, Access::COMPUTE_READ | Access::FRAGMENT_READ)]);
+        if let Some(meshes_and_solids) = &v.meshes_and_solids {
+            barrier::images(
+                cmd,
+                &[(meshes_and_solids, Access::COLOUR_WRITE, Access::COMPUTE_READ | Access::FRAGMENT_READ)],
+            );
         }
         barrier::buffers(cmd, &[(&c.counters, Access::INDIRECT_READ, w), (&self.dispatch, Access::TRANSFER_WRITE, w)]);
         let find = gap_fill::FindBindings {
@@ -85,7 +88,7 @@ impl Gaps {
             candidates: &self.candidates,
             counters: &c.counters,
             instances: &s.instances,
-            others: v.others.as_ref().map(|seen| gap_fill::Others {
+            meshes_and_solids: v.meshes_and_solids.as_ref().map(|seen| gap_fill::MeshesAndSolids {
                 seen,
                 meshes: s.meshes.as_ref().map(|m| gap_fill::Meshes {
                     instances: &m.instances,

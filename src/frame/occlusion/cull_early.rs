@@ -15,12 +15,12 @@ pub(crate) struct CullEarly {
 /// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    /// Whether each item was hidden.
+    /// Whether each patch instance was hidden.
     pub hidden: &'a Buffer,
     pub taus: &'a Buffer,
     /// `hidden`.
     pub counters: &'a Buffer,
-    /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight.
+    /// [`PatchRun`](crate::abi::PatchRun)s of the patch instances in sight.
     pub in_sight: &'a Buffer,
 }
 
@@ -30,9 +30,9 @@ impl CullEarly {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of the `items` in sight.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
+    /// One thread for each of the `patch_instances` in sight.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, patch_instances: u32) {
         let resources = [b.frame, b.hidden, b.taus, b.counters, b.in_sight].map(Into::into);
-        self.kernel.record(cmd, &resources, items);
+        self.kernel.record(cmd, &resources, patch_instances);
     }
 }

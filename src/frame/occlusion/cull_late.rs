@@ -6,8 +6,8 @@
 //!   hidden     not drawn in the next frame       drawn now
 //! ```
 //!
-//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `points`, `items`, `farthest`, `outside`.
-//! Writes: `taus`, `hidden`, `counters`. Twin: `src/twin/occlusion.rs`.
+//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `points`, `patch_instances`, `farthest`,
+//! `outside`. Writes: `taus`, `hidden`, `counters`. Twin: `src/twin/occlusion.rs`.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, TexelBuffer};
@@ -27,8 +27,8 @@ pub(crate) struct Bindings<'a> {
     pub faces: &'a Buffer,
     pub patches: &'a Buffer,
     pub points: &'a TexelBuffer,
-    /// Face instance of each item.
-    pub items: &'a Buffer,
+    /// Face instance of each patch instance.
+    pub patch_instances: &'a Buffer,
     /// Farthest depths of squares, then of tiles, then of blocks.
     pub farthest: &'a Buffer,
     pub taus: &'a Buffer,
@@ -37,7 +37,7 @@ pub(crate) struct Bindings<'a> {
     pub outside: &'a Buffer,
     /// `hidden`.
     pub counters: &'a Buffer,
-    /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight.
+    /// [`PatchRun`](crate::abi::PatchRun)s of the patch instances in sight.
     pub in_sight: &'a Buffer,
 }
 
@@ -52,8 +52,8 @@ impl CullLate {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of the `items` in sight.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
+    /// One thread for each of the `patch_instances` in sight.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, patch_instances: u32) {
         let resources = [
             b.frame.into(),
             b.views.into(),
@@ -62,7 +62,7 @@ impl CullLate {
             b.faces.into(),
             b.patches.into(),
             b.points.into(),
-            b.items.into(),
+            b.patch_instances.into(),
             b.farthest.into(),
             b.taus.into(),
             b.hidden.into(),
@@ -70,6 +70,6 @@ impl CullLate {
             b.counters.into(),
             b.in_sight.into(),
         ];
-        self.kernel.record(cmd, &resources, items);
+        self.kernel.record(cmd, &resources, patch_instances);
     }
 }

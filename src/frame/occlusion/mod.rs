@@ -65,7 +65,7 @@ impl Passes {
 /// The stage.
 pub(crate) struct Occlusion {
     passes: Arc<Passes>,
-    /// One word an item: whether the patch was hidden in the last frame that had it in sight.
+    /// One word a patch instance: whether the patch was hidden in the last frame that had it in sight.
     hidden: Buffer,
     /// One float a square of pixels, then one a tile, then one a block of tiles.
     farthest: Buffer,
@@ -76,7 +76,7 @@ impl Occlusion {
         let levels = [SQUARE, TILE, TILE * BLOCK].map(|side| room.squares(side));
         Ok(Self {
             passes: Arc::clone(passes),
-            hidden: room.words("hidden patches", room.counts.items)?,
+            hidden: room.words("hidden patches", room.counts.patch_instances)?,
             farthest: room.words("farthest depths", levels.into_iter().sum())?,
         })
     }
@@ -94,9 +94,9 @@ impl Occlusion {
         let (w, r) = WRITE_TO_READ;
         let cleared = Access::TRANSFER_WRITE;
         barrier::buffers(cmd, &[(taus, w, w), (&self.hidden, cleared | w, r), (counters, w, w)]);
-        let (in_sight, items) = (frame.in_sight, frame.items_in_sight);
+        let (in_sight, patch_instances) = (frame.in_sight, frame.patch_instances_in_sight);
         let bindings = cull_early::Bindings { frame: frame.constants, hidden: &self.hidden, taus, counters, in_sight };
-        self.passes.cull_early.record(cmd, &bindings, items);
+        self.passes.cull_early.record(cmd, &bindings, patch_instances);
         cmd.after(w, w);
     }
 
@@ -115,7 +115,7 @@ impl Occlusion {
         let pyramid = depth_pyramid::Bindings { frame: frame.constants, depth: &v.depth, farthest: &self.farthest };
         self.passes.depth_pyramid.record(cmd, &pyramid);
         cmd.after(w | Access::INDIRECT_READ, r | w);
-        let (in_sight, items) = (frame.in_sight, frame.items_in_sight);
+        let (in_sight, patch_instances) = (frame.in_sight, frame.patch_instances_in_sight);
         let bindings = cull_late::Bindings {
             frame: frame.constants,
             views: frame.views,
@@ -124,7 +124,7 @@ impl Occlusion {
             faces: &s.faces,
             patches: &s.patches,
             points: &s.points,
-            items: &s.items,
+            patch_instances: &s.patch_instances,
             farthest: &self.farthest,
             taus,
             hidden: &self.hidden,
@@ -132,7 +132,7 @@ impl Occlusion {
             counters: &c.counters,
             in_sight,
         };
-        self.passes.cull_late.record(cmd, &bindings, items);
+        self.passes.cull_late.record(cmd, &bindings, patch_instances);
         barrier::images(cmd, &[(&v.depth, r, Access::DEPTH_WRITE)]);
         if frame.occlusion != OcclusionState::Moved {
             cmd.after(w, Access::INDIRECT_READ);

@@ -53,7 +53,7 @@ pub(super) fn kinds(data: &SceneData) -> resolve::Kinds {
         solids: data.solids.kinds().map(|surfaces| resolve::SolidKinds {
             surfaces,
             tiles: solids::has_tiles(data),
-            shells: !data.solids.shell_leaves.is_empty(),
+            boundary_operands: !data.solids.operand_leaves.is_empty(),
         }),
         operands: data.has_operands,
         sun: data.sun.is_some(),
@@ -144,7 +144,7 @@ impl Shading {
             placed: s.placed(frame.views),
             instances: &s.instances,
             visibility: &v.image,
-            others: v.of_others(),
+            meshes_and_solids: v.of_meshes_and_solids(),
             squares: self.squares.as_ref().map(|squares| {
                 let (width, height) = v.image.size();
                 (width.div_ceil(TILE) * height.div_ceil(TILE), &squares.buffer)
@@ -160,7 +160,7 @@ impl Shading {
             positions: &m.positions,
             normals: &m.normals,
             visibility: &v.image,
-            others: v.of_others(),
+            meshes_and_solids: v.of_meshes_and_solids(),
         });
         let solids = frame.solids().map(|parts| parts.resolve(frame));
         let kinds = (meshes.as_ref(), solids.as_ref());
@@ -174,9 +174,9 @@ impl Shading {
         let bindings = numbers::Bindings {
             sources,
             face_instances: &s.face_instances,
-            items: &s.items,
+            patch_instances: &s.patch_instances,
             visibility: &v.image,
-            others: v.of_others(),
+            meshes_and_solids: v.of_meshes_and_solids(),
             mesh_instances: s.meshes.as_ref().map_or(frame.constants, |m| &m.instances),
         };
         pass.record(cmd, &bindings, into);
@@ -189,7 +189,7 @@ impl Shading {
         let bindings = seen_squares::Bindings {
             frame: frame.constants,
             visibility: &v.image,
-            others: v.of_others(),
+            meshes_and_solids: v.of_meshes_and_solids(),
             squares: buffer,
         };
         pass.record(cmd, &bindings);

@@ -25,9 +25,9 @@ pub(crate) struct Numbers {
 pub(crate) struct Bindings<'a> {
     pub sources: &'a TexelBuffer,
     pub face_instances: &'a TexelBuffer,
-    pub items: &'a TexelBuffer,
+    pub patch_instances: &'a TexelBuffer,
     pub visibility: &'a Image,
-    pub others: &'a Image,
+    pub meshes_and_solids: &'a Image,
     /// A placeholder in scenes without meshes.
     pub mesh_instances: &'a Buffer,
 }
@@ -46,8 +46,8 @@ impl Numbers {
             load => load,
         };
         let into = into.map(|attachment| Attachment { load: cleared(attachment), ..attachment });
-        let texels = [b.sources, b.face_instances, b.items].map(Resource::from);
-        let rest = [b.visibility.into(), b.others.into(), b.mesh_instances.into()];
+        let texels = [b.sources, b.face_instances, b.patch_instances].map(Resource::from);
+        let rest = [b.visibility.into(), b.meshes_and_solids.into(), b.mesh_instances.into()];
         let resources: Vec<_> = texels.into_iter().chain(rest).collect();
         cmd.rendering(b.visibility.size(), &into, None, || {
             cmd.bind(&self.pipeline, &resources, &[]);

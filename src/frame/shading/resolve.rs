@@ -1,7 +1,7 @@
 //! Pass `resolve`: the exact surface at each pixel's centre, its normal, and light.
 //!
 //! ```text
-//!   item, (u, v) of the triangle ──Newton──▶ (u, v) whose exact point projects to the pixel's centre
+//!   patch instance, (u, v) of the triangle ──Newton──▶ (u, v) whose exact point projects to the pixel's centre
 //!   triangle of a mesh ──plane──▶   │
 //!   side of a Boolean solid ─────▶  │        a pipeline for each kind of surface discards other pixels; with a
 //!   nothing ──clear─────────────▶   │        sun, it tests whether the sun's light reaches the point; each draws
@@ -96,7 +96,7 @@ pub(crate) struct SolidKinds {
     /// There are lists of the tiles that may show them.
     pub tiles: bool,
     /// Some operand has no equations.
-    pub shells: bool,
+    pub boundary_operands: bool,
 }
 
 /// Formats of the host's targets.
@@ -146,7 +146,7 @@ pub(crate) struct Bindings<'a> {
     pub instances: &'a TexelBuffer,
     pub visibility: &'a Image,
     /// The image of meshes and solids; the visibility image again if the scene has no trims, or only patches.
-    pub others: &'a Image,
+    pub meshes_and_solids: &'a Image,
     /// The picture's number of tiles, and the squares of tiles that show a patch or a mesh; `None` in scenes without
     /// them.
     pub squares: Option<(u32, &'a Buffer)>,
@@ -164,7 +164,7 @@ pub(crate) struct MeshBindings<'a> {
     pub normals: &'a Buffer,
     pub visibility: &'a Image,
     /// The visibility image again if the scene has no trims.
-    pub others: &'a Image,
+    pub meshes_and_solids: &'a Image,
 }
 
 /// Buffers and images of the pipeline for Boolean solids, in binding order.
@@ -173,17 +173,17 @@ pub(crate) struct SolidBindings<'a> {
     pub primitives: Primitives<'a>,
     pub visibility: &'a Image,
     /// The visibility image again if the scene has no trims.
-    pub others: &'a Image,
+    pub meshes_and_solids: &'a Image,
     /// The picture's number of tiles, and the squares of tiles that may show a solid; `None` without such lists.
     pub tiles: Option<(u32, &'a Buffer)>,
     /// (u, v) of spline faces of operands.
     pub operand_uv: Option<&'a Image>,
     /// `None` if every operand has equations.
-    pub shells: Option<ShellBindings<'a>>,
+    pub boundary_operands: Option<OperandBindings<'a>>,
 }
 
 /// Buffers of operands' meshes, in binding order.
-pub(crate) struct ShellBindings<'a> {
+pub(crate) struct OperandBindings<'a> {
     pub instances: &'a Buffer,
     pub meshes: &'a Buffer,
     pub triangles: &'a Buffer,
@@ -234,17 +234,20 @@ impl Resolve {
             (constant::SCENE_HAS_PIECES, u32::from(kinds.pieces)),
             (constant::SCENE_HAS_FINE, u32::from(kinds.fine)),
         ];
-        let others = [(constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(kinds.meshes || kinds.solids.is_some()))];
-        let shells = [(constant::SOLIDS_HAVE_SHELLS, u32::from(kinds.solids.is_some_and(|s| s.shells)))];
+        let meshes_and_solids =
+            [(constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(kinds.meshes || kinds.solids.is_some()))];
+        let boundary_operands =
+            [(constant::SOLIDS_HAVE_BOUNDARY_OPERANDS, u32::from(kinds.solids.is_some_and(|s| s.boundary_operands)))];
         let lit = |is_there: bool, vertex, name, fragment, constants: &[&[(u32, u32)]]| {
             is_there.then(|| over(vertex, name, fragment, &[&of_all[..], &constants.concat()].concat())).transpose()
         };
         let weights = if kinds.rational { "rational" } else { "polynomial" };
         let has_tiles = kinds.solids.is_some_and(|s| s.tiles);
         let of_solid = if has_tiles { &shaders::RESOLVE_SOLID_VERT } else { &shaders::RESOLVE_VERT };
-        let patches = lit(kinds.patches, &shaders::RESOLVE_SEEN_VERT, weights, of.patches, &[&of_patches, &others])?;
+        let patches =
+            lit(kinds.patches, &shaders::RESOLVE_SEEN_VERT, weights, of.patches, &[&of_patches, &meshes_and_solids])?;
         let meshes = lit(kinds.meshes, &shaders::RESOLVE_SEEN_MESH_VERT, "mesh", of.meshes, &[])?;
-        let solids = lit(kinds.solids.is_some(), of_solid, "solid", of.solids, &[&shells])?;
+        let solids = lit(kinds.solids.is_some(), of_solid, "solid", of.solids, &[&boundary_operands])?;
         let operands = lit(kinds.operands, &shaders::RESOLVE_VERT, "operand", of.operands, &[&of_patches])?;
         let unseen = || over(&shaders::RESOLVE_VERT, "background", &shaders::RESOLVE_BACKGROUND_FRAG, &[]);
         let background = (into == Destination::Sum).then(unseen).transpose()?;
@@ -271,7 +274,7 @@ impl Resolve {
             let patches = || [b.frame.into()].into_iter().chain(b.placed.resources());
             let rest = [b.instances.into(), b.visibility.into()];
             if let Some(pipeline) = &self.background {
-                cmd.bind(pipeline, &[b.frame.into(), b.visibility.into(), b.others.into()], &[]);
+                cmd.bind(pipeline, &[b.frame.into(), b.visibility.into(), b.meshes_and_solids.into()], &[]);
                 cmd.draw(3, 0, 1);
             }
             if let (Some(pipeline), Some((count, squares))) = (&self.patches, b.squares) {
@@ -281,26 +284,29 @@ impl Resolve {
             if let (Some(pipeline), Some(m), Some((count, squares))) = (&self.meshes, meshes, b.squares) {
                 let placed = [m.frame, m.views, m.instances, m.mesh_instances, m.meshes].map(Into::into);
                 let shape = [m.triangles, m.positions, m.normals].map(Into::into);
-                let images = [m.visibility.into(), m.others.into(), squares.into()];
+                let images = [m.visibility.into(), m.meshes_and_solids.into(), squares.into()];
                 bind(pipeline, placed.into_iter().chain(shape).chain(images).collect());
                 cmd.draw_instances(0..6, 0..count);
             }
             if let (Some(pipeline), Some(s)) = (&self.solids, solids) {
-                // the shader declares these bindings in every scene, and reads them only with shells
-                let shells = s
-                    .shells
+                // the shader declares these bindings in every scene, and reads them only with boundary operands
+                let boundary_operands = s
+                    .boundary_operands
                     .as_ref()
                     .map_or([s.frame; 6], |m| [m.instances, m.meshes, m.triangles, m.positions, m.planes, m.views]);
-                let images = [s.visibility.into(), s.others.into()];
+                let images = [s.visibility.into(), s.meshes_and_solids.into()];
                 let squares = s.tiles.map(|(_, squares)| squares.into());
                 let primitives = [s.frame.into()].into_iter().chain(s.primitives.resources());
-                bind(pipeline, primitives.chain(images).chain(squares).chain(shells.map(Into::into)).collect());
+                bind(
+                    pipeline,
+                    primitives.chain(images).chain(squares).chain(boundary_operands.map(Into::into)).collect(),
+                );
                 match s.tiles {
                     Some((count, _)) => cmd.draw_instances(0..6, 0..count),
                     None => cmd.draw(3, 0, 1),
                 }
                 if let (Some(pipeline), Some(uv)) = (&self.operands, s.operand_uv) {
-                    let images = [s.others.into(), uv.into()];
+                    let images = [s.meshes_and_solids.into(), uv.into()];
                     bind(pipeline, patches().chain(rest).chain(images).collect());
                     cmd.draw(3, 0, 1);
                 }

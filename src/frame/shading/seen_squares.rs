@@ -17,7 +17,7 @@ pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub visibility: &'a Image,
     /// The image of meshes and solids; the visibility image again if the scene has no trims, or only patches.
-    pub others: &'a Image,
+    pub meshes_and_solids: &'a Image,
     /// The side, in tiles, of the square that begins at each tile, or 0.
     pub squares: &'a Buffer,
 }
@@ -34,7 +34,7 @@ impl SeenSquares {
         let blocks = |pixels: u32| pixels.div_ceil(TILE * BLOCK);
         self.kernel.record_grid(
             cmd,
-            &[b.frame.into(), b.visibility.into(), b.others.into(), b.squares.into()],
+            &[b.frame.into(), b.visibility.into(), b.meshes_and_solids.into(), b.squares.into()],
             [blocks(width), blocks(height), 1],
         );
     }

@@ -11,7 +11,7 @@ impl<'a> Frame<'a> {
         let sun = self.sun?;
         // if nothing casts shadows, the shader reads only the first
         let (tiles, leaves) = self.scene.sun.as_ref().map_or((sun, sun), |s| (&s.tiles, &s.leaves));
-        let (points, words, quads) = (&self.scene.points, &self.scene.items, &self.scene.patches);
+        let (points, words, quads) = (&self.scene.points, &self.scene.patch_instances, &self.scene.patches);
         let of = |which: fn(&'a SunTiles) -> Option<&'a TexelBuffer>, none: &'a TexelBuffer| {
             self.scene.sun.as_ref().and_then(which).unwrap_or(none)
         };

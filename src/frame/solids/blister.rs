@@ -120,7 +120,7 @@ impl Blister {
         visibility: vk::Format,
         depth: vk::Format,
     ) -> Result<Self, GpuError> {
-        let constants = [(constant::SOLIDS_HAVE, surfaces), (constant::SOLIDS_HAVE_SHELLS, 0)];
+        let constants = [(constant::SOLIDS_HAVE, surfaces), (constant::SOLIDS_HAVE_BOUNDARY_OPERANDS, 0)];
         let layer = [ColourTarget { format: LAYER_FORMAT, blend: Blend::Replace }];
         let seen = [ColourTarget { format: visibility, blend: Blend::Replace }];
         let nearest = DepthTest { format: LAYER_DEPTH_FORMAT, compare: vk::CompareOp::LESS, write: true };

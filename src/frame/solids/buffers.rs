@@ -52,7 +52,7 @@ impl FragmentBuffers {
 /// Length of the longest list whose prefix sum is computed.
 pub(crate) fn scanned(room: &Room<'_>) -> u32 {
     let counts = room.counts;
-    let in_tiles = counts.leaves > 0 && !(counts.blister && counts.shells > 0);
+    let in_tiles = counts.leaves > 0 && !(counts.blister && counts.boundary_operands > 0);
     let [runs, tiles] = if in_tiles { counted(room) } else { [0, 0] };
     let pixels = if counts.has_fragments() { room.band_pixels() } else { 0 };
     runs.max(tiles).max(pixels)

@@ -274,7 +274,8 @@ mod tests {
     /// Any rows need at most three recordings, unless one row alone does not fit.
     #[test]
     fn frames_settle_within_their_limits() {
-        let counts = |solid_budget| Counts { leaves: 40, shells: 1, events: true, solid_budget, ..Counts::default() };
+        let counts =
+            |solid_budget| Counts { leaves: 40, boundary_operands: 1, events: true, solid_budget, ..Counts::default() };
         let mut seed = 1u64;
         let mut random = |most: u32| {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -318,7 +319,7 @@ mod tests {
     /// If the counters exceed 32 bits, the largest row suffices to choose bands.
     #[test]
     fn what_cannot_be_counted_is_drawn_in_bands_that_can() {
-        let counts = Counts { leaves: 4, shells: 1, events: true, ..Counts::default() };
+        let counts = Counts { leaves: 4, boundary_operands: 1, events: true, ..Counts::default() };
         let c = Counters {
             fragments: 17,
             band_fragments: u32::MAX,

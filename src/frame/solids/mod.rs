@@ -42,7 +42,7 @@ use crate::shaders::TrimTest;
 use bands::Band;
 use blister::Blister;
 use buffers::{FragmentBuffers, LayerImages};
-use operands::{Operands, ShellPasses};
+use operands::{OperandPasses, Operands};
 use std::sync::Arc;
 use tiles::{TilePasses, Tiles};
 
@@ -50,7 +50,7 @@ use tiles::{TilePasses, Tiles};
 pub(crate) struct Passes {
     rects: Arc<solid_rects::SolidRects>,
     way: WayPasses,
-    operands: Option<Arc<ShellPasses>>,
+    operands: Option<Arc<OperandPasses>>,
 }
 
 /// The passes of the way that finds the faces, and the passes that list each tile's leaves.
@@ -63,24 +63,24 @@ enum WayPasses {
 
 /// Whether there are lists of each tile's leaves: not for way `blister` with meshes.
 pub(super) fn has_tiles(data: &SceneData) -> bool {
-    data.solids.blister.is_none() || data.solids.shell_leaves.is_empty()
+    data.solids.blister.is_none() || data.solids.operand_leaves.is_empty()
 }
 
 impl Passes {
     /// `None` in scenes without Boolean solids.
     pub(super) fn new(device: &Device, data: &SceneData, trim: Option<&TrimTest>) -> Result<Option<Self>, GpuError> {
         let Some(surfaces) = data.solids.kinds() else { return Ok(None) };
-        let shells = !data.solids.shell_leaves.is_empty();
+        let boundary_operands = !data.solids.operand_leaves.is_empty();
         let peels = data.solids.blister.is_some();
         let formats = (VISIBILITY_FORMAT, DEPTH_FORMAT);
         let tiles = || TilePasses::new(device).map(Arc::new);
         let way = || {
             Ok(if peels {
-                let pass = Blister::new(device, (surfaces, shells), formats.0, formats.1)?;
+                let pass = Blister::new(device, (surfaces, boundary_operands), formats.0, formats.1)?;
                 WayPasses::Blister(Arc::new(pass), has_tiles(data).then(tiles).transpose()?)
             } else if data.solids.order.is_empty() {
                 let followed = data.solids.is_followed();
-                let kinds = solid_events::Kinds { surfaces, shells, patches: data.has_operands, followed };
+                let kinds = solid_events::Kinds { surfaces, boundary_operands, patches: data.has_operands, followed };
                 let pass = solid_events::SolidEvents::new(device, kinds, formats.0, formats.1)?;
                 WayPasses::Events(Arc::new(pass), tiles()?)
             } else {
@@ -89,7 +89,7 @@ impl Passes {
             })
         };
         let lists = || {
-            let operands = (shells && !peels).then(|| ShellPasses::new(device, data, trim)).transpose()?;
+            let operands = (boundary_operands && !peels).then(|| OperandPasses::new(device, data, trim)).transpose()?;
             Ok((solid_rects::SolidRects::new(device)?, operands))
         };
         let (way, lists) = rayon::join(way, lists);
@@ -124,7 +124,7 @@ impl Solids {
         let counts = room.counts;
         let tiles = |passes| Tiles::new(room, passes).map(Box::new);
         let uv = || room.image("operand (u, v)", solid_events::OPERAND_UV_FORMAT, DRAWN_AND_READ);
-        let operands = |passes: &Arc<ShellPasses>| Operands::new(room, passes);
+        let operands = |passes: &Arc<OperandPasses>| Operands::new(room, passes);
         Ok(Self {
             rects: Arc::clone(&passes.rects),
             rect_buffer: room.structs::<Rect>("solid rects", counts.leaves)?,
@@ -236,8 +236,8 @@ impl<'a> SolidParts<'a> {
         if let Some(tiles) = self.stage.tiles() {
             tiles.record(frame, cmd, self, band);
         }
-        if let (Some(operands), Some(shells)) = (&self.stage.operands, &self.scene.shells) {
-            operands.record(frame, cmd, (self, shells), band);
+        if let (Some(operands), Some(boundary_operands)) = (&self.stage.operands, &self.scene.boundary_operands) {
+            operands.record(frame, cmd, (self, boundary_operands), band);
         }
     }
 
@@ -246,7 +246,7 @@ impl<'a> SolidParts<'a> {
         let (stage, s) = (self.stage, self.scene);
         let w = WRITE_TO_READ.0;
         let (v, counters) = (&frame.stages.visibility, &frame.stages.common.counters);
-        let seen = v.of_others();
+        let seen = v.of_meshes_and_solids();
         // meshes are drawn before
         let drawn = frame.scene.meshes.is_some();
         let colour = Attachment { image: seen, load: if drawn { Load::Keep } else { Load::ColourU32([0; 4]) } };
@@ -301,9 +301,9 @@ impl<'a> SolidParts<'a> {
             frame: frame.constants,
             primitives: self.scene.primitives(self.centres.surfaces),
             visibility: &v.image,
-            others: v.of_others(),
+            meshes_and_solids: v.of_meshes_and_solids(),
             operand_uv: self.stage.operand_uv.as_ref(),
-            shells: self.scene.shells.as_ref().map(|m| resolve::ShellBindings {
+            boundary_operands: self.scene.boundary_operands.as_ref().map(|m| resolve::OperandBindings {
                 instances: &frame.scene.instances,
                 meshes: &m.meshes,
                 triangles: &m.triangles,

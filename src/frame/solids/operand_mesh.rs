@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   triangles ──raster, no depth test──▶ fragments of each pixel: counted, then stored from the pixel's prefix sum
-//!                                        on: shell, side, depth of the triangle's plane
+//!                                        on: operand, side, depth of the triangle's plane
 //! ```
 //!
 //! Reads: everything that `Bindings` names except its outputs. Writes: `counts`; in the second step `counts`, which

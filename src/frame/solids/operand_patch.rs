@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   sub-patches ──stages of pass `visibility`──▶ fragments of each pixel: counted, then stored from the pixel's
-//!                 ──trim test, Newton──▶         prefix sum on: shell, patch, (u, v), exact depth
+//!                 ──trim test, Newton──▶         prefix sum on: operand, patch, (u, v), exact depth
 //! ```
 //!
 //! Reads: everything that `Bindings` names except its outputs. Writes: `counts`; in the second step `counts`, which

@@ -1,7 +1,7 @@
 //! Pass `operand_sort`: sorts the fragments of each pixel, so that entries and exits alternate.
 //!
 //! ```text
-//!   E2 L1 E1 L2 e1 ──by shell, by depth──▶ E1 e1 L1 │ E2 L2 ──the alternating ones──▶ E1 L1 │ E2 L2
+//!   E2 L1 E1 L2 e1 ──by operand, by depth──▶ E1 e1 L1 │ E2 L2 ──the alternating ones──▶ E1 L1 │ E2 L2
 //! ```
 //!
 //! Reads: everything that `Bindings` names except its outputs. Writes: `counts`, `fragments`, `counters`.
@@ -23,8 +23,8 @@ pub(crate) struct Bindings<'a> {
     pub leaves: &'a Buffer,
     /// In model axes, relative to the eye.
     pub leaf_centres: &'a Buffer,
-    /// A leaf of each shell.
-    pub shell_leaves: &'a Buffer,
+    /// A leaf of each operand.
+    pub operand_leaves: &'a Buffer,
     pub starts: &'a Buffer,
     pub counts: &'a Buffer,
     pub fragments: &'a Buffer,
@@ -43,7 +43,7 @@ impl OperandSort {
         if columns.is_empty() || rows.is_empty() {
             return;
         }
-        let solid = [b.frame, b.leaves, b.leaf_centres, b.shell_leaves];
+        let solid = [b.frame, b.leaves, b.leaf_centres, b.operand_leaves];
         let lists = [b.starts, b.counts, b.fragments, b.counters];
         let resources: Vec<_> = solid.into_iter().chain(lists).map(Into::into).collect();
         self.kernel.bind(cmd, &resources, bytemuck::bytes_of(&[columns.start, rows.start]));

@@ -7,18 +7,18 @@ use crate::abi::TILE;
 use crate::frame::common::room::Room;
 use crate::frame::{Frame, WRITE_TO_READ};
 use crate::gpu::{Access, Commands, Device, GpuError, barrier};
-use crate::scene::{SceneData, Shells};
+use crate::scene::{BoundaryOperands, SceneData};
 use crate::shaders::TrimTest;
 use std::sync::Arc;
 
 /// The passes.
-pub(super) struct ShellPasses {
+pub(super) struct OperandPasses {
     meshes: Option<operand_mesh::OperandMesh>,
     patches: Option<operand_patch::OperandPatch>,
     sort: operand_sort::OperandSort,
 }
 
-impl ShellPasses {
+impl OperandPasses {
     pub(super) fn new(device: &Device, data: &SceneData, trim: Option<&TrimTest>) -> Result<Self, GpuError> {
         let meshes = !data.solids.operand_draws.is_empty();
         let plain = (data.has_plain, !data.links.is_empty());
@@ -33,12 +33,12 @@ impl ShellPasses {
 
 /// The passes and their fragments.
 pub(super) struct Operands {
-    passes: Arc<ShellPasses>,
+    passes: Arc<OperandPasses>,
     pub(super) fragments: FragmentBuffers,
 }
 
 impl Operands {
-    pub(super) fn new(room: &Room<'_>, passes: &Arc<ShellPasses>) -> Result<Self, GpuError> {
+    pub(super) fn new(room: &Room<'_>, passes: &Arc<OperandPasses>) -> Result<Self, GpuError> {
         Ok(Self { passes: Arc::clone(passes), fragments: FragmentBuffers::new(room)? })
     }
 
@@ -47,7 +47,7 @@ impl Operands {
         &self,
         frame: &Frame<'_>,
         cmd: &Commands<'_>,
-        (solids, shells): (&SolidParts<'_>, &Shells),
+        (solids, boundary_operands): (&SolidParts<'_>, &BoundaryOperands),
         band: &Band,
     ) {
         let (s, stages) = (frame.scene, frame.stages);
@@ -59,10 +59,10 @@ impl Operands {
         let meshes = operand_mesh::Bindings {
             frame: frame.constants,
             views: frame.views,
-            meshes: &shells.meshes,
-            triangles: &shells.triangles,
-            positions: &shells.positions,
-            planes: &shells.planes,
+            meshes: &boundary_operands.meshes,
+            triangles: &boundary_operands.triangles,
+            positions: &boundary_operands.positions,
+            planes: &boundary_operands.planes,
             surfaces: &solids.scene.surfaces,
             surface_places: solids.centres.surfaces,
             counts: &f.counts,
@@ -85,7 +85,7 @@ impl Operands {
         };
         let rastered = |fills: bool| {
             if let Some(pass) = &passes.meshes {
-                pass.record(cmd, &meshes, (size, rows()), &shells.draws, fills);
+                pass.record(cmd, &meshes, (size, rows()), &boundary_operands.draws, fills);
             }
             if let Some(pass) = &passes.patches {
                 pass.record(cmd, &patches, (size, rows()), frame.capacities.tessellation.draws, fills);
@@ -113,13 +113,13 @@ impl Operands {
             frame: frame.constants,
             leaves: &solids.scene.leaves,
             leaf_centres: solids.centres.leaves,
-            shell_leaves: &shells.leaves,
+            operand_leaves: &boundary_operands.leaves,
             starts: &f.starts,
             counts: &f.counts,
             fragments: &f.all,
             counters: &c.counters,
         };
-        let [columns, seen] = frame.shell_pixels.clone();
+        let [columns, seen] = frame.operand_pixels.clone();
         let first = (seen.start / TILE * TILE).max(band.rows.start);
         let part = first - band.rows.start..seen.end.min(band.rows.end).max(first) - band.rows.start;
         passes.sort.record(cmd, &sort, columns, part);

@@ -26,7 +26,7 @@ struct Parts<'a> {
     bindings: Bindings<'a>,
     images: &'a LayerImages,
     /// Instance and corners of each mesh, by operand.
-    shells: Vec<Vec<(u32, Range<u32>)>>,
+    boundary_operands: Vec<Vec<(u32, Range<u32>)>>,
 }
 
 /// The kind of face that is searched.
@@ -73,11 +73,11 @@ impl SolidParts<'_> {
     fn peeled<'b>(&'b self, frame: &'b Frame<'_>, pass: &'b Blister, images: &'b LayerImages) -> Option<Parts<'b>> {
         let s = self.scene;
         let (scene, order) = s.blister.as_ref()?;
-        let mut shells: Vec<Vec<(u32, Range<u32>)>> = Vec::new();
+        let mut boundary_operands: Vec<Vec<(u32, Range<u32>)>> = Vec::new();
         for (instance, mesh) in (0..).zip(&scene.meshes) {
-            let shell = mesh.shell as usize;
-            shells.resize(shells.len().max(shell + 1), Vec::new());
-            shells[shell].push((instance, mesh.corners.clone()));
+            let operand = mesh.operand as usize;
+            boundary_operands.resize(boundary_operands.len().max(operand + 1), Vec::new());
+            boundary_operands[operand].push((instance, mesh.corners.clone()));
         }
         let bindings = Bindings {
             frame: frame.constants,
@@ -85,7 +85,7 @@ impl SolidParts<'_> {
             rects: &self.stage.rect_buffer,
             order,
             counters: &frame.stages.common.counters,
-            meshes: s.shells.as_ref().map(|m| MeshBindings {
+            meshes: s.boundary_operands.as_ref().map(|m| MeshBindings {
                 views: frame.views,
                 meshes: &m.meshes,
                 triangles: &m.triangles,
@@ -94,7 +94,7 @@ impl SolidParts<'_> {
             }),
             tiles: self.stage.tiles().map(|t| (&t.tile_starts, &t.tile_leaves, &t.tile_entries)),
         };
-        Some(Parts { pass, scene, bindings, images, shells })
+        Some(Parts { pass, scene, bindings, images, boundary_operands })
     }
 }
 
@@ -156,8 +156,8 @@ impl Parts<'_> {
             for s in &scene.switches {
                 match s.asked {
                     Asked::Leaf(place) => pass.within(cmd, &self.bindings, layer, place, s.name),
-                    Asked::Shell(shell) => {
-                        let meshes = self.shells.get(shell as usize).into_iter().flatten();
+                    Asked::Operand(operand) => {
+                        let meshes = self.boundary_operands.get(operand as usize).into_iter().flatten();
                         pass.within_meshes(cmd, &self.bindings, layer, meshes, s.name);
                     }
                 }

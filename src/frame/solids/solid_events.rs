@@ -27,7 +27,7 @@ pub(crate) struct Kinds {
     /// The most general kind of surface: `abi::SURFACE_*`.
     pub surfaces: u32,
     /// Some operand has no equations.
-    pub shells: bool,
+    pub boundary_operands: bool,
     /// Some operand is a spline part.
     pub patches: bool,
     /// There are items that rays are followed through.
@@ -87,7 +87,7 @@ impl SolidEvents {
         let draw = Draw {
             constants: &[
                 (constant::SOLIDS_HAVE, kinds.surfaces),
-                (constant::SOLIDS_HAVE_SHELLS, u32::from(kinds.shells)),
+                (constant::SOLIDS_HAVE_BOUNDARY_OPERANDS, u32::from(kinds.boundary_operands)),
                 (constant::SOLIDS_ARE_FOLLOWED, u32::from(kinds.followed)),
             ],
             colour: &colour[..if kinds.patches { 2 } else { 1 }],
@@ -108,7 +108,7 @@ impl SolidEvents {
         (rows, tiles): (Range<u32>, Range<u32>),
         segment: RaySegment,
     ) {
-        // the shader declares these bindings in every scene, and reads them only with shells
+        // the shader declares these bindings in every scene, and reads them only with boundary operands
         let none = Fragments { starts: b.frame, counts: b.frame, all: b.tile_leaves };
         let f = b.fragments.as_ref().unwrap_or(&none);
         let lists: [Resource<'_>; 3] = [b.tile_starts.into(), b.tile_leaves.into(), b.tile_entries.into()];

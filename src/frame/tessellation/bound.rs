@@ -9,8 +9,8 @@
 //!
 //! The factor is derived in [`twin::factor`](crate::twin::factor).
 //!
-//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `items`, `cones`, `points`. Writes:
-//! `taus`, `counters`.
+//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `patch_instances`, `cones`, `points`.
+//! Writes: `taus`, `counters`.
 //! Twin: `src/twin/bound.rs`.
 
 use crate::bindings::Bounded;
@@ -30,8 +30,8 @@ impl Bound {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of `items`.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bounded<'_>, items: u32) {
-        self.kernel.record(cmd, &b.resources(), items);
+    /// One thread for each of `patch_instances`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bounded<'_>, patch_instances: u32) {
+        self.kernel.record(cmd, &b.resources(), patch_instances);
     }
 }

@@ -5,8 +5,9 @@ use crate::abi::{Counters, SubPatch};
 use crate::frame::capacities::grown;
 use crate::frame::counts::{Counts, FEWER_PARTS, TooMany};
 
-/// Vertices of an item in a view of the whole scene, where most items are one sub-patch of few segments.
-const VERTICES_OF_AN_ITEM: u64 = 16;
+/// Vertices of a patch instance in a view of the whole scene, where most patch instances are one sub-patch of few
+/// segments.
+const VERTICES_OF_A_PATCH: u64 = 16;
 
 /// The sizes of lists whose length only the GPU computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,13 +19,13 @@ pub(crate) struct Capacities {
 impl Capacities {
     /// A first guess that fits most scenes in full view.
     pub(crate) fn first(counts: Counts) -> Self {
-        Self { sub_patches: counts.items.saturating_add(256), draws: 256 }
+        Self { sub_patches: counts.patch_instances.saturating_add(256), draws: 256 }
     }
 
-    /// The same, with room for the draws of a scene whose items have a few vertices each. `draw_vertices`: vertices of
-    /// one draw.
+    /// The same, with room for the draws of a scene whose patch instances have a few vertices each. `draw_vertices`:
+    /// vertices of one draw.
     pub(crate) fn drawn_by(self, counts: Counts, draw_vertices: u32) -> Self {
-        let draws = u64::from(counts.items) * VERTICES_OF_AN_ITEM / u64::from(draw_vertices);
+        let draws = u64::from(counts.patch_instances) * VERTICES_OF_A_PATCH / u64::from(draw_vertices);
         Self { draws: self.draws.max(draws as u32), ..self }
     }
 
@@ -48,7 +49,7 @@ mod tests {
     /// A driver with few vertices a draw gets many draws of a large scene at once.
     #[test]
     fn draws_follow_the_scene() {
-        let counts = Counts { items: 1 << 20, ..Default::default() };
+        let counts = Counts { patch_instances: 1 << 20, ..Default::default() };
         let draws = |draw_vertices| Capacities::first(counts).drawn_by(counts, draw_vertices).draws;
         assert_eq!((draws(u32::MAX), draws(1 << 12)), (Capacities::first(counts).draws, 1 << 12));
     }

@@ -35,7 +35,7 @@ impl DividePass {
             face_instances: &s.face_instances,
             faces: &s.faces,
             patches: &s.patches,
-            items: &s.items,
+            patch_instances: &s.patch_instances,
             taus,
             counters: &frame.stages.common.counters,
             cones: s.cones.as_ref(),
@@ -43,11 +43,11 @@ impl DividePass {
             in_sight: frame.in_sight,
         };
         match self {
-            Self::Bound(pass) => pass.record(cmd, &bounded, frame.items_in_sight),
+            Self::Bound(pass) => pass.record(cmd, &bounded, frame.patch_instances_in_sight),
             #[cfg(feature = "baselines")]
             Self::Slefe(pass) => {
                 let bindings = slefe::Bindings { bounded, slefes: s.slefes() };
-                pass.record(cmd, &bindings, frame.items_in_sight);
+                pass.record(cmd, &bindings, frame.patch_instances_in_sight);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Pass `emit`: writes the list of sub-patches and the draws that cover it.
 //!
 //! ```text
-//!    vertices before an item  0 ..... draw_vertices ..... 2 draw_vertices ....
+//!    vertices before a patch instance  0 ..... draw_vertices ..... 2 draw_vertices ....
 //!    draw that covers it      |   0   |        1         |        2
 //! ```
 //!
@@ -30,7 +30,7 @@ pub(crate) struct Bindings<'a> {
     pub sub_patches: &'a Buffer,
     pub draws: &'a Buffer,
     pub counters: &'a Buffer,
-    /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight.
+    /// [`PatchRun`](crate::abi::PatchRun)s of the patch instances in sight.
     pub in_sight: &'a Buffer,
 }
 
@@ -40,10 +40,10 @@ impl Emit {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of the `items` in sight.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
+    /// One thread for each of the `patch_instances` in sight.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, patch_instances: u32) {
         let lists = [b.sub_patch_starts, b.vertex_starts, b.sub_patches, b.draws, b.counters, b.in_sight];
         let resources: Vec<_> = [b.frame, b.factors].into_iter().chain(lists).map(Into::into).collect();
-        self.kernel.record(cmd, &resources, items);
+        self.kernel.record(cmd, &resources, patch_instances);
     }
 }

@@ -33,7 +33,7 @@ pub(crate) struct Passes {
 impl Passes {
     /// `None` in a scene without patches.
     pub(super) fn new(device: &Device, data: &SceneData) -> Result<Option<Self>, GpuError> {
-        if data.items.is_empty() {
+        if data.patch_instances.is_empty() {
             return Ok(None);
         }
         Ok(Some(Self {
@@ -59,7 +59,7 @@ pub(crate) struct Tessellation {
 
 impl Tessellation {
     pub(super) fn new(room: &Room<'_>, passes: Option<&Arc<Passes>>) -> Result<Self, GpuError> {
-        let n = room.counts.items;
+        let n = room.counts.patch_instances;
         Ok(Self {
             passes: passes.cloned(),
             taus: room.words("taus", n)?,
@@ -88,14 +88,14 @@ impl Tessellation {
     pub(super) fn split(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let Some(p) = &self.passes else { return };
         let (s, c) = (frame.scene, &frame.stages.common);
-        let (in_sight, items) = (frame.in_sight, frame.items_in_sight);
+        let (in_sight, patch_instances) = (frame.in_sight, frame.patch_instances_in_sight);
         let (w, r) = WRITE_TO_READ;
         let split = split::Bindings {
             frame: frame.constants,
             face_instances: &s.face_instances,
             faces: &s.faces,
             patches: &s.patches,
-            items: &s.items,
+            patch_instances: &s.patch_instances,
             taus: &self.taus,
             factors: &self.factors,
             sub_patch_counts: &self.sub_patch_counts,
@@ -103,11 +103,11 @@ impl Tessellation {
             in_sight,
             links: s.links.as_ref(),
         };
-        p.split.record(cmd, &split, items);
+        p.split.record(cmd, &split, patch_instances);
         cmd.after(w, r);
 
-        c.scan(cmd, &self.sub_patch_counts, &self.sub_patch_starts, 2 * items);
-        c.scan(cmd, &self.vertex_counts, &self.vertex_starts, 2 * items);
+        c.scan(cmd, &self.sub_patch_counts, &self.sub_patch_starts, 2 * patch_instances);
+        c.scan(cmd, &self.vertex_counts, &self.vertex_starts, 2 * patch_instances);
         cmd.after(w, r | w);
 
         let emit = emit::Bindings {
@@ -120,7 +120,7 @@ impl Tessellation {
             counters: &c.counters,
             in_sight,
         };
-        p.emit.record(cmd, &emit, items);
+        p.emit.record(cmd, &emit, patch_instances);
         cmd.after(w, Access::VERTEX_READ | Access::INDIRECT_READ | w);
     }
 

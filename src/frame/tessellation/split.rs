@@ -10,7 +10,7 @@
 //!    └───────────┴───────────┘
 //! ```
 //!
-//! Reads: `frame`, `face_instances`, `faces`, `patches`, `items`, `taus`, `in_sight`, `links`.
+//! Reads: `frame`, `face_instances`, `faces`, `patches`, `patch_instances`, `taus`, `in_sight`, `links`.
 //! Writes: `factors`, `sub_patch_counts`, `vertex_counts`.
 //! Twin: `src/twin/split.rs`.
 
@@ -29,15 +29,15 @@ pub(crate) struct Bindings<'a> {
     pub face_instances: &'a Buffer,
     pub faces: &'a Buffer,
     pub patches: &'a Buffer,
-    pub items: &'a Buffer,
+    pub patch_instances: &'a Buffer,
     pub taus: &'a Buffer,
-    /// [`Factors`](crate::abi::Factors) per item.
+    /// [`Factors`](crate::abi::Factors) per patch instance.
     pub factors: &'a Buffer,
-    /// For each item in sight: plain, then trimmed.
+    /// For each patch instance in sight: plain, then trimmed.
     pub sub_patch_counts: &'a Buffer,
     /// Vertices, likewise.
     pub vertex_counts: &'a Buffer,
-    /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight.
+    /// [`PatchRun`](crate::abi::PatchRun)s of the patch instances in sight.
     pub in_sight: &'a Buffer,
     /// Sides that faces share; `None` without any.
     pub links: Option<&'a Buffer>,
@@ -55,14 +55,14 @@ impl Split {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of the `items` in sight.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
+    /// One thread for each of the `patch_instances` in sight.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, patch_instances: u32) {
         let resources = [
             b.frame,
             b.face_instances,
             b.faces,
             b.patches,
-            b.items,
+            b.patch_instances,
             b.taus,
             b.factors,
             b.sub_patch_counts,
@@ -70,6 +70,6 @@ impl Split {
             b.in_sight,
         ];
         let resources: Vec<_> = resources.into_iter().chain(b.links).map(Into::into).collect();
-        self.kernel.record(cmd, &resources, items);
+        self.kernel.record(cmd, &resources, patch_instances);
     }
 }

@@ -46,7 +46,7 @@ impl Passes {
         let Some(surfaces) = data.solids.kinds().filter(|_| data.solids.is_followed()) else { return Ok(None) };
         let kinds = Kinds {
             surfaces,
-            shells: !data.solids.shell_leaves.is_empty(),
+            boundary_operands: !data.solids.operand_leaves.is_empty(),
             patches: data.has_operands,
             rational: data.has_rational,
             pieces: data.has_pieces,
@@ -128,11 +128,15 @@ impl Transparency {
             face_instances: &s.face_instances,
             faces: &s.faces,
             patches: &s.patches,
-            items: &s.items,
+            patch_instances: &s.patch_instances,
             points: &s.points,
             instances: &s.instances,
             sun: frame.sun_bindings(),
-            shells: solids.scene.shells.as_ref().map(|m| [&m.meshes, &m.triangles, &m.positions, &m.planes]),
+            boundary_operands: solids
+                .scene
+                .boundary_operands
+                .as_ref()
+                .map(|m| [&m.meshes, &m.triangles, &m.positions, &m.planes]),
         };
         let w = WRITE_TO_READ.0;
         let rows = || band.rows.clone();

@@ -42,7 +42,7 @@ pub(crate) struct Kinds {
     /// The most general kind of surface: `abi::SURFACE_*`.
     pub surfaces: u32,
     /// Some operand has no equations.
-    pub shells: bool,
+    pub boundary_operands: bool,
     /// Some operand is a spline part; some patches have unequal weights.
     pub patches: bool,
     pub rational: bool,
@@ -79,13 +79,13 @@ pub(crate) struct Bindings<'a> {
     pub face_instances: &'a Buffer,
     pub faces: &'a Buffer,
     pub patches: &'a Buffer,
-    pub items: &'a Buffer,
+    pub patch_instances: &'a Buffer,
     pub points: &'a TexelBuffer,
     pub instances: &'a Buffer,
     /// The resources for [`Kinds::sun`].
     pub sun: Option<[Resource<'a>; SUN_BINDINGS]>,
     /// Meshes of operands: meshes, triangles, positions, planes; `None` without any.
-    pub shells: Option<[&'a Buffer; 4]>,
+    pub boundary_operands: Option<[&'a Buffer; 4]>,
 }
 
 impl SolidLayers {
@@ -119,7 +119,7 @@ impl SolidLayers {
                 (constant::SCENE_HAS_FINE, u32::from(kinds.fine)),
                 (constant::HAS_AOVS, u32::from(writes)),
                 (constant::SOLIDS_HAVE, kinds.surfaces),
-                (constant::SOLIDS_HAVE_SHELLS, u32::from(kinds.shells)),
+                (constant::SOLIDS_HAVE_BOUNDARY_OPERANDS, u32::from(kinds.boundary_operands)),
                 (constant::FOLLOWED_FOR, number),
                 (constant::MARKS, u32::from(marks.is_some())),
                 (constant::SOLIDS_HAVE_PATCHES, u32::from(kinds.patches)),
@@ -145,10 +145,10 @@ impl SolidLayers {
         depth: Option<Attachment<'_>>,
         rows: Range<u32>,
     ) {
-        // the shader declares these bindings in every scene, and reads them only with shells
+        // the shader declares these bindings in every scene, and reads them only with boundary operands
         let (starts, counts, fragments) = b.fragments.unwrap_or((b.frame, b.frame, b.tile_leaves));
-        let shells = b.shells.unwrap_or([b.frame; 4]);
-        let placed = [b.views, b.face_instances, b.faces, b.patches, b.items];
+        let boundary_operands = b.boundary_operands.unwrap_or([b.frame; 4]);
+        let placed = [b.views, b.face_instances, b.faces, b.patches, b.patch_instances];
         let tiles: [Resource<'_>; 3] = [b.leaf_centres.into(), b.tile_starts.into(), b.tile_leaves.into()];
         let fragments: [Resource<'_>; 3] = [starts.into(), counts.into(), fragments.into()];
         let sun = b.sun.filter(|_| self.sun);
@@ -160,7 +160,7 @@ impl SolidLayers {
             .chain([b.counters.into(), b.behind.into()])
             .chain(placed.into_iter().map(Into::into))
             .chain([b.points.into(), b.instances.into()])
-            .chain(shells.into_iter().map(Into::into))
+            .chain(boundary_operands.into_iter().map(Into::into))
             .chain(sun.into_iter().flat_map(|s| s.into_iter().take(SUN_OWN)))
             .collect();
         cmd.rendering_rows((b.behind.size(), rows), colour, depth, || {

@@ -22,7 +22,7 @@ pub(crate) struct Carry {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub strips: &'a TexelBuffer,
-    /// Bin items of the strips with several bins.
+    /// Bin instances of the strips with several bins.
     pub wide_strips: &'a Buffer,
     pub row_windings: &'a Buffer,
 }

@@ -1,12 +1,12 @@
 //! Pass `cross`: intersects every linear segment of a trim curve with every scan line that it crosses.
 //!
 //! ```text
-//!   count    row_counts[row] += 1, border cells marked           one thread a segment; pass `sizes` found
+//!   count    row_counts[row] += 1, border cells marked           one thread a segment; pass `dispatch_arguments` found
 //!   (scan)   row_starts = sums                                   their number
 //!   insert   intercepts[row_starts[row] + place] = u, direction
 //! ```
 //!
-//! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_points`, `curve_items`, `strips`,
+//! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_points`, `curve_instances`, `strips`,
 //! `segment_starts`, `row_starts`, `dispatches`. Writes: `row_counts` (zero before
 //! counting and again after inserting),
 //! `intercepts`, `border_cells` and `row_windings` (zero before counting). Twin: `src/twin/cross.rs`.
@@ -28,7 +28,7 @@ pub(crate) struct Bindings<'a> {
     pub faces: &'a TexelBuffer,
     pub curves: &'a TexelBuffer,
     pub curve_points: &'a TexelBuffer,
-    pub curve_items: &'a TexelBuffer,
+    pub curve_instances: &'a TexelBuffer,
     pub strips: &'a TexelBuffer,
     pub segment_starts: &'a TexelBuffer,
     pub row_starts: &'a TexelBuffer,
@@ -38,7 +38,7 @@ pub(crate) struct Bindings<'a> {
     pub border_cells: &'a Buffer,
     /// The sum of each row's crossings, if strips have several bins.
     pub row_windings: Option<&'a Buffer>,
-    /// Written by pass `sizes`; the first is that of this pass.
+    /// Written by pass `dispatch_arguments`; the first is that of this pass.
     pub dispatches: &'a Buffer,
 }
 
@@ -70,7 +70,7 @@ impl Cross {
             b.faces.into(),
             b.curves.into(),
             b.curve_points.into(),
-            b.curve_items.into(),
+            b.curve_instances.into(),
             b.strips.into(),
             b.segment_starts.into(),
             b.row_starts.into(),

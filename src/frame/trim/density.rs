@@ -5,7 +5,7 @@
 //!    strip height = largest of its visible cells; 0 when none is visible
 //! ```
 //!
-//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `cells`, `cell_items`. Writes: `strip_heights`,
+//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `cells`, `cell_instances`. Writes: `strip_heights`,
 //! `face_speeds`, `seen_bins`. `frame` and `views` are those of the view for which the table is made: this view, or a
 //! wider one that serves all views of its cell (`src/scene/view_cell.rs`). Twin: `src/twin/density.rs`.
 
@@ -27,7 +27,7 @@ pub(crate) struct Bindings<'a> {
     pub faces: &'a Buffer,
     pub cells: &'a Buffer,
     /// Face instance of each cell.
-    pub cell_items: &'a Buffer,
+    pub cell_instances: &'a Buffer,
     /// Float bits; cleared before.
     pub strip_heights: &'a Buffer,
     /// Float bits of pixels per unit of u and v; cleared before.
@@ -53,7 +53,7 @@ impl Density {
             b.face_instances,
             b.faces,
             b.cells,
-            b.cell_items,
+            b.cell_instances,
             b.strip_heights,
             b.face_speeds,
             // neither read nor written without bins

@@ -13,10 +13,10 @@ pub(crate) mod capacities;
 pub(crate) mod carry;
 pub(crate) mod cross;
 pub(crate) mod density;
+pub(crate) mod dispatch_arguments;
 mod edit;
 pub(crate) mod lines;
 pub(crate) mod segments;
-pub(crate) mod sizes;
 pub(crate) mod sort;
 pub(super) mod table;
 

@@ -5,8 +5,8 @@
 //!    n >= lines crossed / 32                  threads of equal work
 //! ```
 //!
-//! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_items`, `strip_starts`, `face_speeds`. Writes: `segment_counts`.
-//! Twin: `src/twin/segments.rs`.
+//! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_instances`, `strip_starts`, `face_speeds`. Writes:
+//! `segment_counts`. Twin: `src/twin/segments.rs`.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, TexelBuffer};
@@ -23,7 +23,7 @@ pub(crate) struct Bindings<'a> {
     pub face_instances: &'a TexelBuffer,
     pub faces: &'a TexelBuffer,
     pub curves: &'a TexelBuffer,
-    pub curve_items: &'a TexelBuffer,
+    pub curve_instances: &'a TexelBuffer,
     pub strip_starts: &'a TexelBuffer,
     pub face_speeds: &'a Buffer,
     pub segment_counts: &'a Buffer,
@@ -46,7 +46,7 @@ impl Segments {
             b.face_instances.into(),
             b.faces.into(),
             b.curves.into(),
-            b.curve_items.into(),
+            b.curve_instances.into(),
             b.strip_starts.into(),
             b.face_speeds.into(),
             b.segment_counts.into(),

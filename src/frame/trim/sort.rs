@@ -30,7 +30,7 @@ pub(crate) struct Bindings<'a> {
     pub counters: &'a Buffer,
     /// The winding number at the start of each row, if strips have several bins.
     pub row_windings: Option<&'a Buffer>,
-    /// Written by pass `sizes`; the second is that of this pass.
+    /// Written by pass `dispatch_arguments`; the second is that of this pass.
     pub dispatches: &'a Buffer,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   cells ──density──▶ strip heights ──lines──(scan)──▶ rows
-//!   curves ──segments──(scan)──▶ chords ──sizes──▶ dispatches
+//!   curves ──segments──(scan)──▶ chords ──dispatch_arguments──▶ dispatches
 //!   chords ──cross: count──(scan)──▶ cross: insert──▶ intercepts ──sort──▶ flips of each row
 //!                 ╰──▶ row windings ──carry──▶ windings at row starts ──╯     only if strips have several bins
 //! ```
@@ -10,7 +10,7 @@
 //! A table stays valid until a view that it does not serve (`scene::trimmed`), or an edit; `src/frame/reuse.rs`
 //! restores it.
 
-use super::{carry, cross, density, lines, segments, sizes, sort};
+use super::{carry, cross, density, dispatch_arguments, lines, segments, sort};
 use crate::abi::{BORDER_BANDS, BORDER_COLUMNS, Counters, StripRows};
 use crate::frame::common::room::Room;
 use crate::frame::common::scan;
@@ -28,7 +28,7 @@ pub(crate) struct Passes {
     density: density::Density,
     lines: lines::Lines,
     segments: segments::Segments,
-    sizes: sizes::Sizes,
+    dispatch_arguments: dispatch_arguments::DispatchArguments,
     cross: cross::Cross,
     sort: sort::Sort,
     /// `None` if each strip has one bin.
@@ -43,7 +43,7 @@ impl Passes {
             density: density::Density::new(device, bins)?,
             lines: lines::Lines::new(device, bins)?,
             segments: segments::Segments::new(device, bins)?,
-            sizes: sizes::Sizes::new(device, bins)?,
+            dispatch_arguments: dispatch_arguments::DispatchArguments::new(device, bins)?,
             // passes for operands read the cells that curves cross
             cross: cross::Cross::new(device, bins, data.has_operands)?,
             sort: sort::Sort::new(device, bins)?,
@@ -154,7 +154,7 @@ impl Table {
             face_instances: &s.face_instances,
             faces: &s.faces,
             cells: &trims.cells,
-            cell_items: &trims.cell_items,
+            cell_instances: &trims.cell_instances,
             strip_heights: &t.strip_heights,
             face_speeds: &t.face_speeds,
             seen_bins,
@@ -179,7 +179,7 @@ impl Table {
             face_instances: &s.face_instances,
             faces: &s.faces,
             curves: &trims.curves,
-            curve_items: &trims.curve_items,
+            curve_instances: &trims.curve_instances,
             strip_starts: &t.strip_starts,
             face_speeds: &t.face_speeds,
             segment_counts: &t.segment_counts,
@@ -190,7 +190,7 @@ impl Table {
         b.scan(cmd, &t.segment_counts, &t.segment_starts, counts.curves);
         cmd.after(w, r);
 
-        let sizes = sizes::Bindings {
+        let arguments = dispatch_arguments::Bindings {
             frame: frame.constants,
             strip_starts: &t.strip_starts,
             segment_starts: &t.segment_starts,
@@ -199,7 +199,7 @@ impl Table {
             counters: &b.counters,
             seen_bins,
         };
-        p.sizes.record(cmd, &sizes, counts.bins);
+        p.dispatch_arguments.record(cmd, &arguments, counts.bins);
         cmd.after(w, Access::INDIRECT_READ | r | w);
 
         let cross = cross::Bindings {
@@ -208,7 +208,7 @@ impl Table {
             faces: &s.faces,
             curves: &trims.curves,
             curve_points: &trims.curve_points,
-            curve_items: &trims.curve_items,
+            curve_instances: &trims.curve_instances,
             strips: &t.strips,
             segment_starts: &t.segment_starts,
             row_starts: &t.row_starts,

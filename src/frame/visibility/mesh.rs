@@ -9,7 +9,7 @@
 //! pixel can get its triangle's number only this way.
 //!
 //! Reads: everything that `Bindings` names. Writes: depth and, in scenes without trims, the visibility image; with
-//! trims, the image `others`, which pass `gap_fill` reads. Both begin cleared.
+//! trims, the image `meshes_and_solids`, which pass `gap_fill` reads. Both begin cleared.
 
 use crate::bindings::Primitives;
 use crate::frame::common::draw::Draw;

@@ -52,7 +52,7 @@ pub(crate) struct Visibility {
     /// Patch instance and (u, v); also meshes and solids, if they have no image of their own.
     pub image: Image,
     /// Meshes and solids, if gap filling needs them in an image of their own.
-    pub others: Option<Image>,
+    pub meshes_and_solids: Option<Image>,
     pub depth: Image,
 }
 
@@ -67,11 +67,11 @@ impl Visibility {
         let apart = counts.trim.is_some() && (counts.mesh_instances > 0 || counts.leaves > 0);
         // pixels are read back
         let usage = DRAWN_AND_READ | vk::ImageUsageFlags::TRANSFER_SRC;
-        let others = || room.image("visibility of others", VISIBILITY_FORMAT, usage);
+        let meshes_and_solids = || room.image("visibility of meshes and solids", VISIBILITY_FORMAT, usage);
         Ok(Self {
             passes: Arc::clone(passes),
             image: room.image("visibility", VISIBILITY_FORMAT, usage)?,
-            others: apart.then(others).transpose()?,
+            meshes_and_solids: apart.then(meshes_and_solids).transpose()?,
             depth: room.image(
                 "visibility depth",
                 DEPTH_FORMAT,
@@ -81,17 +81,17 @@ impl Visibility {
     }
 
     /// The image that meshes and solids are drawn into.
-    pub(super) fn of_others(&self) -> &Image {
-        self.others.as_ref().unwrap_or(&self.image)
+    pub(super) fn of_meshes_and_solids(&self) -> &Image {
+        self.meshes_and_solids.as_ref().unwrap_or(&self.image)
     }
 
     /// Discards the images' contents, after the previous frame has read them.
     pub(super) fn begin(&self, cmd: &Commands<'_>) {
         let read = (Access::COMPUTE_READ | Access::FRAGMENT_READ).discarded();
-        let others = self.others.iter().map(|image| (image, read, Access::COLOUR_WRITE));
+        let meshes_and_solids = self.meshes_and_solids.iter().map(|image| (image, read, Access::COLOUR_WRITE));
         let tested = (Access::DEPTH_WRITE | Access::COMPUTE_READ).discarded();
         let fixed = [(&self.image, read, Access::COLOUR_WRITE), (&self.depth, tested, Access::DEPTH_WRITE)];
-        barrier::images(cmd, &fixed.into_iter().chain(others).collect::<Vec<_>>());
+        barrier::images(cmd, &fixed.into_iter().chain(meshes_and_solids).collect::<Vec<_>>());
     }
 
     /// Draws the meshes. They come first because patches in front of them may lie in gaps.
@@ -104,7 +104,7 @@ impl Visibility {
             positions: &m.positions,
             volume: frame.volume(),
         };
-        let seen = self.of_others();
+        let seen = self.of_meshes_and_solids();
         self.passes.mesh.record(cmd, &bindings, (seen, &self.depth), &m.draws, m.outward);
         self.drawn_again(cmd, seen);
     }
@@ -156,7 +156,8 @@ impl Visibility {
             counters: &c.counters,
         };
         let drawn = again || s.meshes.is_some() || s.solids.is_some();
-        let colour = if again || drawn && self.others.is_none() { Load::Keep } else { Load::ColourU32([0; 4]) };
+        let colour =
+            if again || drawn && self.meshes_and_solids.is_none() { Load::Keep } else { Load::ColourU32([0; 4]) };
         let visibility = Attachment { image: &self.image, load: colour };
         let depth = Attachment { image: &self.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
         pass.record(cmd, &bindings, (visibility, depth), frame.capacities.tessellation.draws);

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!   sub-patch ──tesc──▶ levels ──tese──▶ exact surface at the vertices ──▶ triangles
-//!        plain    frag  ──────────────────────────────▶ item, (u, v)   depth
-//!        trimmed  frag  trim test of one way          ▶ item, (u, v)   depth, depths of skirts
+//!        plain    frag  ──────────────────────────────▶ patch instance, (u, v)   depth
+//!        trimmed  frag  trim test of one way          ▶ patch instance, (u, v)   depth, depths of skirts
 //! ```
 //!
 //! Reads: everything that `Bindings` names except the images. Writes: the visibility image and depth (reversed: 1 at
@@ -20,7 +20,7 @@ use crate::shaders::{self, TrimTest, constant};
 use ash::vk;
 use std::mem::offset_of;
 
-/// Format of the visibility image: item + 1, and (u, v) of its patch as two 16-bit numbers.
+/// Format of the visibility image: patch instance + 1, and (u, v) of its patch as two 16-bit numbers.
 pub(crate) const VISIBILITY_FORMAT: vk::Format = vk::Format::R32G32_UINT;
 /// Format of the pass's own depth image.
 pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;

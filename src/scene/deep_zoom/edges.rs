@@ -108,7 +108,7 @@ impl SceneData {
                     self.placements.push(instance.transform * DAffine3::from_translation(origin));
                     let placement = self.placements.len() as u32 - 1;
                     let piece = data.push_piece(&piece.points, origin);
-                    data.items.push(abi::EdgeItem { piece, placement, instance: key });
+                    data.piece_instances.push(abi::PieceInstance { piece, placement, instance: key });
                 }
             };
             for (edge, number) in edges.iter().zip(first_number..) {

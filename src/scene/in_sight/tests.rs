@@ -62,12 +62,16 @@ fn what_is_left_out_pass_bound_would_leave_out() {
         let in_sight = case.data.in_sight(&camera, reach);
         let taus = twin::bound::bound(&case.frame, &case.scene(), &mut Counters::default());
         let mut told = vec![false; taus.len()];
-        for place in 0..in_sight.items {
-            told[twin::in_sight::item_at(&in_sight.runs, place) as usize] = true;
+        for place in 0..in_sight.patch_instances {
+            told[twin::in_sight::patch_instance_at(&in_sight.runs, place) as usize] = true;
         }
-        assert_eq!(told.iter().filter(|told| **told).count(), in_sight.items as usize, "each item once");
+        assert_eq!(
+            told.iter().filter(|told| **told).count(),
+            in_sight.patch_instances as usize,
+            "each patch_instance once"
+        );
         let lost = taus.iter().zip(&told).filter(|(tau, told)| **tau != 0 && !**told).count();
-        assert_eq!(lost, 0, "of {} in sight", in_sight.items);
+        assert_eq!(lost, 0, "of {} in sight", in_sight.patch_instances);
         // the margins are thin: a hill that does not surround the eye is seldom in sight without a patch in sight; a
         // hill around the eye may be
         let of_part = case.data.boxes[0].count as usize;
@@ -95,8 +99,8 @@ fn what_is_hidden_is_out_of_sight_and_what_moves_is_where_it_is() {
     let in_sight = |data: &SceneData| data.in_sight(&camera, Reach { beside_px: 1.0, beyond_px: 1.0 });
     assert_eq!(in_sight(&data).parts, [0, 2]);
     let n = data.boxes[0].count;
-    let run = |place, item| ItemRun { place, item };
-    assert_eq!((in_sight(&data).runs, in_sight(&data).items), (vec![run(0, 0), run(n, 2 * n)], 2 * n));
+    let run = |place, patch_instance| PatchRun { place, patch_instance };
+    assert_eq!((in_sight(&data).runs, in_sight(&data).patch_instances), (vec![run(0, 0), run(n, 2 * n)], 2 * n));
     data.hidden = vec![true, false, false];
     assert_eq!((in_sight(&data).parts, in_sight(&data).runs), (vec![2], vec![run(0, 2 * n)]));
     data.placements[1] = data.placements[2];

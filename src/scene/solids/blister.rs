@@ -6,7 +6,7 @@
 //! ```
 
 use super::SolidData;
-use crate::abi::{LEAF_NEGATIVE, LEAF_SHELL, LEAF_UNBOUNDED};
+use crate::abi::{LEAF_BOUNDARY, LEAF_NEGATIVE, LEAF_UNBOUNDED};
 use crate::csg::{Blist, Convention, Labels, Tree, TreeError, covering_set};
 use crate::model::{Bounds, Camera, Primitive, outward};
 use std::ops::Range;
@@ -17,7 +17,7 @@ pub(crate) enum Asked {
     /// The leaf at this place of [`Blister::order`].
     Leaf(u32),
     /// The meshes of this operand.
-    Shell(u32),
+    Operand(u32),
 }
 
 /// One step of the walk. Pixels with label `name` get label `within` if their point is inside the primitive, else
@@ -34,7 +34,7 @@ pub(crate) struct Switch {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct PeeledMesh {
     /// The operand that it bounds.
-    pub shell: u32,
+    pub operand: u32,
     /// The corners of its triangles.
     pub corners: Range<u32>,
     /// Some leaf adds the operand.
@@ -81,7 +81,7 @@ impl Blister {
         let leaves = &data.leaves;
         let has = |i: u32, flag: u32| leaves[i as usize].flags & flag != 0;
         let mut order = super::order::order(leaves, false);
-        order.retain(|&i| !has(i, LEAF_SHELL));
+        order.retain(|&i| !has(i, LEAF_BOUNDARY));
         let all = 0..order.len() as u32;
         let mut places = vec![0; leaves.len()];
         (0..).zip(&order).for_each(|(place, &i)| places[i as usize] = place);
@@ -89,28 +89,28 @@ impl Blister {
             .iter()
             .map(|s| {
                 let i = leaf(s.primitive, s.negative);
-                let shell = has(i, LEAF_SHELL);
+                let operand = has(i, LEAF_BOUNDARY);
                 let asked =
-                    if shell { Asked::Shell(leaves[i as usize].first) } else { Asked::Leaf(places[i as usize]) };
+                    if operand { Asked::Operand(leaves[i as usize].first) } else { Asked::Leaf(places[i as usize]) };
                 let (within, without) = if s.negative { (s.when_out, s.when_in) } else { (s.when_in, s.when_out) };
                 Switch { asked, name: s.name, within, without }
             })
             .collect();
         let cover = covering_set(&positive, |p| weight(&primitives[p as usize]));
         let covering: Vec<u32> = cover.iter().flatten().map(|&p| leaf(p, false)).collect();
-        order.extend(covering.iter().filter(|&&i| !has(i, LEAF_SHELL)));
+        order.extend(covering.iter().filter(|&&i| !has(i, LEAF_BOUNDARY)));
         // for each operand: whether a leaf adds it, a leaf subtracts it, the covering set has it
-        let mut roles = vec![[false; 3]; data.shell_leaves.len()];
-        let shells = |i: &u32| has(*i, LEAF_SHELL);
-        for i in (0..leaves.len() as u32).filter(shells) {
+        let mut roles = vec![[false; 3]; data.operand_leaves.len()];
+        let boundary_operands = |i: &u32| has(*i, LEAF_BOUNDARY);
+        for i in (0..leaves.len() as u32).filter(boundary_operands) {
             roles[leaves[i as usize].first as usize][usize::from(has(i, LEAF_NEGATIVE))] = true;
         }
-        for &i in covering.iter().filter(|i| shells(i)) {
+        for &i in covering.iter().filter(|i| boundary_operands(i)) {
             roles[leaves[i as usize].first as usize][2] = true;
         }
         let meshes = data.operand_meshes.iter().zip(&data.operand_draws).map(|(mesh, corners)| {
-            let [adds, takes_away, covers] = roles[mesh.shell as usize];
-            PeeledMesh { shell: mesh.shell, corners: corners.clone(), adds, takes_away, covers }
+            let [adds, takes_away, covers] = roles[mesh.operand as usize];
+            PeeledMesh { operand: mesh.operand, corners: corners.clone(), adds, takes_away, covers }
         });
         let meshes = meshes.collect();
         let boxed = (0..data.leaves.len() as u32).all(|i| !has(i, LEAF_UNBOUNDED));

@@ -21,9 +21,9 @@ const BESIDE_PX: f64 = 8.0;
 
 impl SolidData {
     /// Columns and rows of the pixels whose rays may cross operands.
-    pub(crate) fn shell_pixels(&self, camera: &Camera) -> [Range<u32>; 2] {
+    pub(crate) fn operand_pixels(&self, camera: &Camera) -> [Range<u32>; 2] {
         let view = View::new(camera);
-        let corners = || self.shell_boxes.iter().flat_map(|b| b.corners());
+        let corners = || self.operand_boxes.iter().flat_map(|b| b.corners());
         if corners().any(|p| !view.is_before(p)) {
             return [0..camera.size.0, 0..camera.size.1];
         }
@@ -124,8 +124,8 @@ mod tests {
             depth_range: (1.0, 200.0),
             size: (160, 100),
         };
-        let pixels = data.shell_pixels(&camera);
-        assert_eq!(data.clone().centres_only().shell_pixels(&camera), pixels);
+        let pixels = data.operand_pixels(&camera);
+        assert_eq!(data.clone().centres_only().operand_pixels(&camera), pixels);
         (data.expected_crossings(&camera), pixels)
     }
 

@@ -56,7 +56,7 @@ pub(super) struct Flat {
     centre: DVec2,
     /// Heights of the corners above the middle, towards the sun.
     heights: [f64; 3],
-    shell: u32,
+    operand: u32,
     surface: u32,
     /// Slack along the ray.
     slack: f64,
@@ -88,8 +88,8 @@ struct Placed {
     bounds: Bounds,
     /// Its deviation, in its own units.
     deviation: f64,
-    /// If it is an operand: its shell and the middle of its box.
-    shell: Option<(u32, DVec3)>,
+    /// If it is an operand: its number and the middle of its box.
+    operand: Option<(u32, DVec3)>,
 }
 
 impl<'a> Sheet<'a> {
@@ -132,9 +132,9 @@ impl Casters {
         let mut placed = Vec::new();
         for operand in operands(solids).filter(|operand| !operand.faces().is_empty()) {
             let (transform, bounds) = (operand.primitive.transform, operand.primitive.bounds());
-            let middle = solids.leaf_centres[solids.shell_leaves[operand.shell as usize] as usize];
-            let shell = Some((operand.shell, middle));
-            placed.push(Placed { sheet: sheets.len(), transform, bounds, deviation: 0.0, shell });
+            let middle = solids.leaf_centres[solids.operand_leaves[operand.number as usize] as usize];
+            let number = Some((operand.number, middle));
+            placed.push(Placed { sheet: sheets.len(), transform, bounds, deviation: 0.0, operand: number });
             sheets.push(Sheet::of_operand(operand));
         }
         let mut known: Vec<Option<(usize, Bounds)>> = vec![None; model.map_or(0, |m| m.parts.len())];
@@ -147,7 +147,7 @@ impl Casters {
             if !bounds.is_empty() {
                 let transform = instance.transform;
                 let bounds = moved(bounds, transform);
-                placed.push(Placed { sheet, transform, bounds, deviation: 0.0, shell: None });
+                placed.push(Placed { sheet, transform, bounds, deviation: 0.0, operand: None });
             }
         }
         if !placed.is_empty() {
@@ -200,14 +200,14 @@ impl Casters {
     fn place(&mut self, sun: &SunData, placed: &Placed, triangles: &[Near]) {
         let scale = stretch(placed.transform.matrix3);
         let rounding = ROUNDING * placed.bounds.diagonal();
-        let middle = placed.shell.map_or(placed.bounds.centre(), |(_, middle)| middle);
+        let middle = placed.operand.map_or(placed.bounds.centre(), |(_, middle)| middle);
         let part = self.middles.len() as u32;
         for Near { corners, off, cell } in triangles {
             let corners = corners.map(|p| placed.transform.transform_point3(p) - middle);
             let (flat, heights) = (corners.map(|p| sun.flat(p)), corners.map(|p| sun.towards.dot(p)));
             self.deviation = self.deviation.max(off * scale);
             let slack = 2.0 * off * scale + rounding;
-            if let Some((shell, _)) = placed.shell {
+            if let Some((operand, _)) = placed.operand {
                 let centre = sun.flat(middle);
                 let corners = flat.map(|p| p + centre);
                 // a cell is more than twice as large as its deviation, and the face falls in it by no more than this
@@ -220,12 +220,12 @@ impl Casters {
                 };
                 // slack along the ray
                 let slack = (slack * steep(flat, heights)).min(high + slack);
-                self.triangles.push(Flat { corners, centre, heights, shell, surface: OF_SPLINE, slack });
+                self.triangles.push(Flat { corners, centre, heights, operand, surface: OF_SPLINE, slack });
             } else {
                 self.facets.extend(Facet::new(flat, heights, slack, part));
             }
         }
-        if placed.shell.is_none() {
+        if placed.operand.is_none() {
             self.middles.push(middle);
         }
     }
@@ -233,7 +233,7 @@ impl Casters {
 
 /// The operands without equations in the union that casts shadows.
 pub(super) fn operands(solids: &SolidData) -> impl Iterator<Item = &Operand> {
-    solids.operands.iter().filter(|o| solids.shell_leaves[o.shell as usize] < solids.followed)
+    solids.operands.iter().filter(|o| solids.operand_leaves[o.number as usize] < solids.followed)
 }
 
 /// Gradient of the height over a triangle; not finite if the triangle contains the sun's direction.
@@ -295,7 +295,7 @@ impl Flat {
         let corners = self.corners.map(|p| ((p - self.centre) / side).as_vec2().to_array());
         let heights = self.heights.map(|h| h as f32);
         let slack = if self.slack.is_nan() { f32::MAX } else { (self.slack as f32).min(f32::MAX) };
-        SunTriangle { corners, heights, shell: self.shell, surface: self.surface, slack }
+        SunTriangle { corners, heights, operand: self.operand, surface: self.surface, slack }
     }
 }
 
@@ -304,7 +304,7 @@ impl SunData {
     fn of_meshes(&self, solids: &SolidData) -> Vec<Flat> {
         let mut all = Vec::new();
         for operand in operands(solids) {
-            let middle = solids.leaf_centres[solids.shell_leaves[operand.shell as usize] as usize];
+            let middle = solids.leaf_centres[solids.operand_leaves[operand.number as usize] as usize];
             let centre = self.flat(middle);
             let meshes = operand.meshes.clone();
             for (mesh, corners) in solids.operand_meshes[meshes.clone()].iter().zip(&solids.operand_draws[meshes]) {
@@ -318,7 +318,7 @@ impl SunData {
                         corners: corners.map(|p| self.flat(p)),
                         centre,
                         heights: corners.map(|p| self.towards.dot(p - middle)),
-                        shell: operand.shell,
+                        operand: operand.number,
                         surface: solids.plane_of(mesh, number).unwrap_or(OWN_PLANE | number),
                         slack: 0.0,
                     });

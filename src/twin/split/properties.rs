@@ -35,12 +35,12 @@ impl Grid {
         let shapes: Vec<Patch> = (0..patches)
             .map(|_| Patch { shape: Patch::pack_shape((1, 1), false, random.pick(&sides), 0), ..Default::default() })
             .collect();
-        let frame = Frame { items_in_sight: patches as u32, ..Default::default() };
+        let frame = Frame { patch_instances_in_sight: patches as u32, ..Default::default() };
         let scene = Scene {
             face_instances: &[FaceInstance::default()],
             faces: &[face],
             patches: &shapes,
-            items: &vec![0; patches],
+            patch_instances: &vec![0; patches],
             ..Default::default()
         };
         let out = split(&frame, &scene, &taus);
@@ -130,7 +130,7 @@ fn sides_that_faces_share_agree() {
     let case = Case::new(&model, &camera, 0.5);
     let (scene, mut random) = (case.scene(), Random::new(7));
     for (largest, unseen) in [(1, 0), (1, 5), (3, 3), (20, 0), (64, 3), (300, 1), (4096, 1)] {
-        let taus: Vec<u32> = (0..scene.items.len())
+        let taus: Vec<u32> = (0..scene.patch_instances.len())
             .map(|_| {
                 let tau = random.integer(1, largest) | random.integer(1, largest) << 16;
                 if random.integer(0, 9) < unseen { 0 } else { tau }
@@ -141,17 +141,19 @@ fn sides_that_faces_share_agree() {
         for side in (0..scene.links.len() as u32).filter(|side| scene.links[*side as usize].is_shared()) {
             // segments of the whole curve, for a drawn side that others may share
             let of_curve = |side: u32| {
-                let (item, axis) = ((side / 4) as usize, axis_of(side % 4) as usize);
-                let f = out.factors[item];
+                let (patch_instance, axis) = ((side / 4) as usize, axis_of(side % 4) as usize);
+                let f = out.factors[patch_instance];
                 let n = unpack([f.edge_u, f.edge_v][axis])[(side % 4 / 2) as usize];
                 let splits = unpack(f.splits)[axis];
-                if taus[item] != 0 {
+                if taus[patch_instance] != 0 {
                     assert!(
-                        n >= taus[item] >> (16 * axis) & 0xffff && n.is_multiple_of(splits) && n / splits <= MAX_FACTOR
+                        n >= taus[patch_instance] >> (16 * axis) & 0xffff
+                            && n.is_multiple_of(splits)
+                            && n / splits <= MAX_FACTOR
                     );
                 }
                 let full = n == MAX_FACTOR * splits;
-                (taus[item] != 0).then_some((n << scene.links[side as usize].halvings(), full))
+                (taus[patch_instance] != 0).then_some((n << scene.links[side as usize].halvings(), full))
             };
             let next = scene.links[side as usize].next;
             let (Some((a, a_full)), Some((b, b_full))) = (of_curve(side), of_curve(next)) else { continue };

@@ -1,11 +1,11 @@
-//! Twin of the pass `sizes`: the first row of each v-strip, the numbers of rows and segments in the trim table, and the
+//! Twin of the pass `dispatch_arguments`: the first row of each v-strip, the numbers of rows and segments in the trim table, and the
 //! dispatches that follow from them.
 
 use super::FAILED_ROWS;
 use super::grid::grid_of;
 use super::u_bins::seen_range;
-pub use crate::abi::constants::sizes::MOST_NUMBERED as MOST_SEGMENTS;
-use crate::abi::constants::sizes::{GROUP, SCAN_BLOCK};
+pub use crate::abi::constants::dispatch_arguments::MOST_NUMBERED as MOST_SEGMENTS;
+use crate::abi::constants::dispatch_arguments::{GROUP, SCAN_BLOCK};
 use crate::abi::{Counters, Frame, StripRows};
 
 /// The rows of each strip, stored at its first bin.
@@ -19,7 +19,12 @@ pub fn strips(strip_starts: &[u32], seen_bins: &[u32]) -> Vec<StripRows> {
 
 /// Workgroups of `cross`, of `sort` and of the scan of the rows. Sets `rows`,
 /// `wanted_rows` and `segments` of the counters.
-pub fn sizes(frame: &Frame, strip_starts: &[u32], segment_starts: &[u32], counters: &mut Counters) -> [[u32; 3]; 3] {
+pub fn dispatch_arguments(
+    frame: &Frame,
+    strip_starts: &[u32],
+    segment_starts: &[u32],
+    counters: &mut Counters,
+) -> [[u32; 3]; 3] {
     let wanted = strip_starts[frame.bin_count as usize];
     let segments = segment_starts[frame.curve_count as usize];
     let starts = &strip_starts[..=frame.bin_count as usize];

@@ -1,15 +1,15 @@
-//! Pass `sizes`: the first row of each v-strip, the numbers of rows and segments in the trim table, and the dispatches
+//! Pass `dispatch_arguments`: the first row of each v-strip, the numbers of rows and segments in the trim table, and the dispatches
 //! that follow from them.
 //!
 //! Reads: `frame`, `strip_starts`, `segment_starts`. Writes: `dispatches`, `strips`, `counters`.
-//! Twin: `src/twin/sizes.rs`.
+//! Twin: `src/twin/dispatch_arguments.rs`.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders::{self, constant};
 
 /// The pass.
-pub(crate) struct Sizes {
+pub(crate) struct DispatchArguments {
     kernel: Kernel,
 }
 
@@ -27,11 +27,15 @@ pub(crate) struct Bindings<'a> {
     pub seen_bins: Option<&'a Buffer>,
 }
 
-impl Sizes {
+impl DispatchArguments {
     /// `bins`: strips of some face have several bins.
     pub(crate) fn new(device: &Device, bins: bool) -> Result<Self, GpuError> {
-        let kernel =
-            Kernel::new(device, "sizes", &shaders::SIZES_COMP, &[(constant::SCENE_HAS_BINS, u32::from(bins))])?;
+        let kernel = Kernel::new(
+            device,
+            "dispatch_arguments",
+            &shaders::DISPATCH_ARGUMENTS_COMP,
+            &[(constant::SCENE_HAS_BINS, u32::from(bins))],
+        )?;
         Ok(Self { kernel })
     }
 

@@ -1,12 +1,12 @@
-//! Parity of the pass `sizes`: exact.
+//! Parity of the pass `dispatch_arguments`: exact.
 
 use super::chain::{Chain, UNTOUCHED};
 use super::harness::{Gpu, Mismatch, same};
 use super::shapes::cases;
 use crate::abi::{Counters, Frame};
-use crate::frame::trim::sizes::{Bindings, Sizes};
+use crate::frame::trim::dispatch_arguments::{Bindings, DispatchArguments};
 use crate::twin;
-use crate::twin::sizes::MOST_SEGMENTS;
+use crate::twin::dispatch_arguments::MOST_SEGMENTS;
 
 fn compare(gpu: &Gpu, frame: &Frame, seen: &[u32], given: [&[u32]; 2], expected: [&[u32]; 2]) -> Result<(), Mismatch> {
     // as earlier passes may leave them
@@ -18,7 +18,7 @@ fn compare(gpu: &Gpu, frame: &Frame, seen: &[u32], given: [&[u32]; 2], expected:
     let strips = gpu.upload("strips", &vec![UNTOUCHED; 4 * frame.bin_count as usize]);
     let counters = gpu.upload("counters", &[before]);
     let seen_bins = gpu.upload("seen bins", seen);
-    let pass = Sizes::new(gpu.device(), true).unwrap();
+    let pass = DispatchArguments::new(gpu.device(), true).unwrap();
     let bindings = Bindings {
         frame: &frame_buffer,
         strip_starts: &strip_starts,
@@ -30,8 +30,8 @@ fn compare(gpu: &Gpu, frame: &Frame, seen: &[u32], given: [&[u32]; 2], expected:
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, frame.bin_count));
     let mut after = before;
-    let twin = twin::sizes::sizes(frame, expected[0], expected[1], &mut after);
-    let of_strips = twin::sizes::strips(expected[0], seen);
+    let twin = twin::dispatch_arguments::dispatch_arguments(frame, expected[0], expected[1], &mut after);
+    let of_strips = twin::dispatch_arguments::strips(expected[0], seen);
     same("strips", &gpu.read(&strips, of_strips.len()), &of_strips)?;
     same("dispatches", &gpu.read(&dispatches, 3), &twin)?;
     same("counters", &gpu.read(&counters, 1), &[after])

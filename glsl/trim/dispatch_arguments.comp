@@ -1,9 +1,9 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `sizes`: the rows of each v-strip, as the look-up reads them; for the whole trim table, the numbers of rows and
+// Pass `dispatch_arguments`: the rows of each v-strip, as the look-up reads them; for the whole trim table, the numbers of rows and
 // segments and the dispatches that follow. One thread a bin; the first of all also does the rest. Twin:
-// src/twin/sizes.rs.
+// src/twin/dispatch_arguments.rs.
 #include "u_bins.glsl"
 #include "scene.glsl"
 

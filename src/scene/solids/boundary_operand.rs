@@ -1,4 +1,5 @@
-//! Operands without equations, *shells*: meshes as arrays; spline parts as faces that the scene places later.
+//! Operands without equations, *boundary operands*: meshes as arrays; spline parts as faces that the scene places
+//! later.
 //!
 //! ```text
 //!   mesh   triangle ──▶ corners, whose plane it has; or a Surface, shared with coinciding faces
@@ -11,11 +12,11 @@ use crate::model::{Face, Mesh, Part, Primitive, Shape};
 use glam::DVec3;
 use std::ops::Range;
 
-/// A shell that is not placed yet.
+/// An operand that is not placed yet.
 #[derive(Clone, Debug)]
 pub(in crate::scene) struct Operand {
     pub primitive: Primitive,
-    pub shell: u32,
+    pub number: u32,
     /// Middle of its box, in its own coordinates.
     pub origin: DVec3,
     /// Its range of [`SolidData::operand_meshes`].
@@ -35,7 +36,7 @@ impl Operand {
 }
 
 /// Whether the primitive is drawn as fragments: a mesh or part with volume.
-pub(super) fn is_shell(primitive: &Primitive) -> bool {
+pub(super) fn is_boundary_operand(primitive: &Primitive) -> bool {
     !primitive.shape.is_analytic() && !primitive.bounds().is_empty()
 }
 
@@ -62,12 +63,17 @@ impl Thin {
 }
 
 impl SolidData {
-    /// Adds a primitive as the next shell. `surfaces` are those of a mesh's triangles; `leaf` is the first that shows
-    /// it. Returns the shell's number.
-    pub(super) fn push_shell(&mut self, surfaces: impl Iterator<Item = u32>, primitive: &Primitive, leaf: u32) -> u32 {
-        let shell = self.shell_leaves.len() as u32;
-        self.shell_leaves.push(leaf);
-        self.shell_boxes.push(primitive.bounds());
+    /// Adds a primitive as the next operand. `surfaces` are those of a mesh's triangles; `leaf` is the first that shows
+    /// it. Returns the operand's number.
+    pub(super) fn push_boundary_operand(
+        &mut self,
+        surfaces: impl Iterator<Item = u32>,
+        primitive: &Primitive,
+        leaf: u32,
+    ) -> u32 {
+        let number = self.operand_leaves.len() as u32;
+        self.operand_leaves.push(leaf);
+        self.operand_boxes.push(primitive.bounds());
         let origin = primitive.shape.bounds().centre();
         let first = self.operand_meshes.len();
         match &primitive.shape {
@@ -76,15 +82,15 @@ impl SolidData {
                 let is_plane = |number: &u32| self.places.get(*number as usize).is_some_and(|p| p.surface().is_none());
                 let planes: Vec<u32> = surfaces.map(|s| if is_plane(&s) { s } else { abi::NO_PLANE }).collect();
                 self.operand_planes.extend(planes);
-                self.push_mesh(mesh, origin, (shell, leaf), primitive);
+                self.push_mesh(mesh, origin, (number, leaf), primitive);
             }
             // faces bound the part if it has any, else meshes
-            Shape::Part(part) if part.faces.is_empty() => self.push_meshes(part, origin, (shell, leaf), primitive),
+            Shape::Part(part) if part.faces.is_empty() => self.push_meshes(part, origin, (number, leaf), primitive),
             _ => {}
         }
         let meshes = first..self.operand_meshes.len();
-        self.operands.push(Operand { primitive: primitive.clone(), shell, origin, meshes, placed: None });
-        shell
+        self.operands.push(Operand { primitive: primitive.clone(), number, origin, meshes, placed: None });
+        number
     }
 
     /// Meshes of a part share no surface with other primitives.
@@ -108,7 +114,7 @@ impl SolidData {
     }
 
     /// Adds a mesh whose planes are already in `operand_planes`.
-    fn push_mesh(&mut self, mesh: &Mesh, origin: DVec3, (shell, leaf): (u32, u32), of: &Primitive) {
+    fn push_mesh(&mut self, mesh: &Mesh, origin: DVec3, (operand, leaf): (u32, u32), of: &Primitive) {
         let planes = self.operand_planes.len() - mesh.triangles().len();
         let shares = self.operand_planes[planes..].iter().any(|plane| *plane != abi::NO_PLANE);
         if !shares {
@@ -117,7 +123,7 @@ impl SolidData {
         let first = self.operand_positions.len() as u32;
         let corners = 3 * self.operand_triangles.len() as u32;
         self.operand_meshes.push(abi::OperandMesh {
-            shell,
+            operand,
             instance: 0, // set when it is placed
             first_triangle: self.operand_triangles.len() as u32,
             first_plane: if shares { planes as u32 } else { abi::NO_PLANE },
