@@ -96,19 +96,21 @@ def main():
         scratch = Path(scratch)
         program = Program(Path(os.environ["SELVEDGE"]).resolve(), chosen.device, scratch)
         context = given.Context(chosen.quick, program, Peers(scratch), scratch, given.models())
-        load = machine.load()
-        sections = [measured(name, context) for name in chosen.only or SECTIONS]
-        report = Report(
-            command=shlex.join(["tools/report", *sys.argv[1:]]),
-            date=machine.date(),
-            machine=machine.processor(),
-            device=program.device or "none was used",
-            commit=machine.commit(),
-            load=load,
-            peers=context.peers.versions,
-            sections=sections,
-        )
-        write(report, chosen.out)
+        load, date, commit, sections = machine.load(), machine.date(), machine.commit(), []
+        for name in chosen.only or SECTIONS:
+            sections.append(measured(name, context))
+            report = Report(
+                command=shlex.join(["tools/report", *sys.argv[1:]]),
+                date=date,
+                machine=machine.processor(),
+                device=program.device or "none was used",
+                commit=commit,
+                load=load,
+                peers=context.peers.versions,
+                sections=sections,
+            )
+            # after each section: a run that is ended early leaves what it has measured
+            write(report, chosen.out)
     print(chosen.out / "benchmarks.md")
     for section, contest in report.lost():
         print(

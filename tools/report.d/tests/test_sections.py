@@ -75,6 +75,17 @@ class Surfaces(unittest.TestCase):
     def test_a_plot_shows_the_quickest_of_each_error(self):
         self.assertEqual(surfaces.front([(0.5, 3), (0.1, 9), (0.5, 2)]), [(0.1, 9), (0.5, 2)])
 
+    def test_a_frame_is_told_apart_by_pass_the_longest_first(self):
+        frame = {"pass: trims": 20.0, "pass: visibility": 70.0, "pass: reset": 1.0, "pass: scan": 0.5}
+        exact = frame | {"all passes": 91.5, "wall clock, with read-back": 99.0, "triangles": 7.0}
+        faceted = {"all passes": 4.0, "wall clock, with read-back": 6.0}
+        rows = surfaces.spent_rows(exact, faceted)
+        names = ["facets, by this engine", "exact surfaces", "visibility", "trims", "all others"]
+        self.assertEqual([row[0] for row in rows], names)
+        self.assertEqual([row[1] for row in rows], [4.0, 91.5, 70.0, 20.0, 1.5])
+        self.assertEqual(rows[2][2], "77 %")
+        self.assertEqual(surfaces.spent_rows(exact, None)[0][0], "exact surfaces")
+
     def test_pixels_beyond_the_tolerance_are_counted(self):
         self.assertEqual(surfaces.beyond({"beyond": 0, "worst_px": 0.5}, 0.5), 0)
         self.assertEqual(surfaces.beyond({"beyond": 0, "worst_px": 0.75}, 0.5), 1)

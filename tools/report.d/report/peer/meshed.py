@@ -3,7 +3,7 @@
     job      model, camera, turn (cameras), deflections (of the diagonal), most_mesh_s, ids (a folder, or null),
              wants (viewers)
     results  {read_s, diagonal}, then for each deflection
-             {deflection, mesh_s, triangles, ids, occ: {first_s, turning_ms, standing_ms}, vtk: the same};
+             {deflection, mesh_s, triangles, ids, stl, occ: {first_s, turning_ms, standing_ms}, vtk: the same};
              or {deflection, stopped} where the one before took so long to mesh that this one would not be done in time
 
 First pictures are the seconds from a mesh to its first frame, with the window's; handing the triangles to VTK is not
@@ -106,6 +106,8 @@ def main():
             if wanted["ids"]:
                 result["ids"] = f"{wanted['ids']}/{deflection:g}.npy"
                 numpy.save(result["ids"], vtk.faces(camera))
+                result["stl"] = f"{wanted['ids']}/{deflection:g}.stl"
+                shapes.write_stl(result["stl"], triangles)
         tell(result)
 
 

@@ -2,6 +2,7 @@
 
 import time
 
+import numpy
 from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Tool
 from OCP.BRepBndLib import BRepBndLib
@@ -82,3 +83,12 @@ def triangles(found):
             corners.append((a, c, b) if turned else (a, b, c))
             numbers.append(number)
     return points, corners, numbers
+
+
+def write_stl(path, of):
+    """Triangles as `triangles` returns them, as a binary STL file."""
+    points, corners, _ = of
+    facets = numpy.zeros(len(corners), dtype=[("normal", "<3f4"), ("corners", "<(3,3)f4"), ("spare", "<u2")])
+    facets["corners"] = numpy.array(points)[numpy.array(corners)]
+    with open(path, "wb") as file:
+        file.write(bytes(80) + len(corners).to_bytes(4, "little") + facets.tobytes())

@@ -22,6 +22,10 @@ LEAST_PX = 1 / 16
 QUANTITIES = [("first picture", "s"), ("turning frame", "ms"), ("standing frame", "ms")]
 # the tolerance at which standing frames are drawn
 STANDING_PX = 0.5
+# passes below this share of all are one row
+SMALL_SHARE = 0.02
+# the mesh that the engine draws as a viewer of facets
+FACETED = 1e-3
 VIEWERS = {"occ": "Open CASCADE", "vtk": "VTK"}
 TEXT = """\
 *First picture* is from the file: of ours the whole process, with the device, the driver's pipelines and the PNG; of
@@ -30,7 +34,11 @@ is a frame of a turn by three degrees each: of ours with the picture read back t
 is shown; *standing* is one of a view that stands, as a viewer draws it. Errors are judged by the kernel's rays
 against surfaces and trims, at pixels where the face changes; *99.9 %* is exceeded by one in a thousand of them. One
 picture of the triangles is judged for all viewers that draw them. Claimed is the first picture within half a pixel of
-files of a megabyte and more."""
+files of a megabyte and more.
+
+*Where our turning frame goes* is the limit of such a frame on a processor that draws. Its first row is this engine as
+a viewer of facets: it draws the mesh within a thousandth of the diagonal, the same that the viewers draw. The rows
+below are a frame of the exact surfaces, pass by pass; what it takes beyond the first row is the price of exactness."""
 
 
 def measure(context):
@@ -78,11 +86,17 @@ class Case:
             found[tolerance] = (first["seconds"], turning, standing)
         return found
 
-    def bench(self, motion, tolerance):
-        """Medians by name."""
+    def bench(self, motion, tolerance, model=None):
+        """Medians by name; of the file, unless another is named."""
         words = ["--motion", motion, "--judged", 0, "--frames", self.frames, "--tolerance", tolerance]
         words += ["--size", "{}x{}".format(*self.size)]
-        return self.context.program.bench([self.model], *words)[0]["of"]
+        return self.context.program.bench([model or self.model], *words)[0]["of"]
+
+    def spent(self, section, stl):
+        """Where a turning frame goes, beside one of the same engine that draws the mesh `stl`."""
+        exact, faceted = self.bench("turn", STANDING_PX), self.bench("turn", STANDING_PX, stl) if stl else None
+        columns = ["", "passes, ms", "of the exact frame", "wall clock, ms"]
+        section.tables.append(Table(f"{self.what}: where our turning frame goes", columns, spent_rows(exact, faceted)))
 
     def job(self, **more):
         return {
@@ -126,6 +140,7 @@ class Case:
         job = self.job(deflections=self.deflections, ids=str(folder), wants=[]) | {"turn": []}
         results = self.context.peers.results("meshed", job, windowed=True, limit_s=self.most_mesh_s * 20)
         pictures = {f"mesh {r['deflection']}": {"path": r["ids"], "own": False} for r in results if r.get("ids")}
+        stl = next((r["stl"] for r in results if r.get("ids") and r["deflection"] == FACETED), None)
         for tolerance in sorted(self.tolerances, reverse=True):
             drawn = self.context.program.render(
                 self.model, self.camera, "--tolerance", tolerance, images=["face"], stats=False
@@ -135,7 +150,7 @@ class Case:
         whole = {"whole": {"camera": self.camera, "pictures": pictures}}
         job = {"model": str(self.model), "views": whole, "seconds": seconds}
         (head,) = self.context.peers.results("kernel", job, limit_s=60 + seconds * (1 + len(pictures)))
-        return head, head["pictures"]
+        return head, head["pictures"], stl
 
     def into(self, section):
         """Measures, and adds the results."""
@@ -146,9 +161,9 @@ class Case:
         if isinstance(results["ours"], Unmeasurable):
             raise results["ours"]
         try:
-            head, errors = self.judged()
+            head, errors, stl = self.judged()
         except Unmeasurable as error:
-            head, errors = {"boundary": 0, "sampled": 0, "alone": 0}, {}
+            head, errors, stl = {"boundary": 0, "sampled": 0, "alone": 0}, {}, None
             section.contests.append(Contest(f"errors, {self.what}", "the kernel", "px", why=str(error)))
         competitors = {"selvedge": ("ours", results["ours"])}
         for name in VIEWERS.values():
@@ -156,6 +171,7 @@ class Case:
             competitors[name] = ("mesh", found if isinstance(found, Unmeasurable) else [one[name] for one in found])
         competitors["F3D"] = ("mesh", results["F3D"])
         self.table(section, competitors, head, errors)
+        self.spent(section, stl)
         self.plots(section, competitors, errors)
         self.contests(section, competitors, errors)
         for tolerance in self.tolerances:
@@ -264,6 +280,18 @@ class Case:
             return Contest(what, name, unit, claim=claim, unreached=True, why="none of its settings is as right")
         many = min(len(mine), len(theirs))
         return Contest(what, name, unit, mine[:many], theirs[:many], claim)
+
+
+def spent_rows(exact, faceted):
+    """Rows of a frame of the exact surfaces by pass, the longest first, after one of facets; of medians by name."""
+    wall, whole = "wall clock, with read-back", exact["all passes"]
+    passes = {name.removeprefix("pass: "): ms for name, ms in exact.items() if name.startswith("pass: ")}
+    large = sorted(((ms, name) for name, ms in passes.items() if ms >= SMALL_SHARE * whole), reverse=True)
+    rows = [["facets, by this engine", faceted["all passes"], "", faceted[wall]] if faceted else None]
+    rows.append(["exact surfaces", whole, "100 %", exact[wall]])
+    rows += [[name, ms, f"{100 * ms / whole:.0f} %", ""] for ms, name in large]
+    rows.append(["all others", sum(passes.values()) - sum(ms for ms, _ in large), "", ""])
+    return [row for row in rows if row]
 
 
 def front(curve):
