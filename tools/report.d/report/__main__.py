@@ -15,7 +15,7 @@ from . import machine, markdown, plots
 from .peers import Peers
 from .program import Program
 from .rows import Report, Section
-from .sections import first_use, frames, least, reading, scale, solids, stability, surfaces, trims, zoom
+from .sections import first_use, frames, least, packages, reading, scale, solids, stability, surfaces, trims, zoom
 
 SECTIONS = {
     "surfaces": surfaces,
@@ -28,6 +28,7 @@ SECTIONS = {
     "first_use": first_use,
     "frames": frames,
     "reading": reading,
+    "packages": packages,
 }
 
 

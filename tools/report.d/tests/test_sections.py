@@ -2,8 +2,8 @@
 
 import unittest
 
-from report.rows import Section
-from report.sections import stability, surfaces, trims, zoom
+from report.rows import Missing, Section
+from report.sections import packages, stability, surfaces, trims, zoom
 
 SIZE = "400x400"
 
@@ -102,6 +102,18 @@ class Sized:
 
     def stat(self):
         return type("Stat", (), {"st_size": self.bytes})
+
+
+class Packages(unittest.TestCase):
+    def test_a_package_that_failed_has_its_reason(self):
+        row = packages.row_of({"file": "part.step", "package": "f3d", "error": "no device"})
+        self.assertEqual((row[:3], len(row)), (["part.step", "f3d", Missing("no device")], 9))
+
+    def test_ours_has_the_verdict_of_the_judge(self):
+        judge = {"judged": 2000, "wrong": 3}
+        times = {"first_s": 0.5, "next_s": 4.0, "peak_mib": 300.0}
+        row = packages.row_of({"file": "part.step", "package": "selvedge", "judge": judge} | times)
+        self.assertEqual(row[2:7], [0.5, 4.0, 300.0, "3 wrong", "2,000 judged"])
 
 
 class Stability(unittest.TestCase):

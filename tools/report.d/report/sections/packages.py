@@ -1,0 +1,53 @@
+"""11. From Python: depth and normals of STEP files as arrays, beside other packages, by tools/compare_python."""
+
+import importlib.util
+import json
+import subprocess
+import sys
+
+from ..machine import ROOT
+from ..rows import Missing, Section, Table
+from ..turns import Unmeasurable
+
+TEXT = """\
+Each package draws each file in a process of its own, from the same 24 cameras at 1024x1024. *First picture* is from
+before the import of the package to arrays in memory, *next* the other 23 views. Triangles are within 0.001 mm. Errors
+are beside the exact picture, which the project's own reference judges: *silhouette* counts pixels that show the model
+in one picture only, *depth* is the difference in pixel sides at that depth."""
+LONG = "takes many minutes: only without --quick"
+NOT_BUILT = "selvedge is not installed in target/report/python: tools/wheel writes it"
+
+
+def measure(context):
+    section = Section(11, "From Python", TEXT)
+    why = LONG if context.quick else "" if importlib.util.find_spec("selvedge") else NOT_BUILT
+    rows = [["all", "", Missing(why), *[""] * 6]] if why else compared(context)
+    columns = ["file", "package", "first picture, s", "next, s", "peak, MiB"]
+    columns += ["silhouette, px", "of", "depth, px", "99 %, px"]
+    section.tables.append(Table("", columns, rows))
+    section.commands.append("python tools/compare_python out.json")
+    return section
+
+
+def compared(context):
+    """Rows of tools/compare_python."""
+    out = context.program.folder() / "out.json"
+    command = [sys.executable, ROOT / "tools/compare_python", out]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise Unmeasurable((done.stderr.strip().splitlines() or ["no word"])[-1])
+    report = json.loads(out.read_text())
+    rows = [row_of(row) for row in report["rows"]]
+    lacking = ((name, f"{', '.join(lacks)} is not installed") for name, lacks in report["missing"].items())
+    return rows + [["", name, Missing(why), *[""] * 6] for name, why in lacking]
+
+
+def row_of(row):
+    """A row of the table, of one that tools/compare_python writes."""
+    if "error" in row:
+        return [row["file"], row["package"], Missing(row["error"]), *[""] * 6]
+    keys = ["first_s", "next_s", "peak_mib", "silhouette_px", "seen_px", "depth_px_median", "depth_px_99"]
+    if "judge" in row:
+        judge = row["judge"]
+        row = row | {"silhouette_px": f"{judge['wrong']} wrong", "seen_px": f"{judge['judged']:,} judged"}
+    return [row["file"], row["package"], *(row.get(key, "") for key in keys)]
