@@ -107,8 +107,9 @@ def test_a_picture_that_cannot_be_drawn_or_written_is_told(renderer, files, tmp_
     rows = selvedge.render_files([files[2]], tmp_path / "{stem}.png", renderer=renderer, size=SIZE)
     assert rows[0]["status"] == "failed" and "c.png" in rows[0]["error"]
     assert not list(tmp_path.glob(".part-*"))
-    rows = selvedge.render_files([files[0]], tmp_path / "{stem}.png", renderer=renderer, size=SIZE, limit_mib=0.001)
-    assert rows[0]["status"] == "failed" and "a.step" in rows[0]["error"]
+    for limit in ({"limit_mib": 0.001}, {"limit_s": 1e-9}):
+        rows = selvedge.render_files([files[0]], tmp_path / "{stem}.png", renderer=renderer, size=SIZE, **limit)
+        assert rows[0]["status"] == "failed" and "a.step" in rows[0]["error"]
 
 
 def test_wrong_arguments_are_refused_before_anything_is_drawn(renderer, files, tmp_path):
@@ -131,6 +132,7 @@ def test_wrong_arguments_are_refused_before_anything_is_drawn(renderer, files, t
         (lambda: selvedge.render_files(one, out, style="toon"), ValueError, "clay"),
         (lambda: selvedge.render_files(one, out, outputs=["depth"]), TypeError, "no argument outputs"),
         (lambda: selvedge.render_files(one, out, ahead=0), ValueError, "ahead"),
+        (lambda: selvedge.render_files(one, out, limit_s=-1), ValueError, "limit_s"),
     ]
     before = sorted(tmp_path.iterdir())
     for call, error, told in cases:

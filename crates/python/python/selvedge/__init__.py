@@ -55,6 +55,7 @@ def open(
     strict: bool = False,
     search: Sequence[str | os.PathLike[str]] = (),
     limit_mib: float | None = None,
+    limit_s: float | None = None,
 ) -> Model:
     """Reads a model.
 
@@ -63,6 +64,7 @@ def open(
     strict: a file of which anything is left out is refused.
     search: folders in which files that an assembly names are looked for, beside its own.
     limit_mib: most MiB of a file; three quarters of the machine's memory without it.
+    limit_s: most seconds for reading it; beyond, it is a ReadError.
 
     Raises ReadError with file, line and entity; MissingFileError; TypeError for what is none of these. Ctrl-C ends it.
     """
@@ -73,9 +75,15 @@ def open(
         if step is None:
             raise TypeError(f"a path, bytes or a shape of Open CASCADE is read, not {type(source).__name__}")
         source, name = step, name or "shape.step"
-    if limit_mib is not None and not 0.0 < limit_mib < float("inf"):
-        raise ValueError(f"limit_mib must be above 0, not {limit_mib}")
-    return _native.open(source, name or "bytes", strict, [os.fspath(folder) for folder in search], limit_mib)
+    _check_limits(limit_mib=limit_mib, limit_s=limit_s)
+    folders = [os.fspath(folder) for folder in search]
+    return _native.open(source, name or "bytes", strict, folders, limit_mib, limit_s)
+
+
+def _check_limits(**limits: float | None) -> None:
+    for name, limit in limits.items():
+        if limit is not None and not 0.0 < limit < float("inf"):
+            raise ValueError(f"{name} must be above 0, not {limit}")
 
 
 class Renderer:

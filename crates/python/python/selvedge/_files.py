@@ -56,6 +56,7 @@ def render_files(
     strict: bool = False,
     search: Sequence[PathLike] = (),
     limit_mib: float | None = None,
+    limit_s: float | None = None,
     ahead: int = 3,
     renderer: selvedge.Renderer | None = None,
     **settings: Any,
@@ -69,7 +70,7 @@ def render_files(
     skip_existing: files of which every output is there are left alone.
     fail_fast: the first failure is raised. Without it a file or picture that fails has a row that says why, and the
         others are drawn.
-    strict, search, limit_mib: as in open. ahead: as in Renderer.render_many; the next file is read while pictures are
+    strict, search, limit_mib, limit_s: as in open. ahead: as in Renderer.render_many; the next file is read while pictures are
         drawn, so at most ahead + 2 models are in memory. renderer: the one that draws; without it one is made and closed.
     settings: other arguments of Renderer.render, as size=(512, 512), the same for all pictures.
 
@@ -89,6 +90,8 @@ def render_files(
     unknown = settings.keys() - (selvedge._DEFAULTS.keys() - {"view", "camera", "outputs"})
     if unknown:
         raise TypeError(f"render_files has no argument {', '.join(sorted(unknown))}")
+    selvedge._check_limits(limit_mib=limit_mib, limit_s=limit_s)
+    reading = {"strict": strict, "search": search, "limit_mib": limit_mib, "limit_s": limit_s}
     asked = {**selvedge._DEFAULTS, **settings, "outputs": list(arrays)}
     for view in views:
         _native.validate({**asked, "view": view})
@@ -108,7 +111,7 @@ def render_files(
         if renderer is None and any(todo):
             renderer = own = selvedge.Renderer()
         for (file, shots), wanted in zip(tasks.items(), todo):
-            opened = _Opened(file, strict, search, limit_mib) if wanted else None
+            opened = _Opened(file, reading) if wanted else None
             for shot in shots:
                 if opened is not None:
                     shot.order(renderer, opened, asked)
@@ -129,12 +132,12 @@ def render_files(
 class _Opened:
     """A file that was read, or why it was not."""
 
-    def __init__(self, file: str, strict: bool, search: Sequence[PathLike], limit_mib: float | None):
+    def __init__(self, file: str, reading: Mapping[str, Any]):
         self.model: _native.Model | None = None
         self.failure: Exception | None = None
         try:
             begun = time.perf_counter()
-            model = selvedge.open(file, strict=strict, search=search, limit_mib=limit_mib)
+            model = selvedge.open(file, **reading)
             self.facts = {
                 "read_s": time.perf_counter() - begun,
                 "sha256": _sha256(file),
