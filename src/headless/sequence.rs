@@ -92,8 +92,8 @@ impl HeadlessRenderer {
     }
 
     /// As [`render_sequence`](Self::render_sequence), of cameras that come while pictures are drawn. `next` returns the
-    /// camera of the next picture, or `None` if there is none yet. It is called before each picture is waited for, until
-    /// three are in flight. The sequence ends when `next` returns `None` and no picture is in flight.
+    /// camera of the next picture, or `None` if there is none yet. It is called before each picture is waited for,
+    /// until three are in flight. The sequence ends when `next` returns `None` and no picture is in flight.
     ///
     /// # Errors
     /// [`HeadlessError`], or that of `take`. The sequence then ends: pictures in flight are finished and not taken.

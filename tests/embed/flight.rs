@@ -123,8 +123,8 @@ fn sizes_and_models_change_in_flight() {
     assert_eq!(host.shutdown(), [""; 0]);
 }
 
-/// Two views of one upload in one command buffer, each with a slot, a camera and settings of its own: each shows what it
-/// shows alone. With equal sizes the second uses the buffers of the first.
+/// Two views of one upload in one command buffer, each with a slot, a camera and settings of its own: each shows what
+/// it shows alone. With equal sizes the second uses the buffers of the first.
 #[test]
 fn two_views_in_one_command_buffer() {
     let host = Host::new();

@@ -17,8 +17,8 @@ use std::time::Instant;
 /// The device, and its validation.
 pub type DeviceOptions = HeadlessOptions;
 
-/// Larger pictures, in pixels, are drawn one at a time: with all images, three of this size take 2.4 GiB on the device and in
-/// host memory.
+/// Larger pictures, in pixels, are drawn one at a time: with all images, three of this size take 2.4 GiB on the device
+/// and in host memory.
 pub const MOST_IN_FLIGHT: u64 = 1 << 24;
 
 /// One picture to be drawn.

@@ -6,8 +6,8 @@
 //!                         outputs, backdrop ──────────────┘                     images ─▶ arrays, PNG
 //! ```
 //!
-//! A [`Worker`] draws the pictures of its jobs in order, and pictures of one model with frames in flight. Its caller may
-//! wait for each, and read the next file meanwhile. A flag ends an import or an upload between two faces.
+//! A [`Worker`] draws the pictures of its jobs in order, and pictures of one model with frames in flight. Its caller
+//! may wait for each, and read the next file meanwhile. A flag ends an import or an upload between two faces.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 

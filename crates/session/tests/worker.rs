@@ -1,4 +1,5 @@
-//! Jobs of different cameras have frames in flight, and the pictures and errors of each job alone. Needs a Vulkan driver.
+//! Jobs of different cameras have frames in flight; each has the picture or the error that it has alone. Needs a Vulkan
+//! driver.
 
 use selvedge::glam::DVec3;
 use selvedge::gpu::GpuError;

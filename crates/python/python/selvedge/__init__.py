@@ -159,9 +159,9 @@ class Renderer:
 
         jobs: the arguments of render as mappings, "model" among them. They are taken while pictures are drawn: a
             generator that opens files reads the next one meanwhile.
-        ahead: how many pictures may be drawn or wait beyond the one that is yielded next. Jobs that follow each other and
-            differ in view, camera or size alone are drawn together, at most `ahead` and at most three at a time. Pictures
-            above 16.8 million pixels, and those of a renderer with validation, are drawn one at a time.
+        ahead: how many pictures may be drawn or wait beyond the one that is yielded next. Jobs that follow each other
+            and differ in view, camera or size alone are drawn together, at most `ahead` and at most three at a time.
+            Pictures above 16.8 million pixels, and those of a renderer with validation, are drawn one at a time.
 
         An exception of a job begins with "job N", counted from 0, and the model's file; its attribute job is N. It is
         raised after the pictures of the jobs before, as is an exception that jobs itself raises; no later job is drawn.

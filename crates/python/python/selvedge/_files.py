@@ -70,13 +70,15 @@ def render_files(
     skip_existing: files of which every output is there are left alone.
     fail_fast: the first failure is raised. Without it a file or picture that fails has a row that says why, and the
         others are drawn.
-    strict, search, limit_mib, limit_s: as in open. ahead: as in Renderer.render_many; the next file is read while pictures are
-        drawn, so at most ahead + 2 models are in memory. renderer: the one that draws; without it one is made and closed.
+    strict, search, limit_mib, limit_s: as in open.
+    ahead: as in Renderer.render_many. The next file is read while pictures are drawn, so at most ahead + 2 models are
+        in memory.
+    renderer: the one that draws; without it one is made and closed.
     settings: other arguments of Renderer.render, as size=(512, 512), the same for all pictures.
 
-    Returns the rows, each a dict: file, sha256, view, output, status ("drawn", "skipped" or "failed"), error, camera (JSON,
-    as Picture.camera), faces, instances, warnings, complete, clamps, and the seconds read_s, upload_s and draw_s. Numbers
-    of pictures that are not drawn are None, and empty in the CSV file.
+    Returns the rows, each a dict: file, sha256, view, output, status ("drawn", "skipped" or "failed"), error, camera
+    (JSON, as Picture.camera), faces, instances, warnings, complete, clamps, and the seconds read_s, upload_s and
+    draw_s. Numbers of pictures that are not drawn are None, and empty in the CSV file.
 
     Raises ValueError or TypeError for wrong arguments and for two outputs in one place, FileNotFoundError for a folder
     that is not there, ImportError where pyarrow is missing, all before anything is drawn; ClosedError. After Ctrl-C the
