@@ -85,7 +85,7 @@ fn in_flight(drawer: &mut Drawer, [first, second]: [Order; 2], waiting: &mut Wai
         Ok(upload_s) => upload_s,
         Err(error) => return first.answer(Err(error)) && second.alone(drawer),
     };
-    let (job, most_in_flight) = (first.job.clone(), drawer.most_in_flight());
+    let (job, most_in_flight) = (Job::clone(&first.job), drawer.most_in_flight());
     let is_alike = |other: &Job| other.goes_with(&job) && other.pixels() <= most_in_flight;
     let mut early = VecDeque::from([first, second]);
     let begun = RefCell::new(VecDeque::new());
