@@ -3,6 +3,8 @@
 //!
 //! `cargo bench --features headless --bench moving -- [FILE ...]`
 
+#[path = "../examples/host_engine/picture.rs"]
+mod picture;
 #[path = "../examples/host_engine/vulkan.rs"]
 mod vulkan;
 
@@ -29,7 +31,7 @@ fn row(file: &Path) -> String {
     let bounds = model.bounds();
     let engine = vulkan::Engine::new(SIZE).expect("a device");
     // SAFETY: the engine's device meets the requirements and outlives the renderer.
-    let renderer = unsafe { Renderer::new(engine.lend(), TargetFormats::new(vulkan::FORMAT), vulkan::SLOTS) };
+    let renderer = unsafe { Renderer::new(engine.lend(), TargetFormats::new(picture::FORMAT), vulkan::SLOTS) };
     let mut renderer = renderer.expect("a renderer");
     renderer.upload(&model).expect("uploaded");
     let camera = Camera::framing(&model, DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, SIZE);

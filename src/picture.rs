@@ -12,7 +12,8 @@ pub use style::{Style, UnknownStyle};
 use crate::model::{Colour, Images};
 use glam::DVec3;
 
-/// The caller's choices for one frame.
+/// The caller's choices for one frame. Later versions have more of them: end a literal with
+/// `..FrameSettings::default()`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameSettings {
     /// Largest distance in pixels between a drawn boundary and the true one: the promise. At least
@@ -223,7 +224,8 @@ impl Default for Highlight {
     }
 }
 
-/// The caller's choices for a loaded model.
+/// The caller's choices for a loaded model. Later versions have more of them: end a literal with
+/// `..SceneSettings::default()`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SceneSettings {
     /// How to trim.

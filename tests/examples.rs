@@ -71,3 +71,22 @@ fn an_engine_draws_frames_in_flight() {
     let whole = host_engine::run(&sample("assembly.step"), 6, (64, 48)).unwrap().whole;
     assert!(whole >= 4, "{whole} of 6 frames were whole"); // the first two may lack room
 }
+
+/// A file of an example is read at one go; a host in C has more to write.
+#[test]
+fn examples_are_short() {
+    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("examples")];
+    let mut files = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() { folders.push(path) } else { files.push(path) }
+        }
+    }
+    files.retain(|path| path.extension().is_some_and(|end| end == "rs" || end == "py"));
+    assert!(files.len() > 7, "only {} files were found", files.len());
+    for path in files {
+        let lines = std::fs::read_to_string(&path).unwrap().lines().count();
+        assert!(lines < 120, "{}: {lines} lines", path.display());
+    }
+}

@@ -3,8 +3,10 @@
 //!
 //! `cargo run --release --features headless --example host_engine -- samples/assembly.step 1000`
 
+mod picture;
 mod vulkan;
 
+use picture::FORMAT;
 use selvedge::ash::vk;
 use selvedge::glam::{DAffine3, DVec3};
 use selvedge::model::Camera;
@@ -13,7 +15,7 @@ use selvedge::renderer::{FrameInput, Renderer, TargetFormats, Targets};
 use std::error::Error;
 use std::path::Path;
 use std::time::{Duration, Instant};
-use vulkan::{Engine, FORMAT, SLOTS};
+use vulkan::{Engine, SLOTS};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();

@@ -1,15 +1,14 @@
 //! What an engine owns before it meets the renderer: instance, device, allocator, command buffers, fences and a picture.
 
+use super::picture::{RANGE, picture};
 use selvedge::ash::{self, vk};
 use selvedge::gpu::{HostDevice, Image, Requirements};
-use selvedge::gpu_allocator::MemoryLocation;
-use selvedge::gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc};
+use selvedge::gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::error::Error;
 use std::sync::{Arc, Mutex};
 use vk::{AccessFlags2 as A, PipelineStageFlags2 as S};
 
 pub const SLOTS: usize = 2;
-pub const FORMAT: vk::Format = vk::Format::R8G8B8A8_SRGB;
 
 /// Lives as long as the process: an engine that ends earlier destroys what it made.
 pub struct Engine {
@@ -67,20 +66,16 @@ impl Engine {
 
     /// What the renderer borrows.
     pub fn lend(&self) -> HostDevice<'_> {
-        let (instance, device, allocator) = (&self.instance, self.device.clone(), Arc::clone(&self.allocator));
-        let (debug_names, pipeline_statistics) = (false, false);
-        let (physical, queue_family) = (self.physical, self.family);
-        let (pipeline_cache, memory_budget) = (vk::PipelineCache::null(), None);
         HostDevice {
-            instance,
-            physical,
-            device,
-            queue_family,
-            allocator,
-            debug_names,
-            pipeline_statistics,
-            pipeline_cache,
-            memory_budget,
+            instance: &self.instance,
+            physical: self.physical,
+            device: self.device.clone(),
+            queue_family: self.family,
+            allocator: Arc::clone(&self.allocator),
+            debug_names: false,
+            pipeline_statistics: false,
+            pipeline_cache: vk::PipelineCache::null(),
+            memory_budget: None,
         }
     }
 
@@ -117,40 +112,5 @@ impl Engine {
         unsafe {
             self.device.cmd_pipeline_barrier2(cmd, &vk::DependencyInfo::default().image_memory_barriers(&barriers))
         };
-    }
-}
-
-const RANGE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
-    aspect_mask: vk::ImageAspectFlags::COLOR,
-    base_mip_level: 0,
-    level_count: 1,
-    base_array_layer: 0,
-    layer_count: 1,
-};
-
-/// The image that is drawn into.
-unsafe fn picture(device: &ash::Device, allocator: &mut Allocator, size: (u32, u32)) -> Result<Image, Box<dyn Error>> {
-    let create = vk::ImageCreateInfo::default()
-        .image_type(vk::ImageType::TYPE_2D)
-        .format(FORMAT)
-        .extent(vk::Extent3D { width: size.0, height: size.1, depth: 1 })
-        .mip_levels(1)
-        .array_layers(1)
-        .samples(vk::SampleCountFlags::TYPE_1)
-        .usage(vk::ImageUsageFlags::COLOR_ATTACHMENT);
-    // SAFETY: the device is alive; the memory is bound before the view is made.
-    unsafe {
-        let image = device.create_image(&create, None)?;
-        let memory = allocator.allocate(&AllocationCreateDesc {
-            name: "picture",
-            requirements: device.get_image_memory_requirements(image),
-            location: MemoryLocation::GpuOnly,
-            linear: false,
-            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-        })?;
-        device.bind_image_memory(image, memory.memory(), memory.offset())?;
-        let view = vk::ImageViewCreateInfo::default().image(image).subresource_range(RANGE);
-        let view = view.view_type(vk::ImageViewType::TYPE_2D).format(FORMAT);
-        Ok(Image::borrowed("picture", image, device.create_image_view(&view, None)?, size, FORMAT))
     }
 }

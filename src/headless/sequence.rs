@@ -17,6 +17,7 @@ use crate::gpu::GpuError;
 use crate::model::Camera;
 use crate::picture::{FrameSettings, FrameStats, Outputs};
 use crate::renderer::RenderError;
+use std::collections::VecDeque;
 
 /// A frame is recorded again when a buffer was too small; each time they grow to what was needed, so
 /// more than a few rounds mean that something else is wrong.
@@ -42,6 +43,10 @@ pub(super) struct View<'a> {
     pub(super) camera: &'a Camera,
     pub(super) settings: &'a FrameSettings,
     pub(super) outputs: Outputs,
+}
+
+fn checked(camera: &Camera) -> Result<(), HeadlessError> {
+    Ok(camera.check().map_err(RenderError::from)?)
 }
 
 impl HeadlessRenderer {
@@ -81,8 +86,40 @@ impl HeadlessRenderer {
         outputs: Outputs,
         take: impl FnMut(usize, &PictureView<'_>) -> Result<(), E>,
     ) -> Result<(), E> {
+        cameras.iter().try_for_each(checked)?;
+        let mut left = cameras.iter().copied();
+        self.fly(MOST_FLIGHTS.min(cameras.len()), (settings, outputs), || left.next(), take)
+    }
+
+    /// As [`render_sequence`](Self::render_sequence), of cameras that come while pictures are drawn. `next` returns the
+    /// camera of the next picture, or `None` if there is none yet. It is called before each picture is waited for,
+    /// until three are in flight. The sequence ends when `next` returns `None` and no picture is in flight.
+    ///
+    /// # Errors
+    /// [`HeadlessError`], or that of `take`. The sequence then ends: pictures in flight are finished and not taken.
+    ///
+    /// # Panics
+    /// When no model was uploaded.
+    pub fn render_stream<E: From<HeadlessError>>(
+        &mut self,
+        settings: &FrameSettings,
+        outputs: Outputs,
+        next: impl FnMut() -> Option<Camera>,
+        take: impl FnMut(usize, &PictureView<'_>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        self.fly(MOST_FLIGHTS, (settings, outputs), next, take)
+    }
+
+    /// Draws pictures with so many flights. Then frees all but one.
+    fn fly<E: From<HeadlessError>>(
+        &mut self,
+        flights: usize,
+        (settings, outputs): (&FrameSettings, Outputs),
+        next: impl FnMut() -> Option<Camera>,
+        take: impl FnMut(usize, &PictureView<'_>) -> Result<(), E>,
+    ) -> Result<(), E> {
         let pick = self.renderer.take_pick();
-        let drawn = self.sequence(cameras, settings, outputs, take);
+        let drawn = self.sequence(flights, (settings, outputs), next, take);
         let landed = self.land();
         if let Some((x, y)) = pick {
             self.renderer.pick(x, y);
@@ -93,28 +130,28 @@ impl HeadlessRenderer {
 
     fn sequence<E: From<HeadlessError>>(
         &mut self,
-        cameras: &[Camera],
-        settings: &FrameSettings,
-        outputs: Outputs,
+        flights: usize,
+        (settings, outputs): (&FrameSettings, Outputs),
+        mut next: impl FnMut() -> Option<Camera>,
         mut take: impl FnMut(usize, &PictureView<'_>) -> Result<(), E>,
     ) -> Result<(), E> {
-        cameras.iter().try_for_each(Camera::check).map_err(RenderError::from).map_err(HeadlessError::from)?;
-        let view = |nth: usize| cameras.get(nth).map(|camera| View { camera, settings, outputs });
         self.prepare(outputs)?;
-        let flights = MOST_FLIGHTS.min(cameras.len());
         self.add_flights(flights)?;
-        for (nth, view) in (0..flights).filter_map(|nth| Some((nth, view(nth)?))) {
-            self.start(nth, view)?;
-        }
-        for (nth, camera) in cameras.iter().enumerate() {
-            let flight = nth % flights;
-            let stats = self.finish(flight, View { camera, settings, outputs })?;
-            take(nth, &self.view(flight, outputs, stats))?;
-            if let Some(next) = view(nth + flights) {
-                self.start(flight, next)?;
+        // the n-th picture is drawn in flight n % flights
+        let (mut begun, mut in_flight) = (0, VecDeque::with_capacity(flights));
+        loop {
+            while in_flight.len() < flights {
+                let Some(camera) = next() else { break };
+                checked(&camera)?;
+                self.start(begun % flights, View { camera: &camera, settings, outputs })?;
+                in_flight.push_back(camera);
+                begun += 1;
             }
+            let nth = begun - in_flight.len();
+            let Some(camera) = in_flight.pop_front() else { return Ok(()) };
+            let stats = self.finish(nth % flights, View { camera: &camera, settings, outputs })?;
+            take(nth, &self.view(nth % flights, outputs, stats))?;
         }
-        Ok(())
     }
 
     /// Makes flights up to this number.

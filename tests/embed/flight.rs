@@ -123,6 +123,53 @@ fn sizes_and_models_change_in_flight() {
     assert_eq!(host.shutdown(), [""; 0]);
 }
 
+/// Two views of one upload in one command buffer, each with a slot, a camera and settings of its own: each shows what
+/// it shows alone. With equal sizes the second uses the buffers of the first.
+#[test]
+fn two_views_in_one_command_buffer() {
+    let host = Host::new();
+    let model = painted(shapes::cube(), GREEN);
+    for sizes in [[(160, 120), (160, 120)], [(160, 120), (96, 64)]] {
+        let mut renderer = renderer(&host, &model, FORMAT);
+        let from = [DVec3::new(1.0, -2.0, 0.7), DVec3::new(-1.0, 0.3, 0.4)];
+        let view = |nth: usize| Camera::around(model.control_bounds(), from[nth], DVec3::Z, 0.6, sizes[nth]);
+        let (cameras, tolerances) = ([view(0), view(1)], [0.5, 0.25]);
+        let targets = sizes.map(|size| Targets::new(&host, size, FORMAT));
+        // the first rounds may lack room
+        for _ in 0..4 {
+            let cmd = host.begin(0);
+            for slot in [0, 1] {
+                let targets = &targets[slot];
+                targets.draw(&host, cmd, [0.0, 0.0, 0.0, 1.0], &[]);
+                targets.hand_over(&host, cmd);
+                let tolerance_px = tolerances[slot];
+                let settings = FrameSettings { tolerance_px, background: None, ..FrameSettings::default() };
+                let into = Into { depth: Some(&targets.depth), ..Into::new(&targets.colour) };
+                let input = FrameInput { camera: &cameras[slot], settings, slot, targets: into };
+                // SAFETY: recording; the fence of slot 0 is that of both frames.
+                unsafe { renderer.record(cmd, &input) }.unwrap();
+                targets.read_back(&host, cmd);
+            }
+            host.submit(0);
+            host.wait(0);
+        }
+        for slot in [0, 1] {
+            assert!(renderer.report(slot).unwrap().unwrap().complete, "view {slot} of {sizes:?}");
+            let together = targets[slot].values();
+            assert_centre(slot, &targets[slot], 1);
+            let mut alone = crate::picture::renderer(&host, &model, FORMAT);
+            for _ in 0..2 {
+                record(&host, &mut alone, 0, &targets[slot], &cameras[slot], tolerances[slot]);
+                host.wait(0);
+            }
+            assert!(together == targets[slot].values(), "view {slot} of {sizes:?}");
+        }
+        drop(renderer);
+        targets.into_iter().for_each(|targets| targets.destroy(&host));
+    }
+    assert_eq!(host.shutdown(), [""; 0]);
+}
+
 /// A sphere moves from left to right, one place a frame, while the other slot's frame is in flight. Each frame shows it
 /// at its place when that frame was recorded, and an upload shows it at its place then.
 #[test]

@@ -242,6 +242,52 @@ fn a_caller_ends_the_sequence() {
     assert_silent(renderer);
 }
 
+/// Cameras that come while pictures are drawn: at times there is none yet, at times there are more than flights. The
+/// pictures are those of one frame after another.
+#[test]
+fn cameras_that_come_while_pictures_are_drawn() {
+    let model = shapes::pair();
+    let (cameras, frame) = (turn(&model, 7), FrameSettings::default());
+    let (mut in_flight, mut one_by_one) = (watched(&model), watched(&model));
+    // the answers of `next`; none after these
+    let come = [Some(0), None, Some(1), Some(2), None, Some(3), Some(4), Some(5), None, Some(6), None];
+    let mut come = come.into_iter();
+    let mut pictures = Vec::new();
+    let drawn = in_flight.render_stream(
+        &frame,
+        Outputs::ALL,
+        || come.next().flatten().map(|nth: usize| cameras[nth]),
+        |nth, picture| {
+            assert_eq!(nth, pictures.len(), "the order of the cameras");
+            pictures.push(picture.to_picture());
+            Ok::<_, HeadlessError>(())
+        },
+    );
+    drawn.unwrap();
+    assert!(pictures.len() == cameras.len() && come.next().is_none());
+    for (nth, (camera, picture)) in cameras.iter().zip(&pictures).enumerate() {
+        let alone = one_by_one.render(camera, &frame, Outputs::ALL).unwrap();
+        assert_same(picture, &alone, &format!("in picture {nth}"));
+    }
+
+    // a camera that shows nothing, while two pictures are in flight
+    let bad = Camera { target: cameras[2].eye, ..cameras[2] };
+    let mut come = [cameras[0], cameras[1], bad].into_iter();
+    let mut taken = 0;
+    let ended = in_flight.render_stream(
+        &frame,
+        Outputs::ALL,
+        || come.next(),
+        |_, _| {
+            taken += 1;
+            Ok::<_, HeadlessError>(())
+        },
+    );
+    assert!(ended.unwrap_err().to_string().contains("camera") && taken == 0);
+    assert_same(&in_flight.render(&cameras[3], &frame, Outputs::ALL).unwrap(), &pictures[3], "after an error");
+    [in_flight, one_by_one].into_iter().for_each(assert_silent);
+}
+
 /// A pixel to be picked applies to the next single picture.
 #[test]
 fn a_pick_waits_for_the_next_picture() {

@@ -37,7 +37,9 @@ pub fn argument(text: impl Into<String>) -> Failure {
 impl From<SessionError> for Failure {
     fn from(error: SessionError) -> Self {
         let status = match &error {
-            SessionError::Import(_) | SessionError::Nothing { .. } => SelvedgeStatus::File,
+            SessionError::Import(_) | SessionError::Nothing { .. } | SessionError::TooLong { .. } => {
+                SelvedgeStatus::File
+            }
             SessionError::Device(_) => SelvedgeStatus::Device,
             SessionError::Draw(_) | SessionError::Validation(_) | SessionError::Closed => SelvedgeStatus::Render,
             SessionError::Camera(_) | SessionError::Pinhole(_) | SessionError::Edges(_) | SessionError::Snap => {
@@ -182,5 +184,37 @@ pub unsafe fn free<T>(handle: *mut T) {
     if !handle.is_null() {
         // SAFETY: as the caller promises; a panic while it is freed ends here
         let _ = catch_unwind(AssertUnwindSafe(|| drop(unsafe { Box::from_raw(handle) })));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told() -> String {
+        // SAFETY: the text lives until this thread's next call
+        unsafe { CStr::from_ptr(selvedge_last_error()) }.to_str().expect("UTF-8").to_owned()
+    }
+
+    #[test]
+    fn a_panic_is_a_status_and_a_sentence() {
+        assert_eq!(border(|| panic!("on purpose")), SelvedgeStatus::Internal);
+        assert!(told().starts_with("internal error:"), "{}", told());
+        assert_eq!(border(|| Err(argument("the width"))), SelvedgeStatus::Argument);
+        assert_eq!(told(), "the width");
+        assert_eq!(border(|| Ok(())), SelvedgeStatus::Ok);
+        assert_eq!(told(), "");
+    }
+
+    #[test]
+    fn a_panic_of_a_handle_that_is_freed_ends_there() {
+        struct Bad;
+        impl Drop for Bad {
+            fn drop(&mut self) {
+                panic!("on purpose");
+            }
+        }
+        // SAFETY: made here
+        unsafe { free(Box::into_raw(Box::new(Bad))) };
     }
 }

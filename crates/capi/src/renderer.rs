@@ -166,7 +166,7 @@ pub unsafe extern "C" fn selvedge_render(
                 break answer?;
             }
         };
-        *place = SelvedgePicture::boxed(drawn, asked);
+        *place = SelvedgePicture::boxed(drawn.picture, asked);
         Ok(())
     })
 }

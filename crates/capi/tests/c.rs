@@ -60,6 +60,13 @@ fn every_call_refuses_what_it_must() {
     good(&watched(&program).arg(bracket).output().expect("it runs"));
 }
 
+#[test]
+fn threads_share_a_renderer_and_handles_outlive_it() {
+    let into = tempfile::tempdir().expect("a folder");
+    let program = linked(&folder().join("tests/threads.c"), into.path(), &["-pthread"]);
+    good(&watched(&program).output().expect("it runs"));
+}
+
 /// The sanitizer reports it.
 #[test]
 fn a_handle_that_is_not_freed_is_seen() {

@@ -17,15 +17,11 @@ use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::Camera;
 use selvedge::picture::{Outputs, Picture};
 use selvedge_io::import::Import;
-use selvedge_session::{Backdrop, Image, legend};
+use selvedge_session::{Backdrop, Image, MOST_IN_FLIGHT, legend};
 use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
 use task::{Shot, Task};
-
-/// Larger pictures, in pixels, are drawn one at a time: with all images, three of this size take 2.4 GiB on the device and in
-/// host memory.
-const MOST_IN_FLIGHT: u64 = 1 << 24;
 
 /// Draws the pictures and writes all output files.
 pub fn run(args: &RenderArgs) -> Result<Outcome> {

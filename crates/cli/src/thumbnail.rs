@@ -31,7 +31,7 @@ pub fn run(args: &ThumbnailArgs) -> Result<Outcome> {
         backdrop: Backdrop::Nothing,
     };
     let mut drawer = Drawer::new(&device::options(args.device.as_deref(), false)).map_err(told)?;
-    let picture = drawer.draw(&job, &stop).map_err(told)?;
+    let picture = drawer.draw(&job, &stop).map_err(told)?.picture;
     target::write(&args.output, |to| Ok(write_png(to, picture.size, &picture.colour)?))?;
     Ok(Outcome::Good)
 }

@@ -31,6 +31,7 @@ const HEADER: usize = 25;
 /// Why bytes are not a stored model.
 #[allow(missing_docs)] // the messages say what each field is
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NativeError {
     /// Another kind of file.
     #[error("does not begin as a selvedge file does")]

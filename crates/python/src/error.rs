@@ -22,7 +22,9 @@ pub fn raised(py: Python<'_>, error: &SessionError) -> PyErr {
             let class = if missing { "MissingFileError" } else { "ReadError" };
             instance(py, class, (text, import.file(), import.line(), nowhere.1))
         }
-        SessionError::Nothing { file, .. } => instance(py, "ReadError", (text, file, nowhere.0, nowhere.1)),
+        SessionError::Nothing { file, .. } | SessionError::TooLong { file, .. } => {
+            instance(py, "ReadError", (text, file, nowhere.0, nowhere.1))
+        }
         SessionError::Camera(_) | SessionError::Pinhole(_) | SessionError::Edges(_) | SessionError::Snap => {
             PyValueError::new_err(text)
         }

@@ -1,7 +1,7 @@
 //! The native half of the Python package: files to models, models to NumPy arrays.
 //!
 //! ```text
-//!   selvedge/__init__.py   signatures, `open`, shapes of other kernels, several renders in flight
+//!   selvedge/__init__.py   signatures, `open`, shapes of other kernels, jobs in flight, files with a manifest
 //!     └ _native            this: Model, Face, Edge, Camera, Renderer, Picture
 //!         └ selvedge-session
 //! ```
@@ -27,7 +27,7 @@ mod _native {
     #[pymodule_export]
     use super::picture::Picture;
     #[pymodule_export]
-    use super::renderer::{Pending, Renderer, check};
+    use super::renderer::{Pending, Renderer, check, validate};
     #[pymodule_export]
     use super::shape::{Edge, Face};
 }

@@ -17,6 +17,7 @@ use selvedge_io::import;
 use selvedge_session::{Loaded, Node, ReadOptions, SNAP_KINDS, Snapper, Source, bounds, read};
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
+use std::time::Duration;
 
 /// Where a model comes from.
 #[derive(FromPyObject)]
@@ -29,7 +30,7 @@ pub enum From {
 
 /// Reads a file or bytes; see ``selvedge.open``.
 #[pyfunction]
-#[pyo3(signature = (source, name, strict, search, limit_mib))]
+#[pyo3(signature = (source, name, strict, search, limit_mib, limit_s))]
 pub fn open(
     py: Python<'_>,
     source: From,
@@ -37,9 +38,11 @@ pub fn open(
     strict: bool,
     search: Vec<PathBuf>,
     limit_mib: Option<f64>,
+    limit_s: Option<f64>,
 ) -> PyResult<Model> {
     let most_bytes = limit_mib.map(|mebibytes| (mebibytes * f64::from(1 << 20)) as u64);
-    let how = ReadOptions { most_bytes, search };
+    let most_time = limit_s.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
+    let how = ReadOptions { most_bytes, most_time, search };
     let loaded = apart(py, move |stop| {
         let source = match &source {
             From::Path(path) => Source::Path(path),

@@ -5,8 +5,8 @@ use numpy::{Element, PyArray, PyReadonlyArray3};
 use pyo3::exceptions::{PyAttributeError, PyOSError, PyRuntimeWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use selvedge::picture::{Outputs, Picture as Drawn};
-use selvedge_session::{CameraFile, Image, save_png, write_png};
+use selvedge::picture::{self, Outputs};
+use selvedge_session::{CameraFile, Drawn, Image, save_png, write_png};
 use serde::Serialize;
 use std::ffi::CString;
 use std::path::PathBuf;
@@ -29,7 +29,9 @@ pub fn plain<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py
 impl Picture {
     /// The arrays take over the picture's memory: nothing is copied.
     pub fn new(py: Python<'_>, drawn: Drawn, outputs: Outputs, camera: &CameraFile) -> PyResult<Self> {
-        let Drawn { size, colour, depth, face, uv, normal, thickness, edge, part, instance, stats, .. } = drawn;
+        let Drawn { picture, upload_s, draw_s } = drawn;
+        let picture::Picture { size, colour, depth, face, uv, normal, thickness, edge, part, instance, stats, .. } =
+            picture;
         if stats.clamps > 0 {
             let text = format!(
                 "{} places of the picture do not keep the promise of accuracy: stats[\"clamps\"]",
@@ -59,8 +61,10 @@ impl Picture {
         if outputs.normal {
             images.set_item(Image::Normal.name(), cube(py, size, 3, normal.into_flattened())?)?;
         }
-        let (camera, stats) = (plain(py, camera)?.unbind(), plain(py, &stats)?.unbind());
-        Ok(Self { size, images: images.unbind(), camera, stats })
+        let stats = plain(py, &stats)?;
+        stats.set_item("upload_s", upload_s)?;
+        stats.set_item("draw_s", draw_s)?;
+        Ok(Self { size, images: images.unbind(), camera: plain(py, camera)?.unbind(), stats: stats.unbind() })
     }
 
     fn pixels(&self, py: Python<'_>) -> PyResult<Vec<[u8; 4]>> {
@@ -107,6 +111,8 @@ impl Picture {
     }
 
     /// Device, driver, milliseconds of each pass, counts; "clamps" above 0 are places where the promise is not kept.
+    /// "upload_s": seconds in which the model was prepared, before its first picture. "draw_s": seconds of this
+    /// picture; with pictures in flight, since the one before.
     #[getter]
     fn stats(&self, py: Python<'_>) -> Py<PyAny> {
         self.stats.clone_ref(py)

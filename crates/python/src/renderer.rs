@@ -11,7 +11,8 @@ use pyo3::prelude::*;
 use selvedge::model::Camera as View;
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Outputs, Samples, SceneSettings, Smooth, Style};
 use selvedge_session::{
-    Ambient, Backdrop, CameraFile, DeviceOptions, Image, Job, SessionError, Ticket, Verdict, Worker, lines, smooth,
+    Ambient, Backdrop, CameraFile, DeviceOptions, Drawn, Image, Job, SessionError, Ticket, Verdict, Viewpoint, Worker,
+    lines, smooth,
 };
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
@@ -82,7 +83,8 @@ impl Settings<'_> {
         Ok((which != EdgeChoice::None || self.silhouettes).then_some(settings))
     }
 
-    fn job(&self, py: Python<'_>, model: &Model) -> PyResult<Job> {
+    /// The arguments, each by itself.
+    fn chosen(&self) -> PyResult<Chosen> {
         let (size, outputs) = (self.pixels()?, self.outputs()?);
         if !(self.tolerance >= FrameSettings::LEAST_TOLERANCE_PX && self.tolerance.is_finite()) {
             let least = FrameSettings::LEAST_TOLERANCE_PX;
@@ -91,32 +93,77 @@ impl Settings<'_> {
                 self.tolerance
             )));
         }
-        let viewpoint = viewpoint(self.view.as_deref(), self.camera.as_deref())?;
-        let model = Arc::clone(&model.loaded.model);
-        let camera = py.detach(|| viewpoint.camera(&model, size)).map_err(|error| raised(py, &error))?;
         let samples: Samples = word(&self.samples.to_string())?;
-        let ao = self.ao.as_ref().map(|said| word::<Ambient>(&said.str()?.to_string())).transpose()?;
         let style = word::<Style>(&self.style)?;
-        let range = match self.curvature_range {
-            _ if !style.is_curvature() => 1.0,
-            None => model.curvature_range(),
-            Some(range) if range.is_finite() && range > 0.0 => range,
-            Some(range) => {
-                return Err(PyValueError::new_err(format!("curvature_range must be above 0, not {range}")));
-            }
-        };
-        let scene = SceneSettings {
-            curvature: style.is_curvature(),
-            edges: self.lines(outputs, size)?,
+        if let Some(range) = self.curvature_range.filter(|range| !(range.is_finite() && *range > 0.0))
+            && style.is_curvature()
+        {
+            return Err(PyValueError::new_err(format!("curvature_range must be above 0, not {range}")));
+        }
+        Ok(Chosen {
+            size,
+            outputs,
+            viewpoint: viewpoint(self.view.as_deref(), self.camera.as_deref())?,
+            lines: self.lines(outputs, size)?,
             samples,
             smooth: smooth(self.smooth.as_deref().map(word::<Smooth>).transpose()?, samples),
-            ambient: Ambient::radius(ao, samples, &model),
+            ambient: self.ao.as_ref().map(|said| word::<Ambient>(&said.str()?.to_string())).transpose()?,
             sun: self.sun.map(DVec3::from),
+            style,
+            curvature_range: self.curvature_range,
+            tolerance: self.tolerance,
+            backdrop: word::<Backdrop>(&self.background)?,
+        })
+    }
+
+    fn job(&self, py: Python<'_>, model: &Model) -> PyResult<Job> {
+        let (chosen, model) = (self.chosen()?, Arc::clone(&model.loaded.model));
+        py.detach(|| chosen.job(model)).map_err(|error| raised(py, &error))
+    }
+}
+
+/// [`Settings`] whose words are known and whose numbers are in range.
+struct Chosen {
+    size: (u32, u32),
+    outputs: Outputs,
+    viewpoint: Viewpoint,
+    lines: Option<EdgeSettings>,
+    samples: Samples,
+    smooth: Smooth,
+    ambient: Option<Ambient>,
+    sun: Option<DVec3>,
+    style: Style,
+    curvature_range: Option<f64>,
+    tolerance: f64,
+    backdrop: Backdrop,
+}
+
+impl Chosen {
+    /// The picture of a model.
+    fn job(self, model: Arc<selvedge::model::Model>) -> Result<Job, SessionError> {
+        let camera = self.viewpoint.camera(&model, self.size)?;
+        let curvature = self.style.is_curvature();
+        let curvature_range = match self.curvature_range {
+            _ if !curvature => 1.0,
+            Some(range) => range,
+            None => model.curvature_range(),
+        };
+        let scene = SceneSettings {
+            curvature,
+            edges: self.lines,
+            samples: self.samples,
+            smooth: self.smooth,
+            ambient: Ambient::radius(self.ambient, self.samples, &model),
+            sun: self.sun,
             ..SceneSettings::default()
         };
-        let frame =
-            FrameSettings { tolerance_px: self.tolerance, style, curvature_range: range, ..FrameSettings::default() };
-        Ok(Job { model, camera, scene, frame, outputs, backdrop: word::<Backdrop>(&self.background)? })
+        let frame = FrameSettings {
+            tolerance_px: self.tolerance,
+            style: self.style,
+            curvature_range,
+            ..FrameSettings::default()
+        };
+        Ok(Job { model, camera, scene, frame, outputs: self.outputs, backdrop: self.backdrop })
     }
 }
 
@@ -167,7 +214,7 @@ pub struct Pending {
 }
 
 impl Pending {
-    fn drawn(&self, py: Python<'_>) -> PyResult<selvedge::picture::Picture> {
+    fn drawn(&self, py: Python<'_>) -> PyResult<Drawn> {
         let ticket = self.ticket.lock().unwrap_or_else(PoisonError::into_inner).take();
         let ticket = ticket.ok_or_else(|| PyRuntimeError::new_err("the picture was taken before"))?;
         let ticket = Mutex::new(ticket);
@@ -204,7 +251,13 @@ pub fn check<'py>(
     let images = Outputs { edge: false, ..Outputs::ALL };
     let job = Job { outputs: images, ..settings.job(py, model)? };
     let (model, camera, tolerance) = (Arc::clone(&job.model), job.camera, job.frame.tolerance_px);
-    let drawn = renderer.order(py, job)?.drawn(py)?;
-    let verdict = apart(py, move |stop| Verdict::new(&model, &camera, &drawn, judged, tolerance, stop))?;
+    let picture = renderer.order(py, job)?.drawn(py)?.picture;
+    let verdict = apart(py, move |stop| Verdict::new(&model, &camera, &picture, judged, tolerance, stop))?;
     plain(py, &verdict)
+}
+
+/// Raises what is wrong with a picture's settings, whatever the model.
+#[pyfunction]
+pub fn validate(settings: Settings<'_>) -> PyResult<()> {
+    settings.chosen().map(|_| ())
 }

@@ -39,7 +39,8 @@ fn python_passes_its_tests() {
     }
     fs::copy(module(), package.join("_native.abi3.so")).expect("a copy");
     let mut command = Command::new(&python);
-    command.args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "--durations=5"]);
+    // -rs: why tests are skipped
+    command.args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "--durations=5"]);
     command.arg(root.join("crates/python/tests")).env("PYTHONPATH", site.path()).env("PYTHONDONTWRITEBYTECODE", "1");
     let status = command.status().expect("Python runs");
     assert!(status.success(), "pytest: {status}");

@@ -107,6 +107,12 @@ def test_bad_input_is_a_typed_error(tmp_path):
             selvedge.open(wrong)
     with pytest.raises(ValueError, match="limit_mib"):
         selvedge.open(BRACKET, limit_mib=-1)
+    with pytest.raises(selvedge.ReadError, match="bracket.step: .*longer than the limit") as late:
+        selvedge.open(BRACKET, limit_s=1e-9)
+    assert late.value.file == str(BRACKET)
+    with pytest.raises(ValueError, match="limit_s"):
+        selvedge.open(BRACKET, limit_s=0)
+    assert len(selvedge.open(BRACKET, limit_s=1e300).faces) > 0
 
 
 @pytest.mark.parametrize("package", ["OCP", "OCC.Core"])

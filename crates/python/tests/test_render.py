@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -13,6 +14,9 @@ import selvedge
 
 SAMPLES = pathlib.Path(__file__).parents[3] / "samples"
 SIZE = (96, 64)
+# pictures that take long enough to be in flight together
+LARGE = (320, 240)
+TURN = [f"{azimuth},20" for azimuth in range(0, 360, 36)]
 SHAPES = {
     "colour": (np.uint8, (64, 96, 4)),
     "depth": (np.float32, (64, 96)),
@@ -238,13 +242,125 @@ def test_many_pictures_come_in_order_from_a_generator(renderer, block):
     assert opened == views
     for view, picture in zip(views, pictures):
         np.testing.assert_array_equal(picture.depth, renderer.render(block, view, SIZE, ["depth"]).depth)
-    with pytest.raises(TypeError, match="sizes"):
-        list(renderer.render_many([{"model": block, "sizes": SIZE}]))
-    # given up in the middle, the renderer goes on
-    many = renderer.render_many({"model": block, "size": SIZE} for _ in range(20))
-    next(many)
+    with pytest.raises(ValueError, match="ahead"):
+        renderer.render_many([], ahead=0)
+
+
+def device_bytes(picture):
+    """Device memory of images and of what a view needs, when the picture was there."""
+    return {pool["name"]: pool["bytes"] for pool in picture.stats["pools"]}["transient"]
+
+
+def at_rest(renderer, model, outputs):
+    """The same with room for every view, after the last picture twice: the second frees what the first replaced."""
+    pictures = [renderer.render(model, view, LARGE, outputs) for view in [*TURN, TURN[-1]]]
+    return device_bytes(pictures[-1])
+
+
+def test_pictures_in_flight_have_the_bytes_of_one_by_one(renderer, bracket, block):
+    outputs = ["depth", "face", "uv", "normal", "part"]
+    alone = [renderer.render(bracket, view, LARGE, outputs) for view in TURN]
+    rest = at_rest(renderer, bracket, outputs)
+    jobs = [{"model": bracket, "view": view, "size": LARGE, "outputs": outputs} for view in TURN]
+    for ahead in (1, 2, 3, 8):
+        many = list(renderer.render_many(jobs, ahead))
+        assert len(many) == len(alone)
+        for view, one, other in zip(TURN, alone, many):
+            assert one.camera == other.camera
+            for name in one.images:
+                assert one.images[name].tobytes() == other.images[name].tobytes(), (ahead, view, name)
+        if ahead > 1:  # a picture in flight has a colour image of its own
+            assert max(map(device_bytes, many)) >= rest + 4 * LARGE[0] * LARGE[1]
+        assert all(picture.stats["draw_s"] > 0 and picture.stats["upload_s"] > 0 for picture in many)
+    # other sizes together, other models one after the other
+    sizes = [{**job, "size": size} for job in jobs[:3] for size in (SIZE, LARGE)]
+    mixed = [{**job, "model": model} for model in (bracket, block, bracket) for job in sizes]
+    for job, picture in zip(mixed, list(renderer.render_many(mixed))):
+        assert picture.colour.tobytes() == renderer.render(**job).colour.tobytes()
+
+
+def test_closing_early_frees_what_was_in_flight(renderer, bracket):
+    rest = at_rest(renderer, bracket, ["depth"])
+    begun = []
+
+    def jobs():
+        for view in TURN * 10:
+            begun.append(view)
+            yield {"model": bracket, "view": view, "size": LARGE, "outputs": ["depth"]}
+
+    many = renderer.render_many(jobs(), ahead=3)
+    first = [device_bytes(next(many)) for _ in range(6)]
     many.close()
-    assert renderer.render(block, size=SIZE).size == SIZE
+    assert len(begun) == 6 + 3
+    assert max(first) > rest
+    assert at_rest(renderer, bracket, ["depth"]) == rest
+
+
+def test_a_job_that_fails_is_named_after_the_pictures_before_it(renderer, block):
+    good = {"model": block, "size": SIZE}
+    cases = [
+        ({**good, "view": "side"}, ValueError, "block.obj.*iso, front"),
+        ({**good, "samples": 4, "smooth": "trims"}, selvedge.RenderError, "block.obj.*smooth trims"),
+        ({**good, "sizes": SIZE}, TypeError, "block.obj.*no argument sizes"),
+        ({**good, "model": "block.obj"}, TypeError, "job 2: "),
+        ({"size": SIZE}, TypeError, "needs a model"),
+        (7, TypeError, "mapping"),
+    ]
+    for bad, kind, told in cases:
+        taken = []
+        with pytest.raises(kind, match=told) as failed:
+            for picture in renderer.render_many([good, {**good, "view": "top"}, bad, good, good]):
+                taken.append(picture)
+        assert str(failed.value).startswith("job 2") and failed.value.job == 2
+        assert len(taken) == 2, "the pictures before it"
+        assert taken[0].colour.tobytes() == renderer.render(**good).colour.tobytes()
+
+
+def test_an_exception_of_the_generator_comes_after_the_pictures_before_it(renderer, block):
+    class Mine(Exception):
+        pass
+
+    def jobs():
+        yield {"model": block, "size": SIZE}
+        yield {"model": block, "size": SIZE, "view": "top"}
+        raise Mine("of my own")
+
+    taken = []
+    with pytest.raises(Mine, match="^of my own$") as failed:
+        for picture in renderer.render_many(jobs()):
+            taken.append(picture)
+    assert len(taken) == 2 and not hasattr(failed.value, "job")
+
+
+def test_pictures_that_wait_when_the_renderer_closes_are_drawn(block):
+    renderer = selvedge.Renderer()
+    many = renderer.render_many([{"model": block, "size": SIZE, "view": view} for view in TURN], ahead=3)
+    first = next(many)
+    renderer.close()
+    rest = []
+    with pytest.raises(selvedge.ClosedError, match="job 4") as failed:
+        for picture in many:
+            rest.append(picture)
+    assert failed.value.job == 4 and len(rest) == 3 and first.size == SIZE
+
+
+def test_other_threads_run_while_pictures_are_drawn(renderer, bracket):
+    ticks, done = [], threading.Event()
+
+    def tick():
+        while not done.wait(0.005):
+            ticks.append(time.monotonic())
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    begun = time.monotonic()
+    jobs = ({"model": bracket, "view": view, "size": LARGE, "samples": 8} for view in TURN)
+    assert len(list(renderer.render_many(jobs))) == len(TURN)
+    ended = time.monotonic()
+    done.set()
+    thread.join()
+    # of the ticks that an idle machine has, one in twenty; none where the interpreter is locked
+    assert sum(begun < tick < ended for tick in ticks) > (ended - begun) / 0.005 / 20
 
 
 def test_threads_share_a_renderer(renderer, block, bracket):
@@ -291,6 +407,9 @@ model = selvedge.open((spheres + quads).encode(), name="sheet.obj")
 renderer = selvedge.Renderer()
 if sys.argv[1] == "render":
     work = lambda: [renderer.render(model, size=(4000, 4000), samples=8, outputs=["depth"]) for _ in range(50)]
+elif sys.argv[1] == "many":
+    job = {"model": model, "size": (2000, 2000), "samples": 8, "outputs": ["depth"]}
+    work = lambda: [picture.size for picture in renderer.render_many([job] * 200)]
 else:
     work = lambda: [selvedge.open(sys.argv[1]) for _ in range(1000)]
 print("ready", flush=True)
@@ -304,7 +423,7 @@ except KeyboardInterrupt:
 """
 
 
-@pytest.mark.parametrize("work", ["render", str(SAMPLES / "assembly.step")])
+@pytest.mark.parametrize("work", ["render", "many", str(SAMPLES / "assembly.step")])
 def test_control_c_ends_it(work):
     child = subprocess.Popen([sys.executable, "-c", INTERRUPTED, work], stdout=subprocess.PIPE, text=True)
     assert child.stdout.readline() == "ready\n"

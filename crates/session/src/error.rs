@@ -26,6 +26,14 @@ pub enum SessionError {
         /// Its content in place of surfaces.
         summary: Box<Summary>,
     },
+    /// Reading the file took longer than [`ReadOptions::most_time`](crate::ReadOptions::most_time).
+    #[error("{file}: reading it takes longer than the limit of {most:?}")]
+    TooLong {
+        /// The file.
+        file: String,
+        /// The limit.
+        most: Duration,
+    },
     /// No device, or none that suffices.
     #[error(transparent)]
     Device(HeadlessError),

@@ -6,8 +6,8 @@
 //!                         outputs, backdrop ──────────────┘                     images ─▶ arrays, PNG
 //! ```
 //!
-//! A [`Worker`] draws one picture after another. Its caller may wait for each, and read the next file meanwhile. A flag
-//! ends an import or an upload between two faces.
+//! A [`Worker`] draws the pictures of its jobs in order, and pictures of one model with frames in flight. Its caller
+//! may wait for each, and read the next file meanwhile. A flag ends an import or an upload between two faces.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
@@ -15,6 +15,7 @@ mod ambient;
 mod backdrop;
 mod camera;
 mod directions;
+mod drawer;
 mod error;
 mod images;
 mod legend;
@@ -31,6 +32,7 @@ pub use ambient::Ambient;
 pub use backdrop::{Backdrop, colour};
 pub use camera::{CameraFile, FOV_DEG, FROM, Lens, Pinhole, Viewpoint, bounds, fitted, whole};
 pub use directions::{Direction, Directions, NAMED};
+pub use drawer::{DeviceOptions, Drawer, Drawn, Job, MOST_IN_FLIGHT};
 pub use error::{SessionError, Stop, guarded};
 pub use images::{Image, Values};
 pub use legend::legend;
@@ -41,4 +43,4 @@ pub use smooth::smooth;
 pub use snap::{SNAP_KINDS, Snapped, Snapper};
 pub use tree::{Body, Node};
 pub use verdict::{Verdict, worst_shift_px, wrong};
-pub use worker::{DeviceOptions, Drawer, Job, Ticket, Worker};
+pub use worker::{Ticket, Worker};

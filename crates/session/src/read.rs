@@ -7,6 +7,7 @@ use selvedge_io::import::{
 };
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Where a model comes from.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +28,8 @@ pub enum Source<'a> {
 pub struct ReadOptions {
     /// Most bytes of a file, gzip undone; three quarters of the machine's memory without it.
     pub most_bytes: Option<u64>,
+    /// Most time for reading the file, tested between two faces; no limit without it.
+    pub most_time: Option<Duration>,
     /// Folders in which other files are looked for, too.
     pub search: Vec<PathBuf>,
 }
@@ -53,15 +56,17 @@ pub struct Loaded {
 /// Reads a model that has something to draw. `progress` as in [`Options::progress`].
 ///
 /// # Errors
-/// [`SessionError::Import`], [`SessionError::Nothing`], [`SessionError::Stopped`].
+/// [`SessionError::Import`], [`SessionError::Nothing`], [`SessionError::Stopped`], [`SessionError::TooLong`].
 pub fn read(
     source: Source<'_>,
     how: &ReadOptions,
     stop: &Stop,
     progress: &(dyn Fn(Stage) + Sync),
 ) -> Result<Loaded, SessionError> {
+    let limit = how.most_time.map_or_else(Stop::default, Stop::within);
     let tell = |stage: Stage| {
         stop.check();
+        limit.check();
         progress(stage);
     };
     let folders = Folders::new(how.search.clone());
@@ -77,7 +82,12 @@ pub fn read(
             (name.to_owned(), guarded(|| Ok(import::read_from(&mut bytes, name, &options)?)))
         }
     };
-    Loaded::new(file, import?)
+    match import {
+        Err(SessionError::Stopped) if limit.is_set() && !stop.is_set() => {
+            Err(SessionError::TooLong { file, most: how.most_time.unwrap_or_default() })
+        }
+        import => Loaded::new(file, import?),
+    }
 }
 
 impl Loaded {
@@ -150,5 +160,17 @@ mod tests {
         let source = Source::Bytes { bytes: BRACKET, name: "bracket.step" };
         let ended = read(source, &ReadOptions::default(), &stop, &at_a_face).expect_err("stopped");
         assert!(matches!(ended, SessionError::Stopped), "{ended}");
+    }
+
+    #[test]
+    fn a_file_has_its_time() {
+        let within = |time: Duration| {
+            let how = ReadOptions { most_time: Some(time), ..ReadOptions::default() };
+            read(Source::Bytes { bytes: BRACKET, name: "bracket.step" }, &how, &Stop::default(), &|_| ())
+        };
+        let late = within(Duration::from_nanos(1)).expect_err("too late");
+        assert!(matches!(late, SessionError::TooLong { .. }), "{late}");
+        assert_eq!(late.to_string(), "bracket.step: reading it takes longer than the limit of 1ns");
+        assert!(within(Duration::MAX).is_ok());
     }
 }

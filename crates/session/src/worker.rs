@@ -1,93 +1,150 @@
-//! A thread that owns a device and draws one job after another.
+//! A thread that owns a device and draws the jobs of other threads.
 //!
 //! ```text
-//!   caller ──Job──▶ channel ──▶ thread: upload if the model or its scene is another; draw ──Ticket──▶ caller
+//!   caller ──Job──▶ channel ──▶ Waiting ─┬ a job alone ──────────────▶ Drawer::draw ────────┬─Ticket──▶ caller
+//!                                        └ jobs of different cameras ▶ Drawer::draw_stream ─┘
 //! ```
 //!
-//! Jobs are drawn in the order in which they came, whichever threads sent them. The caller's wait is independent of the
-//! driver, so a caller may handle signals while a frame is drawn.
+//! Jobs are drawn in the order in which they came, whichever threads sent them. Jobs that wait and differ in the camera
+//! alone have frames in flight together: the GPU draws the next ones while this one is copied. The caller's wait is
+//! independent of the driver, so a caller may handle signals while a frame is drawn.
 
-use crate::backdrop::Backdrop;
+use crate::drawer::{DeviceOptions, Drawer, Drawn, Job};
 use crate::error::{SessionError, Stop, guarded};
-use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
-use selvedge::model::{Camera, Model};
-use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
-use std::sync::Arc;
+use selvedge::gpu::GpuError;
+use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-/// The device, and its validation.
-pub type DeviceOptions = HeadlessOptions;
-
-/// One picture to be drawn.
-#[derive(Clone, Debug)]
-pub struct Job {
-    /// The model. A model that is drawn again in the same scene settings is not uploaded again.
-    pub model: Arc<Model>,
-    /// The camera.
-    pub camera: Camera,
-    /// How the model is prepared.
-    pub scene: SceneSettings,
-    /// How the frame is drawn; its background is that of [`Job::backdrop`].
-    pub frame: FrameSettings,
-    /// Images beside the colour.
-    pub outputs: Outputs,
-    /// The background.
-    pub backdrop: Backdrop,
-}
-
-/// A device, and the model that it holds.
-pub struct Drawer {
-    renderer: HeadlessRenderer,
-    loaded: Option<(Arc<Model>, SceneSettings)>,
-    /// Messages of the validation layer that were reported.
-    told: usize,
-}
-
-impl Drawer {
-    /// Opens the device.
-    ///
-    /// # Errors
-    /// [`SessionError::Device`].
-    pub fn new(options: &DeviceOptions) -> Result<Self, SessionError> {
-        Ok(Self { renderer: HeadlessRenderer::new(options).map_err(SessionError::Device)?, loaded: None, told: 0 })
-    }
-
-    /// Draws one picture. [`Stop`] is tested before it begins and between two faces of an upload. A message of the
-    /// validation layer is an error.
-    ///
-    /// # Errors
-    /// [`SessionError`]; the next job is drawn all the same.
-    pub fn draw(&mut self, job: &Job, stop: &Stop) -> Result<Picture, SessionError> {
-        job.camera.check()?;
-        if stop.is_set() {
-            return Err(SessionError::Stopped);
-        }
-        let scene = SceneSettings { thickness: job.scene.thickness || job.outputs.thickness, ..job.scene };
-        let is_there = |(model, known): &(Arc<Model>, SceneSettings)| Arc::ptr_eq(model, &job.model) && *known == scene;
-        if !self.loaded.as_ref().is_some_and(is_there) {
-            self.loaded = None;
-            self.renderer.upload_shared(Arc::clone(&job.model), scene, &|_| stop.check())?;
-            self.loaded = Some((Arc::clone(&job.model), scene));
-        }
-        let frame = FrameSettings { background: Some(job.backdrop.colour()), ..job.frame };
-        let mut picture = self.renderer.render(&job.camera, &frame, job.outputs)?;
-        job.backdrop.under(picture.size, &mut picture.colour);
-        let messages = self.renderer.messages();
-        let new = messages.get(self.told..).filter(|new| !new.is_empty()).map(|new| new.join("; "));
-        self.told = messages.len();
-        new.map_or(Ok(picture), |new| Err(SessionError::Validation(new)))
-    }
-}
-
-type Answer = Result<Picture, SessionError>;
+type Answer = Result<Drawn, SessionError>;
 
 /// A job on its way.
 struct Order {
     job: Box<Job>,
     stop: Stop,
     answer: Sender<Answer>,
+}
+
+impl Order {
+    /// Answers it; true unless the answer is a panic, after which the device is not used again.
+    fn answer(self, drawn: Answer) -> bool {
+        let is_usable = !matches!(drawn, Err(SessionError::Panicked(_)));
+        let _ = self.answer.send(drawn); // the ticket may be dropped
+        is_usable
+    }
+
+    /// Draws it and answers it, as [`answer`](Self::answer).
+    fn alone(self, drawer: &mut Drawer) -> bool {
+        let drawn = guarded(|| drawer.draw(&self.job, &self.stop));
+        self.answer(drawn)
+    }
+
+    /// Why it need not be begun.
+    fn refused(&self) -> Option<SessionError> {
+        if self.stop.is_set() {
+            return Some(SessionError::Stopped);
+        }
+        self.job.camera.check().err().map(SessionError::from)
+    }
+}
+
+/// Orders that are not begun.
+struct Waiting {
+    incoming: Receiver<Order>,
+    /// The first of them, if it was received.
+    first: Option<Order>,
+}
+
+impl Waiting {
+    /// Waits for an order. `None` once the worker is closed and all orders were taken.
+    fn next(&mut self) -> Option<Order> {
+        self.first.take().or_else(|| self.incoming.recv().ok())
+    }
+
+    /// The next order, if there is one and it is a good one.
+    fn next_if(&mut self, is_good: impl FnOnce(&Job) -> bool) -> Option<Order> {
+        let order = self.next_now()?;
+        if is_good(&order.job) {
+            return Some(order);
+        }
+        self.first = Some(order);
+        None
+    }
+
+    fn next_now(&mut self) -> Option<Order> {
+        self.first.take().or_else(|| self.incoming.try_recv().ok())
+    }
+}
+
+/// Draws two orders, and those like them that come while they are drawn, with frames in flight, and answers them. False
+/// once the device is not used again.
+fn in_flight(drawer: &mut Drawer, [first, second]: [Order; 2], waiting: &mut Waiting) -> bool {
+    let upload_s = match guarded(|| drawer.load(&first.job, &first.stop)) {
+        Ok(upload_s) => upload_s,
+        Err(error) => return first.answer(Err(error)) && second.alone(drawer),
+    };
+    let (job, most_in_flight) = (Job::clone(&first.job), drawer.most_in_flight());
+    let is_alike = |other: &Job| other.goes_with(&job) && other.pixels() <= most_in_flight;
+    let mut early = VecDeque::from([first, second]);
+    let begun = RefCell::new(VecDeque::new());
+    let next = || {
+        loop {
+            let order: Order = early.pop_front().or_else(|| waiting.next_if(is_alike))?;
+            if let Some(error) = order.refused() {
+                order.answer(Err(error));
+                continue;
+            }
+            let camera = order.job.camera;
+            begun.borrow_mut().push_back(order);
+            return Some(camera);
+        }
+    };
+    let take = |drawn| {
+        if let Some(order) = begun.borrow_mut().pop_front() {
+            order.answer(Ok(drawn));
+        }
+    };
+    let ended = guarded(|| drawer.draw_stream((&job, upload_s), next, take));
+    // after an error: each is drawn alone, and has a picture or an error of its own
+    let mut left = begun.into_inner();
+    left.append(&mut early);
+    match ended {
+        Ok(()) => true,
+        Err(error @ SessionError::Panicked(_)) => {
+            if let Some(order) = left.pop_front() {
+                order.answer(Err(error));
+            }
+            false
+        }
+        Err(error) => {
+            let largest = left.iter().map(|order| order.job.pixels()).max();
+            if let Some(pixels) = largest.filter(|_| is_out_of_memory(&error)) {
+                drawer.did_not_fit(pixels);
+            }
+            left.into_iter().all(|order| order.alone(drawer))
+        }
+    }
+}
+
+fn is_out_of_memory(error: &SessionError) -> bool {
+    matches!(error, SessionError::Draw(error) if error.gpu().is_some_and(GpuError::is_out_of_memory))
+}
+
+/// Draws orders until the worker is closed, or a panic.
+fn draw_all(drawer: &mut Drawer, waiting: &mut Waiting) {
+    while let Some(order) = waiting.next() {
+        let most = drawer.most_in_flight();
+        let is_alike = |next: &Job| next.goes_with(&order.job) && next.pixels().max(order.job.pixels()) <= most;
+        let is_usable = match waiting.next_if(is_alike) {
+            Some(next) => in_flight(drawer, [order, next], waiting),
+            None => order.alone(drawer),
+        };
+        if !is_usable {
+            return;
+        }
+    }
 }
 
 /// A picture that is not drawn yet.
@@ -128,22 +185,12 @@ impl Worker {
     pub fn new(options: DeviceOptions) -> Result<Self, SessionError> {
         let (orders, incoming) = mpsc::channel::<Order>();
         let (opened, answer) = mpsc::channel();
-        let work = move || {
-            let mut drawer = match guarded(|| Drawer::new(&options)) {
-                Ok(drawer) => {
-                    let _ = opened.send(Ok(())); // the caller waits for it
-                    drawer
-                }
-                Err(error) => return drop(opened.send(Err(error))),
-            };
-            for Order { job, stop, answer } in incoming {
-                let drawn = guarded(|| drawer.draw(&job, &stop));
-                let is_lost = matches!(drawn, Err(SessionError::Panicked(_)));
-                let _ = answer.send(drawn); // the ticket may be dropped
-                if is_lost {
-                    break; // after a panic the device is not used again
-                }
+        let work = move || match guarded(|| Drawer::new(&options)) {
+            Ok(mut drawer) => {
+                let _ = opened.send(Ok(())); // the caller waits for it
+                draw_all(&mut drawer, &mut Waiting { incoming, first: None });
             }
+            Err(error) => drop(opened.send(Err(error))),
         };
         let thread = thread::Builder::new().name("selvedge".to_owned()).spawn(work);
         let thread = thread.map_err(|error| SessionError::Panicked(format!("no thread: {error}")))?;

@@ -93,6 +93,7 @@ impl DrawingSettings {
 
 /// Why there is no drawing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DrawingError {
     /// A part has no edges.
     #[error("part {part}: {source}")]

@@ -199,3 +199,27 @@ fn desktops_get_their_thumbnails() {
     assert_eq!(of(&sample("bracket.step"), "0").status.code(), Some(2));
     assert!(!output.exists());
 }
+
+/// `tools/install_desktop` puts both files where desktops look, and the types of the entry are known there.
+#[test]
+fn desktop_files_are_put_in_place() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let prefix = tempfile::tempdir().expect("a folder");
+    let output =
+        Command::new("bash").arg(root.join("tools/install_desktop")).arg(prefix.path()).output().expect("bash");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let share = prefix.path().join("share");
+    for (from, to) in [
+        ("selvedge.thumbnailer", "thumbnailers/selvedge.thumbnailer"),
+        ("selvedge-mime.xml", "mime/packages/selvedge.xml"),
+    ] {
+        let read = |path: PathBuf| fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        assert_eq!(read(share.join(to)), read(root.join("desktop").join(from)));
+    }
+    let has_database = Command::new("sh").args(["-c", "command -v update-mime-database"]).output().expect("sh");
+    if has_database.status.success() {
+        assert!(share.join("mime/model/step.xml").is_file(), "the database has the type");
+    } else {
+        assert!(text(&output.stderr).contains("update-mime-database is missing"));
+    }
+}

@@ -7,6 +7,7 @@ use crate::spline::SplineError;
 /// Why nothing was built. Distances are in model units, parameters those of the curve that is named.
 #[allow(missing_docs)] // the messages say what each field is
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ConstructError {
     /// A NaN or an infinity.
     #[error("{what} is not a finite number")]

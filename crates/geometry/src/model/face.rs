@@ -67,6 +67,7 @@ pub struct Face {
 /// Why a face is invalid.
 #[allow(missing_docs)] // the messages say what each field is
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FaceError {
     /// A loop without a curve.
     #[error("trim loop has no curve")]

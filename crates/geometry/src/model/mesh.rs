@@ -28,6 +28,7 @@ pub struct Mesh {
 /// Why triangles do not make a mesh.
 #[allow(missing_docs)] // the messages say what each field is
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeshError {
     /// A triangle names a vertex that does not exist.
     #[error("triangle {triangle} names vertex {vertex} of {vertices}")]

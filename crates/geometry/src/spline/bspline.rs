@@ -8,6 +8,7 @@ use serde::Deserialize;
 /// Why a spline is invalid.
 #[allow(missing_docs)] // the messages say what each field is
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SplineError {
     /// Degree 0, or above [`MAX_DEGREE`].
     #[error("degree {0} is not between 1 and {MAX_DEGREE}")]

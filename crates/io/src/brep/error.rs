@@ -6,6 +6,7 @@ use crate::spline::SplineError;
 /// Why a face could not be built. Numbers are those of the source; lengths are millimetres.
 #[allow(missing_docs)] // the messages say what each field is
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum BuildError {
     /// A radius that is not positive, a zero direction, a profile that cannot be used.
     #[error("surface of face #{face}: {reason}")]

@@ -50,6 +50,7 @@ pub struct ExportWarning {
 /// Why no file was written, or not all of it.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // the messages say what each field is
+#[non_exhaustive]
 pub enum ExportError {
     /// The operating system refused.
     #[error("{0}")]

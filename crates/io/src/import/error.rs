@@ -3,6 +3,7 @@
 /// Every variant names the file; the message says what each field is.
 #[allow(missing_docs)]
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImportError {
     /// The operating system or the gzip decoder refused.
     #[error("{file}: {source}")]

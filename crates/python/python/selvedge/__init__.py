@@ -16,10 +16,12 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any, Union
 
 from . import _kernels, _native
 from ._errors import ClosedError, DeviceError, Error, MissingFileError, ReadError, RenderError
+from ._files import render_files
 from ._native import Camera, Edge, Face, Instance, Model, Part, Picture, Warning
 
 __all__ = [
@@ -40,6 +42,7 @@ __all__ = [
     "Warning",
     "check",
     "open",
+    "render_files",
 ]
 
 Source = Union[str, "os.PathLike[str]", bytes, bytearray, memoryview, Any]
@@ -52,6 +55,7 @@ def open(
     strict: bool = False,
     search: Sequence[str | os.PathLike[str]] = (),
     limit_mib: float | None = None,
+    limit_s: float | None = None,
 ) -> Model:
     """Reads a model.
 
@@ -60,6 +64,7 @@ def open(
     strict: a file of which anything is left out is refused.
     search: folders in which files that an assembly names are looked for, beside its own.
     limit_mib: most MiB of a file; three quarters of the machine's memory without it.
+    limit_s: most seconds for reading it; beyond, it is a ReadError.
 
     Raises ReadError with file, line and entity; MissingFileError; TypeError for what is none of these. Ctrl-C ends it.
     """
@@ -70,9 +75,15 @@ def open(
         if step is None:
             raise TypeError(f"a path, bytes or a shape of Open CASCADE is read, not {type(source).__name__}")
         source, name = step, name or "shape.step"
-    if limit_mib is not None and not 0.0 < limit_mib < float("inf"):
-        raise ValueError(f"limit_mib must be above 0, not {limit_mib}")
-    return _native.open(source, name or "bytes", strict, [os.fspath(folder) for folder in search], limit_mib)
+    _check_limits(limit_mib=limit_mib, limit_s=limit_s)
+    folders = [os.fspath(folder) for folder in search]
+    return _native.open(source, name or "bytes", strict, folders, limit_mib, limit_s)
+
+
+def _check_limits(**limits: float | None) -> None:
+    for name, limit in limits.items():
+        if limit is not None and not 0.0 < limit < float("inf"):
+            raise ValueError(f"{name} must be above 0, not {limit}")
 
 
 class Renderer:
@@ -143,31 +154,44 @@ class Renderer:
         del settings["self"], settings["model"]
         return self._native.submit(model, settings).result()
 
-    def render_many(self, jobs: Iterable[Mapping[str, Any]], ahead: int = 2) -> Iterator[Picture]:
-        """Draws many pictures, and yields them in order.
+    def render_many(self, jobs: Iterable[Mapping[str, Any]], ahead: int = 3) -> Iterator[Picture]:
+        """Draws many pictures, and yields them in order: the bytes of each are those of render.
 
         jobs: the arguments of render as mappings, "model" among them. They are taken while pictures are drawn: a
             generator that opens files reads the next one meanwhile.
-        ahead: how many pictures may be drawn or wait beyond the one that is yielded next.
+        ahead: how many pictures may be drawn or wait beyond the one that is yielded next. Jobs that follow each other
+            and differ in view, camera or size alone are drawn together, at most `ahead` and at most three at a time.
+            Pictures above 16.8 million pixels, and those of a renderer with validation, are drawn one at a time.
+
+        An exception of a job begins with "job N", counted from 0, and the model's file; its attribute job is N. It is
+        raised after the pictures of the jobs before, as is an exception that jobs itself raises; no later job is drawn.
+        Ctrl-C ends it at once. Closing the generator, or leaving its loop and dropping it, cancels what is not begun.
         """
         if ahead < 1:
             raise ValueError(f"ahead must be at least 1, not {ahead}")
-        pending: deque[_native.Pending] = deque()
+        return self._many(iter(jobs), ahead)
+
+    def _many(self, jobs: Iterator[Mapping[str, Any]], ahead: int) -> Iterator[Picture]:
+        pending: deque[_Ordered] = deque()
+        count, failure = 0, None
+        more = True
         try:
-            for job in jobs:
-                settings = {**_DEFAULTS, **job}
-                model = settings.pop("model")
-                unknown = settings.keys() - _DEFAULTS.keys()
-                if unknown:
-                    raise TypeError(f"render has no argument {', '.join(sorted(unknown))}")
-                pending.append(self._native.submit(model, settings))
-                if len(pending) > ahead:
-                    yield pending.popleft().result()
-            while pending:
-                yield pending.popleft().result()
+            while more or pending:
+                while more and len(pending) <= ahead:
+                    try:
+                        pending.append(_Ordered(self, count, next(jobs)))
+                        count += 1
+                    except StopIteration:
+                        more = False
+                    except Exception as error:  # after the pictures before
+                        failure, more = error, False
+                if pending:
+                    yield pending.popleft().picture()
         finally:
             for left in pending:
                 left.cancel()
+        if failure is not None:
+            raise failure
 
     def close(self) -> None:
         """Frees the device once the pictures that were asked for are drawn; later ones raise ClosedError."""
@@ -187,6 +211,41 @@ class Renderer:
 
 _DEFAULTS: dict[str, Any] = dict(Renderer.render.__kwdefaults__ or {})
 _DEFAULTS.update(zip(("view", "size", "outputs"), Renderer.render.__defaults__ or ()))
+
+
+class _Ordered:
+    """A job of render_many that the renderer has; its exceptions name it."""
+
+    def __init__(self, renderer: Renderer, number: int, job: Mapping[str, Any]):
+        self.name, self.number = f"job {number}", number
+        with self._named():
+            settings = {**_DEFAULTS, **job}
+            if "model" not in settings:
+                raise TypeError("render needs a model")
+            model = settings.pop("model")
+            if isinstance(model, Model):
+                self.name += f" ({model.file})"
+            unknown = settings.keys() - _DEFAULTS.keys()
+            if unknown:
+                raise TypeError(f"render has no argument {', '.join(sorted(map(str, unknown)))}")
+            self._pending = renderer._native.submit(model, settings)
+
+    def picture(self) -> Picture:
+        with self._named():
+            return self._pending.result()
+
+    def cancel(self) -> None:
+        self._pending.cancel()
+
+    @contextmanager
+    def _named(self) -> Iterator[None]:
+        try:
+            yield
+        except Exception as error:
+            told = error.args[0] if error.args else type(error).__name__
+            error.args = (f"{self.name}: {told}", *error.args[1:])
+            error.job = self.number  # type: ignore[attr-defined]
+            raise
 
 
 def check(

@@ -183,6 +183,12 @@ class Renderer:
     def closed(self) -> bool: ...
 
 def open(
-    source: str | PathLike[str] | bytes, name: str, strict: bool, search: Sequence[str], limit_mib: float | None
+    source: str | PathLike[str] | bytes,
+    name: str,
+    strict: bool,
+    search: Sequence[str],
+    limit_mib: float | None,
+    limit_s: float | None,
 ) -> Model: ...
 def check(renderer: Renderer, model: Model, settings: Mapping[str, Any], judged: int) -> dict[str, Any]: ...
+def validate(settings: Mapping[str, Any]) -> None: ...

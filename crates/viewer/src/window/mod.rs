@@ -50,6 +50,7 @@ pub struct Closed {
 
 /// Why there is no window, or no longer one.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ViewError {
     /// The system's windows.
     #[error("window: {0}")]

@@ -122,6 +122,7 @@ pub struct Primitive {
 /// Why a primitive is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)]
+#[non_exhaustive]
 pub enum ShapeError {
     #[error("a dimension is not a finite number")]
     NotFinite,

@@ -1,0 +1,147 @@
+//! Jobs of different cameras have frames in flight; each has the picture or the error that it has alone. Needs a Vulkan
+//! driver.
+
+use selvedge::glam::DVec3;
+use selvedge::gpu::GpuError;
+use selvedge::model::{Camera, Model};
+use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
+use selvedge_session::{
+    Backdrop, DeviceOptions, Drawer, Drawn, Job, ReadOptions, SessionError, Source, Stop, Ticket, Worker, read,
+};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+const SIZE: (u32, u32) = (320, 240);
+
+fn bracket() -> Arc<Model> {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../samples/bracket.step"));
+    read(Source::Path(path), &ReadOptions::default(), &Stop::default(), &|_| ()).expect("a model").model
+}
+
+/// Pictures from around the model.
+fn jobs(count: u32) -> Vec<Job> {
+    let model = bracket();
+    let job = |nth: u32| {
+        let (sin, cos) = (0.5 * f64::from(nth)).sin_cos();
+        Job {
+            model: Arc::clone(&model),
+            camera: Camera::framing(&model, DVec3::new(cos, sin, 0.6), DVec3::Z, 0.6, SIZE),
+            scene: SceneSettings::default(),
+            frame: FrameSettings::default(),
+            outputs: Outputs::ALL,
+            backdrop: Backdrop::Gradient,
+        }
+    };
+    (0..count).map(job).collect()
+}
+
+/// Each by itself.
+fn alone(jobs: &[Job]) -> Vec<Drawn> {
+    let mut drawer = Drawer::new(&DeviceOptions::default()).expect("a device");
+    jobs.iter().map(|job| drawer.draw(job, &Stop::default()).expect("a picture")).collect()
+}
+
+fn submitted(worker: &Worker, jobs: &[Job]) -> Vec<Ticket> {
+    jobs.iter().map(|job| worker.submit(job.clone()).expect("the worker takes it")).collect()
+}
+
+fn answer(ticket: &Ticket) -> Result<Drawn, SessionError> {
+    ticket.wait(Duration::from_secs(60)).expect("an answer within a minute")
+}
+
+/// Compares everything except costs.
+fn assert_same(drawn: &Drawn, expected: &Drawn, what: &str) {
+    let bits = |drawn: &Drawn| {
+        let Picture { size, colour, depth, face, uv, normal, .. } = &drawn.picture;
+        let uv: Vec<_> = uv.iter().map(|uv| uv.map(f32::to_bits)).collect();
+        let depth: Vec<_> = depth.iter().map(|depth| depth.to_bits()).collect();
+        (*size, colour.clone(), depth, face.clone(), uv, normal.clone())
+    };
+    assert!(expected.picture.face.iter().any(|face| *face != 0), "{what} shows nothing");
+    assert!(bits(drawn) == bits(expected), "{what}");
+}
+
+/// Bytes of some pools when the picture was there.
+fn bytes(drawn: &Drawn, of: impl Fn(&str) -> bool) -> u64 {
+    drawn.picture.stats.pools.iter().filter(|pool| of(&pool.name)).map(|pool| pool.bytes).sum()
+}
+
+/// Bytes of images and of what a view needs.
+fn transient(drawn: &Drawn) -> u64 {
+    bytes(drawn, |pool| pool == "transient")
+}
+
+#[test]
+fn pictures_in_flight_are_those_of_each_alone() {
+    let jobs = jobs(8);
+    let expected = alone(&jobs);
+    let worker = Worker::new(DeviceOptions::default()).expect("a device");
+    let draw = |jobs: &[Job]| -> Vec<_> {
+        submitted(&worker, jobs).iter().map(|ticket| answer(ticket).expect("a picture")).collect()
+    };
+    let drawn = draw(&jobs);
+    for (nth, (drawn, expected)) in drawn.iter().zip(&expected).enumerate() {
+        assert_same(drawn, expected, &format!("picture {nth}"));
+        assert!(drawn.draw_s > 0.0 && drawn.upload_s > 0.0);
+    }
+    // there is room for each view now; the second of two equal pictures frees what the first replaced
+    let rest = || {
+        draw(&jobs[..1]);
+        transient(&draw(&jobs[..1])[0])
+    };
+    let before = rest();
+    let most = draw(&jobs).iter().map(transient).max().expect("pictures");
+    let colour = u64::from(SIZE.0) * u64::from(SIZE.1) * 4;
+    assert!(most > before + colour, "no two pictures were in flight: {most} bytes, alone {before}");
+    assert_eq!(rest(), before, "what further flights had is freed");
+}
+
+/// Between jobs that are drawn together: a camera that shows nothing, a job that is stopped, settings that no picture
+/// has.
+#[test]
+fn a_job_that_fails_costs_itself_only() {
+    let mut jobs = jobs(9);
+    let expected = alone(&jobs);
+    jobs[3].camera.target = jobs[3].camera.eye;
+    jobs[6].frame.tolerance_px = 0.0;
+    let worker = Worker::new(DeviceOptions::default()).expect("a device");
+    let tickets = submitted(&worker, &jobs);
+    tickets[5].stop(); // the model is still being uploaded
+    for (nth, (ticket, expected)) in tickets.iter().zip(&expected).enumerate() {
+        match (nth, answer(ticket)) {
+            (3, Err(SessionError::Camera(_))) | (5, Err(SessionError::Stopped)) => {}
+            (6, Err(SessionError::Draw(error))) => assert!(error.to_string().contains("tolerance"), "{error}"),
+            (3 | 5 | 6, Ok(_)) => panic!("picture {nth} was drawn"),
+            (_, Ok(drawn)) => assert_same(&drawn, expected, &format!("picture {nth}")),
+            (_, Err(error)) => panic!("picture {nth}: {error}"),
+        }
+    }
+    // closed in the middle: what was sent is drawn
+    let tickets = submitted(&worker, &jobs[..3]);
+    drop(worker);
+    for (ticket, expected) in tickets.iter().zip(&expected) {
+        assert_same(&answer(ticket).expect("a picture"), expected, "sent before the close");
+    }
+}
+
+/// A budget for one picture and a quarter of the images of another. One job needs more by itself.
+#[test]
+fn pictures_that_do_not_fit_together_are_drawn_alone() {
+    let mut jobs = jobs(8);
+    let expected = alone(&jobs);
+    let pixels = u64::from(SIZE.0) * u64::from(SIZE.1);
+    let most = expected.iter().map(|drawn| bytes(drawn, |_| true) + 18 * pixels).max();
+    jobs[4].camera.size = (8 * SIZE.0, 8 * SIZE.1);
+    let worker = Worker::new(DeviceOptions { memory_budget: most, ..DeviceOptions::default() }).expect("a device");
+    for (nth, (ticket, expected)) in submitted(&worker, &jobs).iter().zip(&expected).enumerate() {
+        match (nth, answer(ticket)) {
+            (4, Err(SessionError::Draw(error))) => {
+                assert!(error.gpu().is_some_and(GpuError::is_out_of_memory), "{error}");
+            }
+            (4, Ok(_)) => panic!("the large picture was drawn"),
+            (_, Ok(drawn)) => assert_same(&drawn, expected, &format!("picture {nth}")),
+            (_, Err(error)) => panic!("picture {nth}: {error}"),
+        }
+    }
+}
