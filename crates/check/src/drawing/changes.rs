@@ -8,8 +8,8 @@
 //!   fold      ──╮    it turns away from the eye: its cosine with the ray falls as the root of the distance
 //! ```
 //!
-//! Surfaces are told apart by their numbers, which faces that coincide share. Spline faces of an operand have none: there,
-//! a jump of the depth or a turn of the normal between the two rays is halved.
+//! Surfaces are told apart by their numbers, which faces that coincide share. Spline faces of an operand have none:
+//! there, a jump of the depth or a turn of the normal between the two rays is halved.
 //!
 //! Not known, and [`Why::Unsure`]: where something hides a solid that is none, or meets it; where an operand without an
 //! equation ends in front of something, for it may end there by an edge of its own, by a cut, or as a facet; meshes

@@ -14,8 +14,8 @@
 //! body or beside a fold ([`Visibility::Unsure`](crate::Visibility)) need no line and excuse one; they are counted. Points
 //! just beside the picture excuse lines at its border.
 //!
-//! Of Boolean solids, `solid_lines.rs` says where the surface that is seen changes between the centres of pixels: such a
-//! place is a point here.
+//! Of Boolean solids, `solid_lines.rs` says where the surface that is seen changes between the centres of pixels: such
+//! a place is a point here.
 
 use super::path::View;
 use super::sight::{Sight, State};
@@ -55,8 +55,8 @@ pub struct LineFault {
     pub pixel: [f64; 2],
     /// Of a missing line: the instance.
     pub instance: Option<usize>,
-    /// Of a missing line: the edge, or the face that folds, or the mesh; without an instance, the primitive in the union of
-    /// all Boolean solids.
+    /// Of a missing line: the edge, or the face that folds, or the mesh; without an instance, the primitive in the union
+    /// of all Boolean solids.
     pub index: Option<usize>,
 }
 

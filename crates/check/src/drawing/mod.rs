@@ -15,8 +15,8 @@
 //! 0.005 px by bisection. Stretches between samples 3 px apart that no crossing of lines begins or ends are missed.
 //!
 //! A line that lies on another along a whole stretch is drawn once: the nearer one. Points flush with the face of another
-//! body count as seen. In drawings, Boolean solids hide what is behind them and have no lines of their own; the judge knows
-//! where theirs have to be.
+//! body count as seen. In drawings, Boolean solids hide what is behind them and have no lines of their own; the judge
+//! knows where theirs have to be.
 //!
 //! Source: A. Appel, *The notion of quantitative invisibility and the machine rendering of solids*, 1967 (visibility
 //! changes where lines cross); G. Elber, E. Cohen, *Hidden curve removal for free form surfaces*, SIGGRAPH 1990.

@@ -1,4 +1,5 @@
-//! Places where a picture has to have lines of Boolean solids, or may have some: no file knows their edges, so rays tell.
+//! Places where a picture has to have lines of Boolean solids, or may have some: no file knows their edges, so rays
+//! tell.
 //!
 //! ```text
 //!   ●────×──●     between the centres of neighbouring pixels: where the surface changes, a line has to be
@@ -193,8 +194,8 @@ struct Operand<'a> {
 }
 
 impl Operand<'_> {
-    /// Points of its edges that may be seen; none of a primitive with equations. Its number counts on from `parts` where
-    /// its edges fail.
+    /// Points of its edges that may be seen; none of a primitive with equations. An error counts its number on from
+    /// `parts`.
     fn places(
         &self,
         parts: usize,

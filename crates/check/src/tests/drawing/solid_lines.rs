@@ -208,8 +208,8 @@ fn outlines_of_sections_are_wide() {
     assert!(missing == 0 && stray > 50, "{missing} {stray}");
 }
 
-/// Without equations, the edges within an operand's picture have to have lines; along its outline it is not known whether
-/// there is an edge, or a cut.
+/// Without equations, the edges within an operand's picture have to have lines; along its outline it is not known
+/// whether there is an edge, or a cut.
 #[test]
 fn edges_of_operands_have_lines() {
     let part = shapes::block(-HALF, HALF).unwrap().part;
