@@ -1,6 +1,6 @@
 // Across a mesh from one of its triangles to the one that a point of the picture sees. Needs facet.glsl and a buffer
 // `uint neighbours[]`: of the side opposite to each corner, the corner opposite to it in the triangle beyond; NO_TRIANGLE where
-// there is none or several.
+// there is none or several. Twin: src/twin/mesh_walk.rs.
 //
 //        c                 weights of the point, one a corner: all at least 0 within the triangle. Beyond the side opposite to
 //       ╱ ╲    · point     the corner of the least the next triangle's own corner lies on the point's side, too, unless the
@@ -37,21 +37,25 @@ Facing facing_at(uint triangle, View view, vec2 middle) {
     vec3 a = positions[triangles[3u * triangle]];
     vec3 ab = positions[triangles[3u * triangle + 1u]] - a;
     vec3 ac = positions[triangles[3u * triangle + 2u]] - a;
-    Facing f = Facing(to_pixel(view, vec4(a, 1.0)), to_pixel(view, vec4(ab, 0.0)), to_pixel(view, vec4(ac, 0.0)));
-    f.a.xy -= middle * f.a.w;
-    f.b.xy -= middle * f.b.w;
-    f.c.xy -= middle * f.c.w;
-    return f;
+    vec4 q = to_pixel(view, vec4(a, 1.0));
+    vec4 qb = to_pixel(view, vec4(ab, 0.0));
+    vec4 qc = to_pixel(view, vec4(ac, 0.0));
+    precise vec2 from = q.xy - middle * q.w;
+    precise vec2 along_b = qb.xy - middle * qb.w;
+    precise vec2 along_c = qc.xy - middle * qc.w;
+    return Facing(vec4(from, q.zw), vec4(along_b, qb.zw), vec4(along_c, qc.zw));
 }
 
 // Weights of the corners where the ray through a point, so far from the middle, meets the triangle's plane, and its depth;
 // no numbers edge-on.
 vec4 weights_of(Facing f, vec2 point) {
-    vec2 a = f.a.xy - point * f.a.w;
-    vec2 b = f.b.xy - point * f.b.w;
-    vec2 c = f.c.xy - point * f.c.w;
-    vec2 st = vec2(cross2(c, a), cross2(a, b)) / cross2(b, c);
-    return vec4(1.0 - st.x - st.y, st, f.a.z + st.x * f.b.z + st.y * f.c.z);
+    precise vec2 a = f.a.xy - point * f.a.w;
+    precise vec2 b = f.b.xy - point * f.b.w;
+    precise vec2 c = f.c.xy - point * f.c.w;
+    precise vec2 st = vec2(cross2(c, a), cross2(a, b)) / cross2(b, c);
+    precise float first = 1.0 - st.x - st.y;
+    precise float depth = f.a.z + st.x * f.b.z + st.y * f.c.z;
+    return vec4(first, st, depth);
 }
 
 // From a triangle whose plane is nearer than `nearest`.

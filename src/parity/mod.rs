@@ -17,6 +17,7 @@ mod chain;
 mod coverage;
 mod exact;
 mod hard;
+mod mesh_walk;
 mod shapes;
 
 #[cfg(feature = "headless")]

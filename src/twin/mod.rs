@@ -29,6 +29,7 @@ pub mod gate;
 pub mod grid;
 pub mod in_sight;
 pub mod lines;
+pub mod mesh_walk;
 pub mod occlusion;
 pub mod operand_sort;
 pub mod reset;

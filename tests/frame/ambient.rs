@@ -124,6 +124,30 @@ fn nothing_but_light_changes() {
     assert!(darker > 2000, "{darker}");
 }
 
+/// A scene that measures lengths within solids and has nothing to see through loses as much light as one that does not
+/// measure them. There rays are followed, and no layers are drawn over the image behind them.
+#[test]
+fn scenes_that_measure_thickness_lose_as_much_light() {
+    let parts = [block([-1.0, -8.0, -1.0], [0.0, 8.0, 4.0]), block([-1.0, -8.0, -1.0], [8.0, 8.0, 0.0])];
+    let model = folded(Op::Union, parts.into());
+    let camera = perspective(&model, (96, 72));
+    let drawn = |ambient: Option<f64>, thickness: bool| {
+        let mut renderer = watched_with(&model, SceneSettings { thickness, ..settings(ambient) });
+        let outputs = Outputs { thickness, ..Outputs::ALL };
+        let picture = renderer.render(&camera, &FrameSettings::default(), outputs).unwrap();
+        assert_silent(renderer);
+        picture
+    };
+    let [before, after, measured] = [drawn(None, false), drawn(Some(2.0), false), drawn(Some(2.0), true)];
+    assert!(measured.thickness.iter().any(|length| *length > 0.0));
+    let (mut darker, mut other) = (0, 0);
+    for ((b, a), m) in before.colour.iter().zip(&after.colour).zip(&measured.colour) {
+        darker += usize::from(a[1].saturating_add(4) < b[1]);
+        other += usize::from(a[1].abs_diff(m[1]) > 1);
+    }
+    assert!(darker > 50 && other * 50 < darker, "{darker} pixels are darker, {other} are not so in the other scene");
+}
+
 /// Its passes and images exist only in scenes that have ambient occlusion.
 #[test]
 fn it_exists_where_it_is_wanted() {

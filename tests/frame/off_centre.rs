@@ -75,9 +75,8 @@ fn lines_are_where_rays_see_them() {
             let camera = whole(&model, lens);
             let picture = draw_lines(&model, &camera);
             let tracer = Tracer::new(&model);
-            let found =
-                judge_lines(&model, &tracer, &camera, &settings, LineImage { lines: &picture.edge, width: WIDTH });
-            let found = found.unwrap();
+            let image = LineImage { lines: &picture.edge, width: WIDTH, section_width: 2.0 * WIDTH };
+            let found = judge_lines(&model, &tracer, &camera, &settings, image).unwrap();
             assert!(found.visible > 100, "shape {shape}, lens {number}: {found:?}");
             assert_eq!((found.missing, found.stray), (0, 0), "shape {shape}, lens {number}: {found:?}");
         }

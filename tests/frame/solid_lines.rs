@@ -8,6 +8,7 @@ use selvedge::model::{Camera, Model};
 use selvedge::picture::{
     EdgeChoice, EdgeSettings, FrameSettings, Outputs, Picture, SceneSettings, SolidWay, TangentEdges,
 };
+use selvedge_check::drawing::{DrawingSettings, LineImage, LineJudgement, judge_lines};
 use selvedge_check::{Hit, Tracer};
 
 const SIZE: (u32, u32) = (120, 90);
@@ -171,6 +172,31 @@ fn lines_are_where_exact_rays_see_two_surfaces() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
+/// As `selvedge check --edges` judges them: without outlines, and with smooth transitions as wide as edges.
+fn judged_by_program(model: &Model, camera: &Camera) -> LineJudgement {
+    let drawn = EdgeSettings { tangent: TangentEdges::Full, ..lines() };
+    let picture = draw(model, with(drawn), camera);
+    let settings = DrawingSettings { silhouettes: false, ..DrawingSettings::default() };
+    let image = LineImage { lines: &picture.edge, width: 2.0 * HALF, section_width: 4.0 * HALF };
+    judge_lines(model, &Tracer::new(model), camera, &settings, image).unwrap()
+}
+
+#[test]
+fn the_programs_judge_finds_no_fault() {
+    let (mut seen, mut faults) = (0, Vec::new());
+    for (name, model) in solids() {
+        for (view, camera) in [("from afar", perspective(&model, SIZE)), ("parallel", orthographic(&model, SIZE))] {
+            let found = judged_by_program(&model, &camera);
+            println!("{name}, {view}: {found:?}");
+            seen += found.visible;
+            if (found.missing, found.stray, found.unsure) != (0, 0, 0) {
+                faults.push(format!("{name}, {view}: {found:?}"));
+            }
+        }
+    }
+    assert!(seen > 2000 && faults.is_empty(), "{seen} places seen\n{}", faults.join("\n"));
+}
+
 /// A post that goes over into a ball of its radius: the circle between them is a line where smooth ones are wanted.
 #[test]
 fn smooth_transitions_are_thin_or_left_out() {
@@ -222,6 +248,24 @@ fn outlines_of_sections_are_bold_and_exact() {
                 thin += usize::from(near < 2.0 * HALF + 0.4 && near > MARKED + OFF);
             }
             assert!(bare.is_empty() && thin > 100, "{name}: {thin} pixels beyond an edge's width, bare {bare:?}");
+        }
+    }
+}
+
+/// Sections of a solid with equations, and of a part, whose edges and outlines are those of an operand without.
+#[test]
+fn the_programs_judge_finds_no_fault_in_sections() {
+    let tube = selvedge::construct::shapes::tube(1.0, 0.5, 1.6).unwrap().part;
+    let low = tube.control_bounds().min.z;
+    let instances = vec![crate::shapes::placed(at(0.0, 0.0, 0.0), None)];
+    let spline = Model { parts: vec![tube], instances, ..Model::default() };
+    let equations = solid("A-B", vec![post(1.0, low, 1.6), post(0.5, low - 1.0, 4.0)]);
+    for (name, model) in [("spline", spline), ("equations", equations)] {
+        let cut = model.section(DVec3::Z, low + 1.0).unwrap();
+        for camera in [perspective(&cut, SIZE), orthographic(&cut, SIZE)] {
+            let found = judged_by_program(&cut, &camera);
+            assert!(found.visible > 100, "{name}: {found:?}");
+            assert_eq!((found.missing, found.stray), (0, 0), "{name}: {found:?}");
         }
     }
 }

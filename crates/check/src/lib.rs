@@ -82,6 +82,8 @@ pub struct Hit {
     pub normal: DVec3,
     /// It is a triangle or on a solid: normals may jump where the id does not change.
     pub facet: bool,
+    /// Of Boolean solids: [`Boundary::surface`](solids::Boundary::surface).
+    pub surface: Option<u32>,
 }
 
 /// The true picture: the hit at each pixel's centre. Images as in [`Images`].

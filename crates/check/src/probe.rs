@@ -120,6 +120,7 @@ impl<'a> Probe<'a> {
                 point: b.point,
                 normal: b.normal,
                 facet: true,
+                surface: b.surface,
             };
             (hit, 0.0)
         }));
@@ -173,6 +174,7 @@ impl Placed {
             point,
             normal: (self.normals * m.normal).normalize_or_zero(),
             facet: false,
+            surface: None,
         }
     }
 }

@@ -250,8 +250,9 @@ pub struct CheckArgs {
     /// several views each adds its name to the file's
     #[arg(long, value_name = "OUT.png")]
     pub difference: Option<PathBuf>,
-    /// Also draw lines along all edges and judge them: visible points half a pixel apart without a line within half its
-    /// width and 0.5 px, and pixels of lines farther than that from every visible edge
+    /// Also draw lines along all edges and judge them: visible points half a pixel apart, and places between pixels
+    /// where what is seen of Boolean solids changes, without a line within half its width and 0.5 px; and pixels of
+    /// lines farther than that from every visible edge
     #[arg(long)]
     pub edges: bool,
     /// Write the judgements as JSON

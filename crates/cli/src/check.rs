@@ -105,8 +105,10 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
 /// a pixel to be judged.
 fn judged_lines(height: u32) -> EdgeSettings {
     let usual = EdgeSettings::default();
-    let width = usual.width * (EdgeSettings::HEIGHT / f64::from(height)).max(1.0);
-    EdgeSettings { tangent: TangentEdges::Full, width: width.min(EdgeSettings::MOST_WIDTH), ..usual }
+    let larger = (EdgeSettings::HEIGHT / f64::from(height)).max(1.0);
+    let [width, section_width] =
+        [usual.width, usual.section_width].map(|width| (width * larger).min(EdgeSettings::MOST_WIDTH));
+    EdgeSettings { tangent: TangentEdges::Full, width, section_width, ..usual }
 }
 
 fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {

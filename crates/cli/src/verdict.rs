@@ -49,7 +49,7 @@ pub fn of_sun(
     judge_sun(tracer, sun, camera, &picture.images(), &options)
 }
 
-/// Judges the lines along edges of a picture.
+/// Judges the lines of a picture: along edges, and of Boolean solids.
 pub fn of_lines(
     model: &Model,
     tracer: &Tracer,
@@ -59,6 +59,8 @@ pub fn of_lines(
 ) -> Result<LineJudgement> {
     // lines along silhouettes are not drawn
     let settings = DrawingSettings { silhouettes: false, hidden: drawn.hidden, ..DrawingSettings::default() };
-    let width = drawn.width * f64::from(camera.size.1) / EdgeSettings::HEIGHT;
-    Ok(judge_lines(model, tracer, camera, &settings, LineImage { lines: &picture.edge, width })?)
+    let [width, section_width] =
+        [drawn.width, drawn.section_width].map(|width| width * f64::from(camera.size.1) / EdgeSettings::HEIGHT);
+    let image = LineImage { lines: &picture.edge, width, section_width };
+    Ok(judge_lines(model, tracer, camera, &settings, image)?)
 }

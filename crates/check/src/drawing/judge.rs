@@ -13,9 +13,13 @@
 //! of an edge that touches a surface from behind, less than [`SPACING`] may be seen. Points flush with the face of another
 //! body or beside a fold ([`Visibility::Unsure`](crate::Visibility)) need no line and excuse one; they are counted. Points
 //! just beside the picture excuse lines at its border.
+//!
+//! Of Boolean solids, `solid_lines.rs` says where the surface that is seen changes between the centres of pixels: such
+//! a place is a point here.
 
 use super::path::View;
 use super::sight::{Sight, State};
+use super::solid_lines::{self, Place};
 use super::sources::Scene;
 use super::{DrawingError, DrawingSettings, LineKind, LineSource, Path};
 use crate::model::{Camera, Model};
@@ -40,6 +44,8 @@ pub struct LineImage<'i> {
     pub lines: &'i [u32],
     /// Width of the lines, pixels.
     pub width: f64,
+    /// Width of the outlines of sections through Boolean solids, pixels.
+    pub section_width: f64,
 }
 
 /// A place where a picture of lines is wrong.
@@ -49,7 +55,8 @@ pub struct LineFault {
     pub pixel: [f64; 2],
     /// Of a missing line: the instance.
     pub instance: Option<usize>,
-    /// Of a missing line: the edge, or the face that folds, or the mesh.
+    /// Of a missing line: the edge, or the face that folds, or the mesh; without an instance, the primitive in the union
+    /// of all Boolean solids.
     pub index: Option<usize>,
 }
 
@@ -101,10 +108,10 @@ struct Sample {
 /// there, for they are dashed.
 ///
 /// # Errors
-/// [`DrawingError`] for a part whose faces have no boundary curves.
+/// [`DrawingError`] for a part, or an operand of a Boolean solid, whose faces have no boundary curves.
 ///
 /// # Panics
-/// When the image is not as large as the camera says, or the width is no number above 0.
+/// When the image is not as large as the camera says, or a width is no number above 0.
 pub fn judge_lines(
     model: &Model,
     tracer: &Tracer,
@@ -114,7 +121,8 @@ pub fn judge_lines(
 ) -> Result<LineJudgement, DrawingError> {
     let (width, height) = (camera.size.0 as usize, camera.size.1 as usize);
     assert_eq!(image.lines.len(), width * height, "a number for each pixel");
-    assert!(image.width > 0.0 && image.width.is_finite(), "a line has a width");
+    let is_width = |width: f64| width > 0.0 && width.is_finite();
+    assert!(is_width(image.width) && is_width(image.section_width), "a line has a width");
     let scene = Scene::new(model, tracer)?;
     let reach = 0.5 * image.width + SLACK;
     let view = View::new(camera).with_beyond(reach);
@@ -150,6 +158,10 @@ pub fn judge_lines(
                 }
             }
         }
+    }
+    for place in &solid_lines::places(model, tracer, &view, camera, settings)? {
+        let width = if place.is_outline { image.section_width } else { image.width };
+        raster.judge(place, 0.5 * width + SLACK, image.lines, &mut out);
     }
     let stray = |at: usize| image.lines[at] != 0 && !raster.near[at];
     let again = |probe: &mut Probe<'_>, (path, runs): &(&Path<'_>, Vec<Vec<Sample>>)| {
@@ -258,7 +270,12 @@ struct Raster {
 impl Raster {
     /// Indices of the pixels whose centres are within reach of a segment.
     fn pixels(&self, a: DVec2, b: DVec2) -> impl Iterator<Item = usize> + use<> {
-        let (width, reach) = (self.width, self.reach);
+        self.within(a, b, self.reach)
+    }
+
+    /// Those within another reach.
+    fn within(&self, a: DVec2, b: DVec2, reach: f64) -> impl Iterator<Item = usize> + use<> {
+        let width = self.width;
         let low = (a.min(b) - reach - 0.5).ceil().max(DVec2::ZERO);
         let size = DVec2::new(self.width as f64, self.height as f64);
         let high = (a.max(b) + reach - 0.5).floor().min(size - 1.0);
@@ -276,6 +293,28 @@ impl Raster {
     fn mark(&mut self, a: DVec2, b: DVec2) {
         for at in self.pixels(a, b) {
             self.near[at] = true;
+        }
+    }
+
+    /// A place of a Boolean solid, with lines that reach so far.
+    fn judge(&mut self, place: &Place, reach: f64, lines: &[u32], out: &mut LineJudgement) {
+        let [a, b] = place.ends;
+        for at in self.within(a, b, reach + place.off) {
+            self.near[at] = true;
+        }
+        let is_known = match place.need {
+            solid_lines::Need::Must => true,
+            solid_lines::Need::Unsure => false,
+            solid_lines::Need::May => return,
+        };
+        out.points += 1;
+        out.visible += u64::from(is_known);
+        out.unsure += u64::from(!is_known);
+        if is_known && !self.within(a, b, reach).any(|at| lines[at] != 0) {
+            out.missing += 1;
+            if out.missing_at.len() < TOLD {
+                out.missing_at.push(LineFault { pixel: a.into(), instance: None, index: Some(place.primitive) });
+            }
         }
     }
 }

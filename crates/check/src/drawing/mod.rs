@@ -7,7 +7,7 @@
 //!   runs     places, samples between them, bisection ─▶ stretches of one state
 //!   fit      stretches ─▶ cubic Bézier curves, to a measured distance
 //!   join     lines that continue each other ─▶ strokes
-//!   judge    a picture of lines against points of all paths
+//!   judge    a picture of lines against points of all paths, and of Boolean solids against rays beside each other
 //! ```
 //!
 //! *Accuracy.* Cubics are within [`DrawingSettings::tolerance`] of the exact curve at 15 points a piece, and
@@ -15,11 +15,13 @@
 //! 0.005 px by bisection. Stretches between samples 3 px apart that no crossing of lines begins or ends are missed.
 //!
 //! A line that lies on another along a whole stretch is drawn once: the nearer one. Points flush with the face of another
-//! body count as seen. Boolean solids hide what is behind them and have no lines of their own.
+//! body count as seen. In drawings, Boolean solids hide what is behind them and have no lines of their own; the judge
+//! knows where theirs have to be.
 //!
 //! Source: A. Appel, *The notion of quantitative invisibility and the machine rendering of solids*, 1967 (visibility
 //! changes where lines cross); G. Elber, E. Cohen, *Hidden curve removal for free form surfaces*, SIGGRAPH 1990.
 
+mod changes;
 mod fit;
 mod join;
 mod judge;
@@ -27,6 +29,7 @@ mod meet;
 mod path;
 mod runs;
 mod sight;
+mod solid_lines;
 mod sources;
 
 pub use fit::{Cubic, cubic_at};
@@ -98,7 +101,7 @@ pub enum DrawingError {
     /// A part has no edges.
     #[error("part {part}: {source}")]
     Edges {
-        /// Index into [`Model::parts`].
+        /// Index into [`Model::parts`]; beyond them, of an operand, that of its primitive in the solids' union.
         part: usize,
         /// What is wrong with it.
         source: EdgeError,

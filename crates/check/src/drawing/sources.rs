@@ -179,7 +179,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-fn of(kind: EdgeKind) -> LineKind {
+pub(super) fn of(kind: EdgeKind) -> LineKind {
     match kind {
         EdgeKind::Sharp => LineKind::Sharp,
         EdgeKind::Border => LineKind::Border,
@@ -188,7 +188,7 @@ fn of(kind: EdgeKind) -> LineKind {
     }
 }
 
-fn edge_path<'s>(instance: usize, number: usize, edge: &Edge, transform: &DAffine3) -> Path<'s> {
+pub(super) fn edge_path<'s>(instance: usize, number: usize, edge: &Edge, transform: &DAffine3) -> Path<'s> {
     let matrix = DMat4::from(*transform);
     let pieces: Vec<_> = edge
         .curve
@@ -199,7 +199,7 @@ fn edge_path<'s>(instance: usize, number: usize, edge: &Edge, transform: &DAffin
     Path::new(LineSource::Edge { instance, edge: number }, of(edge.kind), Curve::Chain(pieces), (0.0, end))
 }
 
-fn segment<'s>(source: LineSource, kind: LineKind, ends: [DVec3; 2], transform: &DAffine3) -> Path<'s> {
+pub(super) fn segment<'s>(source: LineSource, kind: LineKind, ends: [DVec3; 2], transform: &DAffine3) -> Path<'s> {
     let [a, b] = ends.map(|p| transform.transform_point3(p));
     Path::new(source, kind, Curve::Chain(vec![Bezier::line(a, b)]), (0.0, 1.0))
 }

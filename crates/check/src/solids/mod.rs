@@ -45,6 +45,9 @@ pub struct Boundary {
     pub primitive: u32,
     /// Its [`Primitive::id`].
     pub id: u32,
+    /// Index of its surface in the [`SurfaceTable`], one for all faces that coincide; `None` on spline parts, and on
+    /// meshes of parts.
+    pub surface: Option<u32>,
     /// The point.
     pub point: DVec3,
     /// Unit normal, out of the solid; zero where the surface has none.
@@ -298,13 +301,18 @@ impl SolidTracer {
     fn boundary(&self, c: &Crossing, o: DVec3, d: DVec3, entering: bool) -> Boundary {
         let point = o + d * c.t;
         let face = |k: u32| self.table.faces(c.primitive).get(k as usize);
-        let gradient = match c.owner {
-            Owner::Carrier(k) | Owner::Triangle(k) => face(k).map_or(DVec3::ZERO, |face| {
-                let s = &self.table.surfaces()[face.surface as usize];
+        let surface = match c.owner {
+            Owner::Carrier(k) | Owner::Triangle(k) => face(k).map(|face| face.surface),
+            Owner::Normal(_) => None,
+        };
+        let gradient = match (c.owner, surface) {
+            (Owner::Normal(normal), _) => normal,
+            (_, None) => DVec3::ZERO,
+            (_, Some(surface)) => {
+                let s = &self.table.surfaces()[surface as usize];
                 let own = s.to_own.transform_point3(o) + s.to_own.transform_vector3(d) * c.t;
                 s.to_own.matrix3.transpose() * s.carrier.gradient(own)
-            }),
-            Owner::Normal(normal) => normal,
+            }
         };
         let normal = gradient.normalize_or_zero();
         let outward = (normal.dot(d) < 0.0) == entering;
@@ -313,6 +321,7 @@ impl SolidTracer {
             entering,
             primitive: c.primitive,
             id: self.primitives[c.primitive as usize].id,
+            surface,
             point,
             normal: if outward { normal } else { -normal },
         }

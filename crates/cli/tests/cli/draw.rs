@@ -151,3 +151,20 @@ fn lines_along_edges_are_judged() {
     assert!(count("visible") > 500 && count("line_pixels") > 200, "{lines}");
     assert_eq!((count("missing"), count("stray"), count("unsure")), (0, 0, 0), "{lines}");
 }
+
+/// A cube without one of its corners: lines of Boolean solids are judged, too.
+#[test]
+fn lines_of_solids_are_judged() {
+    let corner = "multmatrix([[1, 0, 0, 2], [0, 1, 0, -2], [0, 0, 1, 2], [0, 0, 0, 1]])";
+    let cube = "cube(size = [4, 4, 4], center = true);";
+    let solid = format!("difference() {{\n{cube}\n{corner} {{\n{cube}\n}}\n}}");
+    let folder = Folder::new("cube.csg", &solid);
+    let (model, json) = (folder.path("cube.csg"), folder.path("cube.json"));
+    let output = selvedge(&["check", &model, "--edges", "--size", "320x240", "--samples", "50", "--json", &json]);
+    assert_eq!(output.status.code(), Some(0), "{}{}", text(&output.stdout), text(&output.stderr));
+    let told: serde_json::Value = serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
+    let lines = &told[0]["lines"];
+    let count = |what: &str| lines[what].as_u64().unwrap();
+    assert!(count("visible") > 500 && count("line_pixels") > 200, "{lines}");
+    assert_eq!((count("missing"), count("stray"), count("unsure")), (0, 0, 0), "{lines}");
+}

@@ -6,16 +6,16 @@ use crate::drawing::{LineImage, LineJudgement, judge_lines};
 use crate::model::{Primitive, Shape, Solid};
 use selvedge_geometry::construct::shapes;
 
-const WIDTH: f64 = 1.25;
+pub(super) const WIDTH: f64 = 1.25;
 
 /// Pixels whose centres are within half a width of something.
-fn image(camera: &Camera, off: impl Fn(DVec2) -> f64) -> Vec<u32> {
+pub(super) fn image(camera: &Camera, off: impl Fn(DVec2) -> f64) -> Vec<u32> {
     let (w, h) = camera.size;
     let centre = |k: u32| DVec2::new(f64::from(k % w) + 0.5, f64::from(k / w) + 0.5);
     (0..w * h).map(|k| u32::from(off(centre(k)) <= 0.5 * WIDTH)).collect()
 }
 
-fn to_segments(segments: &[[DVec2; 2]], p: DVec2) -> f64 {
+pub(super) fn to_segments(segments: &[[DVec2; 2]], p: DVec2) -> f64 {
     let off = |[a, b]: &[DVec2; 2]| {
         let share = ((p - *a).dot(*b - *a) / a.distance_squared(*b)).clamp(0.0, 1.0);
         p.distance(a.lerp(*b, share))
@@ -23,9 +23,10 @@ fn to_segments(segments: &[[DVec2; 2]], p: DVec2) -> f64 {
     segments.iter().map(off).fold(f64::INFINITY, f64::min)
 }
 
-fn judged(model: &Model, camera: &Camera, settings: &DrawingSettings, lines: &[u32]) -> LineJudgement {
+pub(super) fn judged(model: &Model, camera: &Camera, settings: &DrawingSettings, lines: &[u32]) -> LineJudgement {
     let tracer = Tracer::new(model);
-    judge_lines(model, &tracer, camera, settings, LineImage { lines, width: WIDTH }).unwrap()
+    let image = LineImage { lines, width: WIDTH, section_width: 2.0 * WIDTH };
+    judge_lines(model, &tracer, camera, settings, image).unwrap()
 }
 
 /// The nine visible edges of a cube seen isometrically, and the three hidden ones.

@@ -4,6 +4,7 @@ mod bodies;
 mod judged;
 mod meeting;
 mod meshes;
+mod solid_lines;
 mod torus;
 
 use super::shapes::view;

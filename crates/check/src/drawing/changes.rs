@@ -1,0 +1,299 @@
+//! Where, between two exact rays, the surface changes that is seen of Boolean solids, and why.
+//!
+//! ```text
+//!   ●─────────×─────●     halved to CLOSE px; on both sides of the change the way is looked at again
+//!
+//!   meeting   ╲╱     both surfaces have one depth: sharp, or smooth within a degree
+//!   end       ──┐    the nearer one ends at an edge: it makes any angle with the ray
+//!   fold      ──╮    it turns away from the eye: its cosine with the ray falls as the root of the distance
+//! ```
+//!
+//! Surfaces are told apart by their numbers, which faces that coincide share. Spline faces of an operand have none:
+//! there, a jump of the depth or a turn of the normal between the two rays is halved.
+//!
+//! Not known, and [`Why::Unsure`]: where something hides a solid that is none, or meets it; where an operand without an
+//! equation ends in front of something, for it may end there by an edge of its own, by a cut, or as a facet; meshes
+//! that are drawn as meshes.
+
+use super::{DrawingSettings, LineKind};
+use crate::model::{Camera, EdgeLimits, Isolated, Model, Primitive, Shape};
+use crate::{Hit, Probe, Tracer};
+use glam::DVec2;
+
+/// Pixels to which a change is found.
+const CLOSE: f64 = 1e-9;
+/// Depths that differ by more than this many pixels do not meet.
+const JUMP_PX: f64 = 1.0 / 64.0;
+/// Between two points of a surface there may be a jump where both tangent planes miss the other by more pixels.
+const SUSPECT_PX: f64 = 0.25;
+/// Between two points of a spline operand there may be a crease where the normal turns by more, radians.
+const SUSPECT_TURN: f64 = 0.17;
+/// Pixels from a change at which the nearer surface is looked at again: does it fold?
+const INSIDE: f64 = 1e-3;
+/// A fold's cosine falls to less than this share over that way: to a thousandth, if it is exact.
+const FALLS: f64 = 0.1;
+/// The cosine of a fold where its surface is narrower than that way.
+const EDGE_ON: f64 = 1e-3;
+/// Radians: angles so near to a limit are not told from it.
+const UNSURE: f64 = 2e-3;
+/// Changes on one way that are looked for, as levels of halving.
+const LEVELS: u32 = 8;
+/// Pixels by which drawn lines may be farther off: where an operand without an equation may end what hides it, and
+/// where caps of two solids meet.
+pub(super) const OFF: f64 = 0.5;
+
+/// A ray through a place of the picture, and the nearest point that is not seen through.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ray {
+    pub pixel: DVec2,
+    pub hit: Option<Hit>,
+}
+
+/// Why there may be a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Why {
+    Line(LineKind),
+    Unsure,
+}
+
+/// A place where the surface changes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Change {
+    pub pixel: DVec2,
+    pub why: Why,
+    /// Of a section.
+    pub is_outline: bool,
+    /// Pixels by which a line may be farther off than others.
+    pub off: f64,
+    /// Index into the primitives of the solids' union.
+    pub primitive: usize,
+}
+
+/// What bounds a primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Bound {
+    Equations,
+    Spline,
+    Mesh,
+    /// A mesh that is drawn as a mesh.
+    Isolated,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Traits {
+    bound: Bound,
+    /// It cuts others open, as a section does.
+    is_cut: bool,
+}
+
+/// Finds changes in one view.
+#[derive(Debug)]
+pub(super) struct Changes<'a> {
+    tracer: &'a Tracer,
+    camera: &'a Camera,
+    silhouettes: bool,
+    /// Of each primitive of the solids' union.
+    traits: Vec<Traits>,
+    has_clear: bool,
+    /// Some primitive has no equations.
+    has_operands: bool,
+}
+
+impl<'a> Changes<'a> {
+    /// `None` in a model without Boolean solids, or with none but those that are seen through.
+    pub fn new(model: &Model, tracer: &'a Tracer, camera: &'a Camera, settings: &DrawingSettings) -> Option<Self> {
+        let primitives = tracer.solids.as_ref()?.union().primitives();
+        if !primitives.iter().any(Primitive::is_opaque) {
+            return None;
+        }
+        // an expression that is too large to be split is drawn as it is
+        let isolated = Isolated::of(&model.solids, model.coincidence()).ok().flatten();
+        let is_isolated = |p: &Primitive| isolated.iter().flat_map(|i| &i.meshes).any(|mesh| mesh.id == p.id);
+        let traits = |p: &Primitive| Traits {
+            bound: match &p.shape {
+                Shape::Part(_) => Bound::Spline,
+                Shape::Mesh(_) if is_isolated(p) => Bound::Isolated,
+                Shape::Mesh(_) => Bound::Mesh,
+                _ => Bound::Equations,
+            },
+            is_cut: model.cuts.contains(&p.id),
+        };
+        let traits: Vec<Traits> = primitives.iter().map(traits).collect();
+        Some(Self {
+            tracer,
+            camera,
+            silhouettes: settings.silhouettes,
+            has_clear: primitives.iter().any(|p| !p.is_opaque()),
+            has_operands: traits.iter().any(|t| t.bound != Bound::Equations),
+            traits,
+        })
+    }
+
+    /// The ray through a place.
+    pub fn ray(&self, pixel: DVec2, probe: &mut Probe<'_>) -> Ray {
+        let hit = match self.has_clear {
+            false => probe.first(pixel),
+            true => probe.hits(pixel).iter().find(|hit| !self.tracer.is_clear(hit)).copied(),
+        };
+        Ray { pixel, hit }
+    }
+
+    /// The primitive of a hit on a Boolean solid.
+    pub fn primitive(&self, hit: &Hit) -> Option<usize> {
+        (hit.part >= self.tracer.parts.len()).then_some(hit.face_index)
+    }
+
+    /// All changes between two rays.
+    pub fn between(&self, a: &Ray, b: &Ray, probe: &mut Probe<'_>) -> Vec<Change> {
+        let mut out = Vec::new();
+        self.look(a, b, LEVELS, probe, &mut out);
+        out
+    }
+
+    fn look(&self, a: &Ray, b: &Ray, levels: u32, probe: &mut Probe<'_>, out: &mut Vec<Change>) {
+        if levels == 0 {
+            return;
+        }
+        if self.is_one(a, b) {
+            if self.is_suspect(a, b) {
+                self.look_within(a, b, levels, probe, out);
+            }
+            return;
+        }
+        let (mut low, mut high) = (*a, *b);
+        while low.pixel.distance(high.pixel) > CLOSE {
+            let middle = self.ray(0.5 * (low.pixel + high.pixel), probe);
+            if self.is_one(&low, &middle) { low = middle } else { high = middle }
+        }
+        self.look(a, &low, levels - 1, probe, out);
+        out.extend(self.why(&low, &high, probe));
+        self.look(&high, b, levels - 1, probe, out);
+    }
+
+    /// Two points of one surface: the largest step between them, of the normal or of the depth.
+    fn look_within(&self, a: &Ray, b: &Ray, levels: u32, probe: &mut Probe<'_>, out: &mut Vec<Change>) {
+        let turns = self.turns(a, b);
+        let step = |p: &Ray, q: &Ray| match (&p.hit, &q.hit) {
+            (Some(p), Some(q)) if turns => p.normal.distance(q.normal),
+            _ => self.gap(p, q).max(0.0), // or it is no number
+        };
+        let (mut low, mut high) = (*a, *b);
+        while low.pixel.distance(high.pixel) > CLOSE {
+            let middle = self.ray(0.5 * (low.pixel + high.pixel), probe);
+            if !self.is_one(&low, &middle) {
+                // another surface lies between
+                self.look(&low, &middle, levels - 1, probe, out);
+                self.look(&middle, &high, levels - 1, probe, out);
+                return;
+            }
+            if step(&low, &middle) >= step(&middle, &high) { high = middle } else { low = middle }
+        }
+        out.extend(self.why(&low, &high, probe));
+    }
+
+    /// Both rays meet one surface, as far as numbers tell, or none of a Boolean solid.
+    fn is_one(&self, a: &Ray, b: &Ray) -> bool {
+        let (Some(a), Some(b)) = (&a.hit, &b.hit) else { return a.hit.is_none() && b.hit.is_none() };
+        let (p, q) = match (self.primitive(a), self.primitive(b)) {
+            (Some(p), Some(q)) => (p, q),
+            (p, q) => return p == q,
+        };
+        match (self.traits[p], self.traits[q]) {
+            // caps of two solids have a line between them
+            (s, t) if s.is_cut && t.is_cut && p != q => false,
+            (s, _) if p == q && matches!(s.bound, Bound::Spline | Bound::Isolated) => true,
+            // facets of a fine mesh have no lines
+            (s, _) if p == q && s.bound == Bound::Mesh => {
+                a.surface == b.surface || a.normal.angle_between(b.normal) < EdgeLimits::default().crease - UNSURE
+            }
+            _ => a.surface.is_some() && a.surface == b.surface,
+        }
+    }
+
+    /// There may be a jump or a crease between two points of one surface.
+    fn is_suspect(&self, a: &Ray, b: &Ray) -> bool {
+        let Some(primitive) = a.hit.as_ref().and_then(|hit| self.primitive(hit)) else { return false };
+        match self.traits[primitive].bound {
+            Bound::Mesh | Bound::Isolated => false,
+            Bound::Equations | Bound::Spline => self.turns(a, b) || self.gap(a, b) > SUSPECT_PX,
+        }
+    }
+
+    /// The normal of a spline operand turns between two of its points.
+    fn turns(&self, a: &Ray, b: &Ray) -> bool {
+        let (Some(p), Some(q)) = (&a.hit, &b.hit) else { return false };
+        let is_spline = self.primitive(p).is_some_and(|p| self.traits[p].bound == Bound::Spline);
+        is_spline && p.normal.angle_between(q.normal) > SUSPECT_TURN
+    }
+
+    /// How far the tangent plane at one of two points misses the other, pixels; the less of both.
+    fn gap(&self, a: &Ray, b: &Ray) -> f64 {
+        let (Some(p), Some(q)) = (&a.hit, &b.hit) else { return 0.0 };
+        let beyond = |from: &Hit, to: &Hit, pixel: DVec2| {
+            let (origin, direction) = self.camera.ray(pixel);
+            let t = (from.point - origin).dot(from.normal) / direction.dot(from.normal);
+            (origin + direction * t).distance(to.point)
+        };
+        beyond(p, q, b.pixel).min(beyond(q, p, a.pixel)) / self.pixel_across(p.depth.min(q.depth))
+    }
+
+    /// Model units across a pixel.
+    fn pixel_across(&self, depth: f64) -> f64 {
+        (if self.camera.is_perspective() { depth } else { 1.0 }) / self.camera.focal_px().min_element()
+    }
+
+    /// What happens between two rays that are as near to each other as none.
+    fn why(&self, low: &Ray, high: &Ray, probe: &mut Probe<'_>) -> Option<Change> {
+        let depth = |ray: &Ray| ray.hit.map_or(f64::INFINITY, |hit| hit.depth);
+        let (first, other) = if depth(low) <= depth(high) { (low, high) } else { (high, low) };
+        let near = first.hit?;
+        let [p, q] = [first, other].map(|ray| ray.hit.as_ref().and_then(|hit| self.primitive(hit)));
+        let traits = |p: Option<usize>| p.map(|p| self.traits[p]);
+        let either = |test: &dyn Fn(Traits) -> bool| [p, q].into_iter().filter_map(traits).any(test);
+        let primitive = p.or(q)?;
+        let is_outline = either(&|t| t.is_cut);
+        let off = if self.has_operands { OFF } else { 0.0 };
+        let pixel = 0.5 * (low.pixel + high.pixel);
+        let line = |kind: LineKind| Change { pixel, why: Why::Line(kind), is_outline, off, primitive };
+        let unsure = Some(Change { why: Why::Unsure, ..line(LineKind::Sharp) });
+        if either(&|t| t.bound == Bound::Isolated) {
+            return unsure;
+        }
+        if depth(other) - near.depth > JUMP_PX * self.pixel_across(near.depth) {
+            // what hides a solid and is none has lines of its own
+            let Some(traits) = traits(p) else { return unsure };
+            return match (traits.bound, self.folds(first, other, probe)) {
+                (Bound::Equations, true) => Some(Change { is_outline: false, ..line(LineKind::Silhouette) }),
+                (Bound::Equations, false) => Some(Change { is_outline: traits.is_cut, ..line(LineKind::Sharp) }),
+                (_, true) if !self.silhouettes => None,
+                _ => unsure,
+            };
+        }
+        let (Some(p), Some(q), Some(far)) = (p, q, other.hit) else { return unsure };
+        let (s, t) = (self.traits[p], self.traits[q]);
+        if near.surface.is_some() && near.surface == far.surface {
+            let are_two = s.is_cut && t.is_cut && p != q;
+            return are_two.then(|| Change { off: OFF, ..line(LineKind::Sharp) });
+        }
+        let is_operand = p == q && s.bound != Bound::Equations;
+        let limits = EdgeLimits::default();
+        let limit = if is_operand && s.bound == Bound::Mesh { limits.crease } else { limits.smooth };
+        let angle = near.normal.angle_between(far.normal);
+        match angle - limit {
+            over if over > UNSURE => Some(line(LineKind::Sharp)),
+            over if over < -UNSURE && is_operand => None,
+            over if over < -UNSURE => Some(line(LineKind::Smooth)),
+            // or there is no normal
+            _ => unsure,
+        }
+    }
+
+    /// The nearer of two surfaces turns away from the eye.
+    fn folds(&self, first: &Ray, other: &Ray, probe: &mut Probe<'_>) -> bool {
+        let way = (first.pixel - other.pixel).normalize_or_zero();
+        let inside = self.ray(first.pixel + way * INSIDE, probe);
+        let cosine = |ray: &Ray| ray.hit.map_or(0.0, |hit| hit.normal.dot(self.camera.ray(ray.pixel).1).abs());
+        let most = if self.is_one(first, &inside) { FALLS * cosine(&inside) } else { EDGE_ON };
+        cosine(first) < most
+    }
+}
