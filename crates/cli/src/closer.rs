@@ -10,8 +10,8 @@
 //! ```
 //!
 //! Details are the starts of trim curves and the vertices, in the order of their depth; of Boolean solids alone, the
-//! nearest of LOOKS x LOOKS rays beside which another face is seen. Where no way to a detail is free, the closer eye is on
-//! the way from the eye to what it sees in the direction of the nearest one.
+//! nearest of LOOKS x LOOKS rays beside which another face is seen. Where no way to a detail is free, the closer eye is
+//! on the way from the eye to what it sees in the direction of the nearest one.
 //!
 //! Ways are exact rays (`selvedge_check`). Of a large model only the faces and triangles are prepared whose boxes a way
 //! meets. Faces that are seen through are in the way, too.

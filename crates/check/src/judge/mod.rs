@@ -9,8 +9,8 @@
 //! ```
 //!
 //! *Touching parts.* Where faces of two instances coincide both are right, in face, depth and normal, and neither is
-//! certainly before the other: a tie. A face within another part's face is seen nowhere but in the rim of the contact, a
-//! line, where it is as near as the other two faces that meet there; so it is right up to limit_px from that rim, at the
+//! certainly before the other: a tie. A face within another part's face is seen nowhere but in the rim of the contact.
+//! There, in a line, it is as near as the other two faces that meet. So it is right up to limit_px from that rim, at the
 //! depth that it has there. Nothing else is excused: a face that ends before another part by more than the tolerance is
 //! told from it.
 //!
@@ -53,8 +53,8 @@ pub const SMOOTH_PX: f64 = 1.0;
 /// By how much its normal may turn within that, radians: a radius of curvature of ten pixels. A pixel's centre is known
 /// to a thousandth of a pixel; the normal then to 0.006 degrees.
 pub const TURN: f64 = 0.1;
-/// Faces of different instances are one place within this many [ties](JudgeOptions::tie): 4e-6 of the diagonal by default.
-/// Parts are placed by coordinates of six digits, as those of Boolean solids, whose faces are one within as much
+/// Faces of different instances are one place within this many [ties](JudgeOptions::tie): 4e-6 of the diagonal by
+/// default. Parts are placed by coordinates of six digits, as those of Boolean solids, whose faces are one within as much
 /// ([`SurfaceTable::ROUNDED`](crate::model::SurfaceTable::ROUNDED)).
 pub const TOUCHING: f64 = 4.0;
 /// Normals of one mesh jump between triangles. A drawn normal off by more than this, radians, is also compared with the
@@ -73,8 +73,8 @@ pub struct JudgeOptions<'a> {
     pub samples: Option<usize>,
     /// Largest shift that is right, pixels; the promise.
     pub limit_px: f64,
-    /// Depth within which faces are indistinguishable, relative to the model's diagonal; for faces of different instances
-    /// [`TOUCHING`] times as much.
+    /// Depth within which faces are indistinguishable, relative to the model's diagonal; [`TOUCHING`] times as much for
+    /// faces of different instances.
     pub tie: f64,
     /// Pixels that may be searched for a shift, and as many again for a fold; the rest count as
     /// `unsearched`. A search costs up to some thousand rays, and a picture with more errors than this

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!            ┌────────┐
-//!     eye    │  part  │      the part's lower face lies within the block's upper one; it is seen in the rim alone, where
-//!      ╲     │        │      the wall, the upper face and the lower face meet
+//!     eye    │  part  │      the part's lower face lies within the block's upper one; it is seen
+//!      ╲     │        │      in the rim alone, where it meets the wall and the upper face
 //!    ───┴────┴════════┴────
 //!            block
 //! ```
@@ -33,8 +33,8 @@ fn stacked(mut part: Part, lift: f64) -> Model {
     Model { parts: vec![block, part], instances, ..Model::default() }
 }
 
-/// A block and a cylinder that stand on a plate, the number of their lower face, and the way outwards from their footprint
-/// to a point beside it.
+/// A block and a cylinder that stand on a plate, the number of their lower face, and the way outwards from their
+/// footprint to a point beside it.
 fn parts() -> [(Part, u32, fn(DVec2) -> DVec2); 2] {
     let block = bodies::block(DVec3::new(-0.3, -0.3, 0.0), DVec3::new(0.3, 0.3, 0.4)).unwrap().part;
     let cylinder = bodies::cylinder(0.3, 0.4).unwrap().part;

@@ -350,8 +350,8 @@ mod tests {
         assert_eq!(comb(0.0, 0), Crossing::No);
     }
 
-    /// The shorter comparison finds a change of sides where the other one does: quarters of circles and of squares, that
-    /// touch, overlap and lie in each other.
+    /// The shorter comparison finds a change of sides where the other one does: rings of four bent or straight curves
+    /// that touch, overlap and lie in each other.
     #[test]
     fn sides_are_told_by_fewer_places() {
         let mut state = 11_u64;

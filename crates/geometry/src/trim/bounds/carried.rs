@@ -207,8 +207,8 @@ impl<'a> Carried<'a> {
         }
     }
 
-    /// Whether the loops keep a point. A loop whose box does not hold it does not wind around it: for a few points, indices
-    /// of the other loops cost less than one of all.
+    /// Whether the loops keep a point. A loop whose box does not hold it does not wind around it: for a few points,
+    /// indices of the other loops cost less than one of all.
     fn is_kept(&self, p: DVec2) -> bool {
         if self.index.get().is_none() {
             let near = self.face.loops.iter().zip(&self.boxes).filter(|(_, bounds)| is_in(p, **bounds)).map(|(l, _)| l);

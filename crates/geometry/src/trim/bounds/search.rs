@@ -8,8 +8,8 @@
 //!     └────▶ mesh               └─▶ its four sides ──▶ their halves …
 //! ```
 //!
-//! Patches of a face that is nowhere higher than its trim curves ([`Carried::is_ruled`]) are searched only where a piece
-//! was left out, because the face is not beside it at the places where that is tested.
+//! Patches of a face that is nowhere higher than its trim curves ([`Carried::is_ruled`]) are searched only if a piece is
+//! left out, because the face is not beside it at the places where that is tested.
 
 use super::carried::{Carried, Parts, Piece};
 use super::height::{Height, ROUNDING, Up, quotient};
