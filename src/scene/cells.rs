@@ -32,8 +32,8 @@ const STRIP_CURVES: f64 = 8.0;
 /// [`abi::Face::strips`] of a face with this number of rows of patches. Strips decide where scan lines are, so they
 /// must depend only on what edits leave unchanged.
 pub(super) fn strips(face: &Face, rows: usize, way: TakenWay) -> u32 {
-    let curves = || face.loops.iter().flat_map(TrimLoop::curves);
-    let for_curves = (curves().count() as f64).sqrt() / STRIP_CURVES;
+    let count: usize = face.loops.iter().map(|l| l.curves().len()).sum();
+    let for_curves = (count as f64).sqrt() / STRIP_CURVES;
     let strips = (2 * rows).max(for_curves as usize).clamp(LEAST_STRIPS, MOST_STRIPS) as u32;
     if way != TakenWay::Table {
         return abi::Face::pack_strips(strips, 1);
@@ -43,7 +43,7 @@ pub(super) fn strips(face: &Face, rows: usize, way: TakenWay) -> u32 {
         v().fold(f64::NEG_INFINITY, f64::max) - v().fold(f64::INFINITY, f64::min)
     };
     let (v0, v1) = face.surface.domain().1;
-    let intercepts = curves().map(height).sum::<f64>() / (v1 - v0);
+    let intercepts = face.loops.iter().flat_map(TrimLoop::curves).map(height).sum::<f64>() / (v1 - v0);
     abi::Face::pack_strips(strips, (intercepts / BIN_INTERCEPTS).clamp(1.0, MOST_BINS) as u32)
 }
 

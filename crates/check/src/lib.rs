@@ -39,7 +39,7 @@ mod tests;
 pub use edges::{AT, EdgePoint, EdgeTracer, Visibility};
 pub use judge::{
     Bin, Class, DepthErrors, EXACT_DEPTH_PX, EXACT_NORMAL_DEG, Errors, Exactness, Folds, GRAZING_COSINE, JudgeOptions,
-    Judgement, Mismatch, SMOOTH_PX, TURN, judge,
+    Judgement, Mismatch, SMOOTH_PX, TOUCHING, TURN, judge,
 };
 pub use probe::Probe;
 pub use snap::{Snap, SnapKind};

@@ -236,8 +236,8 @@ pub struct CheckArgs {
     /// Built-in views; not together with a camera
     #[arg(long, value_enum, default_value_t = Views::Whole, conflicts_with_all = ["eye", "target", "camera"])]
     pub views: Views,
-    /// In place of the views: so many times closer than the whole model, at the detail nearest to the eye; one view for
-    /// each number
+    /// In place of the views: so many times closer than the whole model, at the nearest detail that is seen; one view
+    /// for each number
     #[arg(long, value_name = "TIMES", value_parser = times, value_delimiter = ',', conflicts_with_all = ["eye", "target", "camera", "views"])]
     pub zoom: Vec<f64>,
     /// Move the model by this before anything is drawn
@@ -444,7 +444,7 @@ impl std::fmt::Display for Factors {
 pub enum Views {
     /// All of the model
     Whole,
-    /// Six times closer, at the detail nearest to the eye
+    /// Six times closer, at the nearest detail that is seen
     Close,
     /// From 8 degrees above the ground along the largest extent
     Grazing,

@@ -2,24 +2,21 @@
 //!
 //! ```text
 //!   whole     the model in the picture, as large as it fits, from FROM
-//!   close     the same direction, CLOSER times nearer, at the boundary point nearest to the eye; of Boolean
-//!             solids alone, at the nearest of LOOKS x LOOKS rays beside which another face is seen
+//!   close     the same direction, CLOSER times nearer, at the nearest detail that is seen
 //!   grazing   along the largest extent, GRAZING_DEG above the two larger ones
 //! ```
 
 use crate::args::{CameraArgs, Size, Views};
+use crate::closer::{Approach, details};
 use anyhow::{Context, Result, bail};
-use glam::{DVec2, DVec3};
-use selvedge::model::{Bounds, Camera, Face, Model, Projection};
-use selvedge_check::{Hit, Tracer};
+use glam::DVec3;
+use selvedge::model::{Bounds, Camera, Model, Projection};
 use selvedge_io::import::{Import, NamedCamera};
 use selvedge_session::{Direction, FOV_DEG, FROM};
 
 /// How much nearer the close view is. At six times a 1080p picture shows the detail of 6480 lines: far beyond the
 /// resolution of a mesh made for the whole view.
 const CLOSER: f64 = 6.0;
-/// Rays along a side of the picture that look for an edge of Boolean solids.
-const LOOKS: usize = 48;
 /// Low enough that a silhouette crosses many surfaces, high enough that a flat model shows its face.
 const GRAZING_DEG: f64 = 8.0;
 
@@ -131,7 +128,8 @@ impl CameraArgs {
             list.push(View { name: if given { "given" } else { "whole" }.to_string(), camera: whole });
         }
         if wanted(Views::Close) {
-            list.push(View { name: "close".to_string(), camera: fitted(closer(model, whole, CLOSER), bounds)? });
+            let close = Approach::new(model, whole).closer(CLOSER);
+            list.push(View { name: "close".to_string(), camera: fitted(close, bounds)? });
         }
         if wanted(Views::Grazing) {
             list.push(View { name: "grazing".to_string(), camera: fitted(self.grazing(model, bounds, size), bounds)? });
@@ -143,8 +141,9 @@ impl CameraArgs {
     pub fn zooms(&self, times: &[f64], import: &Import) -> Result<Vec<View>> {
         let bounds = bounds(&import.model);
         let whole = self.over(bounds, import)?;
+        let approach = Approach::new(&import.model, whole);
         let view = |&times: &f64| {
-            let camera = fitted(closer(&import.model, whole, times), bounds)?;
+            let camera = fitted(approach.closer(times), bounds)?;
             Ok(View { name: format!("{times} x"), camera })
         };
         times.iter().map(view).collect()
@@ -179,61 +178,9 @@ fn fitted(camera: Camera, bounds: Bounds) -> Result<Camera> {
     selvedge_session::fitted(camera, bounds).context("the camera shows nothing")
 }
 
-/// `times` closer to the start of the trim curve or the vertex nearest to the eye: certainly visible, and at an edge.
-pub fn closer(model: &Model, mut camera: Camera, times: f64) -> Camera {
-    let depth = |p: &DVec3| (*p - camera.eye).dot(camera.axes().2);
-    let nearest = details(model).min_by(|a, b| depth(a).total_cmp(&depth(b)));
-    let Some(detail) = nearest.or_else(|| edge_of_solids(model, &camera)) else { return camera };
-    let back = camera.eye - camera.target;
-    camera.target = detail;
-    match &mut camera.projection {
-        Projection::Orthographic { height } => (camera.eye, *height) = (detail + back, *height / times),
-        _ => camera.eye = detail + back / times,
-    }
-    camera
-}
-
-/// Starts of trim curves and vertices of the placed parts.
-fn details(model: &Model) -> impl Iterator<Item = DVec3> + '_ {
-    model.instances.iter().flat_map(|instance| {
-        let part = &model.parts[instance.part];
-        let vertices = part.meshes.iter().flat_map(|m| m.positions().iter().copied());
-        let points = part.faces.iter().flat_map(boundary_points).chain(vertices);
-        points.map(|p| instance.transform.transform_point3(p))
-    })
-}
-
-/// The nearest place at which two neighbouring rays over the picture hit different faces, or else the nearest hit of
-/// any ray.
-fn edge_of_solids(model: &Model, camera: &Camera) -> Option<DVec3> {
-    let tracer = (!model.solids.is_empty()).then(|| Tracer::new(model))?;
-    let step = DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1)) / LOOKS as f64;
-    let ray = |k: usize| DVec2::new((k % LOOKS) as f64 + 0.5, (k / LOOKS) as f64 + 0.5) * step;
-    let mut probe = tracer.probe(camera);
-    let hits: Vec<Option<Hit>> = (0..LOOKS * LOOKS).map(|k| probe.first(ray(k))).collect();
-    let face = |k: usize| hits.get(k).and_then(|h| h.as_ref()).map(|h| h.face);
-    let at_edge = |k: usize| face(k) != face(k + 1) || face(k) != face(k + LOOKS);
-    let nearest = |wanted: &dyn Fn(usize) -> bool| {
-        let seen = hits.iter().enumerate().filter(|(k, _)| wanted(*k)).filter_map(|(_, h)| h.as_ref());
-        seen.min_by(|a, b| a.depth.total_cmp(&b.depth)).map(|h| h.point)
-    };
-    nearest(&at_edge).or_else(|| nearest(&|_| true))
-}
-
-/// Where the trim curves of a face start, in part coordinates; the corners of its domain if it has none.
-fn boundary_points(face: &Face) -> Vec<DVec3> {
-    let grid = face.surface.patches();
-    let ((u0, u1), (v0, v1)) = face.surface.domain();
-    if face.loops.is_empty() {
-        return [(u0, v0), (u1, v0), (u0, v1), (u1, v1)].map(|(u, v)| grid.point(u, v)).to_vec();
-    }
-    let starts = face.loops.iter().flat_map(|l| l.curves().map(|c| c.point(0.0)).collect::<Vec<_>>());
-    starts.map(|uv| grid.point(uv.x, uv.y)).collect()
-}
-
 /// `zoom` times magnified: the eye stays, the angle narrows. From 1 on the picture's middle moves from the model's to
 /// the start of a trim curve: in an open shell to the one nearest to the model's middle, on a solid to the one nearest
-/// to the eye, which is certainly visible.
+/// to the eye, which little can hide.
 pub fn zoomed(model: &Model, size: (u32, u32), zoom: f64) -> Camera {
     let bounds = bounds(model);
     let mut camera = Camera::around(bounds, FROM, DVec3::Z, 35f64.to_radians(), size);

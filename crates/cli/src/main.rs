@@ -17,6 +17,7 @@ mod args;
 mod bench;
 mod camera;
 mod check;
+mod closer;
 mod convert;
 mod cut;
 mod device;

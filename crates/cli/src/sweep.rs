@@ -16,7 +16,7 @@ mod rate;
 mod sheet;
 
 use crate::args::{Size, SubdivideArgs, SweepArgs};
-use crate::camera::closer;
+use crate::closer::Approach;
 use crate::progress::during;
 use crate::target::{self, CSV, Target};
 use crate::{Outcome, device, output, session, verdict};
@@ -169,7 +169,7 @@ fn copied(model: &Model, copies: usize, distinct: bool) -> Model {
 fn camera(model: &Model, zoom: f64, size: (u32, u32)) -> Camera {
     let bounds = model.bounds();
     let whole = Camera::around(bounds, FROM, DVec3::Z, FOV_DEG.to_radians(), size);
-    let mut camera = if zoom > 1.0 { closer(model, whole, zoom) } else { whole };
+    let mut camera = if zoom > 1.0 { Approach::new(model, whole).closer(zoom) } else { whole };
     camera.fit_depth(bounds);
     camera
 }

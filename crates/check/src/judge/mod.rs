@@ -3,9 +3,16 @@
 //! ```text
 //!   drawn id = true id at the pixel centre ................................ agree
 //!   drawn face within `tie` of the true depth, there or up to limit_px away  tie
+//!   the same within TOUCHING ties, where faces of two instances touch ..... tie
 //!   true id = drawn id at an offset of s <= 2 px, s the smallest .......... shift s
 //!   none of these ......................................................... gross
 //! ```
+//!
+//! *Touching parts.* Where faces of two instances coincide both are right, in face, depth and normal, and neither is
+//! certainly before the other: a tie. A face within another part's face is seen nowhere but in the rim of the contact.
+//! There, in a line, it is as near as the other two faces that meet. So it is right up to limit_px from that rim, at the
+//! depth that it has there. Nothing else is excused: a face that ends before another part by more than the tolerance is
+//! told from it.
 //!
 //! A picture keeps the accuracy promise when no shift exceeds `limit_px` and nothing is gross: every boundary then lies
 //! within `limit_px` of its true place. Where ids agree, depth and normal are compared too. Two kinds of pixels would
@@ -46,6 +53,10 @@ pub const SMOOTH_PX: f64 = 1.0;
 /// By how much its normal may turn within that, radians: a radius of curvature of ten pixels. A pixel's centre is known
 /// to a thousandth of a pixel; the normal then to 0.006 degrees.
 pub const TURN: f64 = 0.1;
+/// Faces of different instances are one place within this many [ties](JudgeOptions::tie): 4e-6 of the diagonal by
+/// default. Parts are placed by coordinates of six digits, as those of Boolean solids, whose faces are one within as much
+/// ([`SurfaceTable::ROUNDED`](crate::model::SurfaceTable::ROUNDED)).
+pub const TOUCHING: f64 = 4.0;
 /// Normals of one mesh jump between triangles. A drawn normal off by more than this, radians, is also compared with the
 /// normals beside the pixel's centre.
 const SMOOTH: f64 = 1e-3;
@@ -62,7 +73,8 @@ pub struct JudgeOptions<'a> {
     pub samples: Option<usize>,
     /// Largest shift that is right, pixels; the promise.
     pub limit_px: f64,
-    /// Depth within which faces are indistinguishable, relative to the model's diagonal.
+    /// Depth within which faces are indistinguishable, relative to the model's diagonal; [`TOUCHING`] times as much for
+    /// faces of different instances.
     pub tie: f64,
     /// Pixels that may be searched for a shift, and as many again for a fold; the rest count as
     /// `unsearched`. A search costs up to some thousand rays, and a picture with more errors than this
@@ -142,7 +154,8 @@ pub fn judge(tracer: &Tracer, camera: &Camera, picture: &Images<'_>, options: &J
         if !s.searched {
             return Class::Unsearched;
         }
-        Search { probe, centre, wanted: s.wanted, limit: options.limit_px, slack: bench.slack }.run()
+        let (limit, slack) = (options.limit_px, bench.slack);
+        Search { probe, centre, wanted: s.wanted, limit, slack, touches: false }.run()
     };
     let verdicts: Vec<Class> =
         suspects.par_iter().map_init(|| tracer.probe(camera), |probe, s| search(probe, s)).collect();
@@ -162,7 +175,7 @@ pub fn judge(tracer: &Tracer, camera: &Camera, picture: &Images<'_>, options: &J
 /// Leaves at most `searches` wrong ids, and as many folds, to be searched: every k-th of either kind.
 fn ration(suspects: &mut [Suspect], searches: usize) {
     for fold in [false, true] {
-        let of_kind = |s: &Suspect| s.wanted.depth.is_some() == fold;
+        let of_kind = |s: &Suspect| s.wanted.fold == fold;
         let count = suspects.iter().filter(|s| of_kind(s)).count();
         let stride = count.div_ceil(searches.max(1)).max(1);
         suspects.iter_mut().filter(|s| of_kind(s)).enumerate().for_each(|(k, s)| s.searched = k % stride == 0);
@@ -182,7 +195,9 @@ impl Bench<'_> {
         let first = probe.first(centre);
         let truth = first.map_or(0, |h| h.face);
         if drawn_id != truth {
-            return Some(Suspect { index, truth, wanted: Wanted { face: drawn_id, depth: None }, searched: true });
+            let depth = self.picture.depth.get(index).map(|depth| f64::from(*depth));
+            let wanted = Wanted { face: drawn_id, depth, fold: false };
+            return Some(Suspect { index, truth, wanted, searched: true });
         }
         tally.agree += 1;
         let hit = first?;
@@ -198,7 +213,7 @@ impl Bench<'_> {
             let fold = error.is_nan() || error > fold_depth(self.camera, &hit, direction);
             tally.depth(index, error, pixel, regular && !fold);
             off[0] = Some(error / pixel);
-            let wanted = Wanted { face: drawn_id, depth: Some(depth) };
+            let wanted = Wanted { face: drawn_id, depth: Some(depth), fold };
             suspect = fold.then_some(Suspect { index, truth, wanted, searched: true });
         }
         if regular
@@ -207,6 +222,12 @@ impl Bench<'_> {
         {
             let drawn = DVec3::new(f64::from(n[0]), f64::from(n[1]), f64::from(n[2]));
             let mut angle = angle_between(drawn, hit.normal);
+            if angle > SMOOTH {
+                // copies of one part that touch may have one number there
+                let close = probe.within(centre, TOUCHING * self.slack).iter();
+                let other = close.filter(|h| h.face == drawn_id && h.instance != hit.instance);
+                angle = other.map(|h| angle_between(drawn, h.normal)).fold(angle, f64::min);
+            }
             if hit.facet && angle > SMOOTH {
                 let beside = beside(centre, FACET_PX).filter_map(|p| probe.first(p)).filter(|h| h.face == drawn_id);
                 angle = beside.map(|h| angle_between(drawn, h.normal)).fold(angle, f64::min);

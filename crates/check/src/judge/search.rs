@@ -11,9 +11,11 @@
 //!
 //! The result is an upper bound: the reference was checked at that very offset. One error can be missed, and is then
 //! called gross: a gap thinner than 1/64 px with the same face on both sides.
+//!
+//! Where a face lies within another part's face, the bisections run into the rim of the contact, too.
 
 use super::super::{Probe, Tracer};
-use super::{Class, fold_depth};
+use super::{Class, TOUCHING, fold_depth};
 use crate::model::Camera;
 use glam::{DVec2, DVec3};
 use std::collections::{HashMap, HashSet};
@@ -35,8 +37,10 @@ const RESOLUTION_PX: f64 = 1.0 / 256.0;
 pub(super) struct Wanted {
     /// Face id, 0 for background.
     pub face: u32,
-    /// For a fold: the depth, too.
+    /// The drawn depth, if it is known.
     pub depth: Option<f64>,
+    /// The face is right, and the depth is wanted.
+    pub fold: bool,
 }
 
 /// The truth at one offset.
@@ -45,6 +49,8 @@ enum Answer {
     Yes,
     /// The wanted face, behind another by less than a tie.
     Tie,
+    /// The wanted face where it touches another instance's face, and neither is hidden.
+    Touching,
     /// Another face: face, instance.
     No(u32, usize),
 }
@@ -56,13 +62,24 @@ pub(super) struct Search<'s, 'p> {
     pub wanted: Wanted,
     pub limit: f64,
     pub slack: f64,
+    /// The wanted face touches another part within the limit.
+    pub touches: bool,
 }
 
 impl Search<'_, '_> {
     /// [`Class::Tie`], [`Class::Shift`] or [`Class::Fold`] with its distance, or [`Class::Gross`] (for
     /// a fold [`Class::WrongDepth`]).
     pub fn run(mut self) -> Class {
-        let fold = self.wanted.depth.is_some();
+        match self.nearest() {
+            Class::Shift(s) if s <= self.limit => Class::Shift(s),
+            Class::Fold(s) if s <= self.limit => Class::Fold(s),
+            _ if self.touches => Class::Tie,
+            class => class,
+        }
+    }
+
+    fn nearest(&mut self) -> Class {
+        let fold = self.wanted.fold;
         let shift = |s: f64| if fold { Class::Fold(s) } else { Class::Shift(s) };
         let start = self.ask(DVec2::ZERO);
         if start == Answer::Tie {
@@ -72,6 +89,9 @@ impl Search<'_, '_> {
         let mut before = [start; DIRECTIONS];
         let mut beyond = false;
         for radius in RINGS {
+            if self.touches {
+                break;
+            }
             if radius > self.limit && !beyond {
                 beyond = true;
                 if let Some(offset) = self.on_grid() {
@@ -109,21 +129,28 @@ impl Search<'_, '_> {
     fn ask(&mut self, offset: DVec2) -> Answer {
         let pixel = self.centre + offset;
         let camera = self.probe.camera();
-        let hits = self.probe.within(pixel, self.slack);
+        let touching = TOUCHING * self.slack;
+        let hits = self.probe.within(pixel, touching);
         let Some(first) = hits.first() else {
             return if self.wanted.face == 0 { Answer::Yes } else { Answer::No(0, 0) };
         };
-        let matches = |h: &super::Hit| {
-            h.face == self.wanted.face
-                && self.wanted.depth.is_none_or(|d| (d - h.depth).abs() <= fold_depth(camera, h, camera.ray(pixel).1))
+        let near = |h: &super::Hit| {
+            self.wanted.depth.is_none_or(|d| (d - h.depth).abs() <= fold_depth(camera, h, camera.ray(pixel).1))
         };
-        if matches(first) {
-            Answer::Yes
-        } else if hits.iter().any(matches) {
-            Answer::Tie
-        } else {
-            Answer::No(first.face, first.instance)
+        let matches = |h: &&super::Hit| h.face == self.wanted.face && (!self.wanted.fold || near(h));
+        if matches(&first) {
+            return Answer::Yes;
         }
+        let touches = |h: &super::Hit| {
+            let beside = |other: &super::Hit| other.instance != h.instance && (other.depth - h.depth).abs() <= touching;
+            near(h) && hits.iter().any(beside)
+        };
+        if hits.iter().filter(matches).any(touches) {
+            self.touches |= offset.length() <= self.limit;
+            return Answer::Touching;
+        }
+        let is_tie = hits.iter().filter(matches).any(|h| h.depth <= first.depth + self.slack);
+        if is_tie { Answer::Tie } else { Answer::No(first.face, first.instance) }
     }
 
     /// Between two places with different answers: a third answer that is the wanted one.

@@ -8,3 +8,4 @@ mod patches;
 mod quadrics;
 mod shapes;
 mod snap;
+mod touching;

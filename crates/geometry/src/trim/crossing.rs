@@ -22,6 +22,8 @@ const PLACE: f64 = 1e-12;
 /// Places between two ends of pieces at which the sides of chains are compared, also just after the one and before the
 /// other.
 const SHARES: [f64; 5] = [0.02, 0.25, 0.5, 0.75, 0.98];
+/// The same, first the one at which two curves are mostly farthest apart.
+const MIDDLE_FIRST: [f64; 5] = [0.5, 0.02, 0.25, 0.75, 0.98];
 /// Bisections to the place where two chains meet: it only serves a message.
 const BISECTIONS: u32 = 40;
 /// Pairs of overlapping boxes that are compared: more would take longer than reading the face.
@@ -182,10 +184,26 @@ impl Chain<'_> {
     }
 }
 
+/// Where two chains change sides. Most do not, which is soon known; the place is then found in every detail.
 fn change_sides(a: &Chain<'_>, b: &Chain<'_>, margin: DVec2) -> Option<DVec2> {
     if a.axis != b.axis {
         return a.passes(b, margin).or_else(|| b.passes(a, margin));
     }
+    compared(a, b, margin, Compare::Sides)?;
+    compared(a, b, margin, Compare::Places)
+}
+
+/// What is known of two chains between two ends of pieces.
+#[derive(Clone, Copy, PartialEq)]
+enum Compare {
+    /// Which is on which side. Where the boxes of their pieces overlap nowhere, one place tells that.
+    Sides,
+    /// The sides at all places.
+    Places,
+}
+
+/// The first change of sides of two chains along one axis.
+fn compared(a: &Chain<'_>, b: &Chain<'_>, margin: DVec2, what: Compare) -> Option<DVec2> {
     let axis = a.axis;
     let (lo, hi) = (a.lo.max(b.lo)[axis], a.hi.min(b.hi)[axis]);
     // between the ends of pieces, where either may jump
@@ -198,7 +216,16 @@ fn change_sides(a: &Chain<'_>, b: &Chain<'_>, margin: DVec2) -> Option<DVec2> {
         // one piece of each: mostly their boxes lie apart
         let ((a_lo, a_hi), (b_lo, b_hi)) = (a.range(line(0.5)), b.range(line(0.5)));
         let sides = (a_lo - b_hi, b_lo - a_hi);
-        let shares: &[f64] = if sides.0.max(sides.1) > margin[1 - axis] { &[0.5] } else { &SHARES };
+        let beside = what == Compare::Sides && sides.0.max(sides.1) >= 0.0;
+        let as_before = if sides.0 >= 0.0 { before > 0.0 } else { before < 0.0 };
+        if beside && as_before {
+            continue;
+        }
+        let shares: &[f64] = match () {
+            () if sides.0.max(sides.1) > margin[1 - axis] => &[0.5],
+            () if beside => &MIDDLE_FIRST,
+            () => &SHARES,
+        };
         for &share in shares {
             let line = line(share);
             let apart = match sides {
@@ -213,6 +240,9 @@ fn change_sides(a: &Chain<'_>, b: &Chain<'_>, margin: DVec2) -> Option<DVec2> {
                 return Some(meeting(a, b, (last, line), apart));
             }
             (before, last) = (apart, line);
+            if beside {
+                break; // on the same side at all others
+            }
         }
     }
     None
@@ -318,6 +348,46 @@ mod tests {
         assert_eq!(comb(12_000.0, 0), Crossing::Unknown);
         assert_eq!(comb(12_000.0, 2500), Crossing::No);
         assert_eq!(comb(0.0, 0), Crossing::No);
+    }
+
+    /// The shorter comparison finds a change of sides where the other one does: rings of four bent or straight curves
+    /// that touch, overlap and lie in each other.
+    #[test]
+    fn sides_are_told_by_fewer_places() {
+        let mut state = 11_u64;
+        let mut below = |n: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 33) % n) as f64
+        };
+        let mut found = [0; 2];
+        for _ in 0..200 {
+            let mut ring = || {
+                let (x, y, r, bulge) = (below(5), below(5), 1.0 + below(3), below(3) * 0.5);
+                let corners = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)];
+                let at = |k: usize| (x + r * corners[k % 4].0, y + r * corners[k % 4].1);
+                let quarter = |k: usize| {
+                    let ((ax, ay), (bx, by)) = (at(k), at(k + 1));
+                    let corner = (ax + bx - x, ay + by - y);
+                    let towards = |(px, py): (f64, f64)| (px + bulge * (corner.0 - px), py + bulge * (corner.1 - py));
+                    [(ax, ay), towards((ax, ay)), towards((bx, by)), (bx, by)]
+                };
+                cubics(&[0, 1, 2, 3].map(quarter))
+            };
+            let loops = [ring(), ring()];
+            let curves: Vec<Vec<Bezier<DVec3>>> = loops.iter().map(|l| l.curves().collect()).collect();
+            let [a, b] = [0, 1].map(|of| chains(of, &curves[of]));
+            let all: Vec<&Chain<'_>> = a.iter().chain(&b).collect();
+            for (k, p) in all.iter().enumerate() {
+                let meets = |q: &Chain<'_>| p.lo.cmple(q.hi).all() && q.lo.cmple(p.hi).all();
+                for q in all[k + 1..].iter().filter(|q| q.axis == p.axis && meets(q)) {
+                    let margin = DVec2::splat(1e-3);
+                    let [quick, slow] = [Compare::Sides, Compare::Places].map(|what| compared(p, q, margin, what));
+                    assert_eq!(quick.is_some(), slow.is_some(), "{loops:?}");
+                    found[usize::from(slow.is_some())] += 1;
+                }
+            }
+        }
+        assert!(found.iter().all(|count| *count > 20), "{found:?}");
     }
 
     /// Holes in rows and columns, as in perforated sheets: none crosses another, and one that does is found.

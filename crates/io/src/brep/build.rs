@@ -3,10 +3,11 @@
 use super::carrier::CarrierError;
 use super::edge::EdgeCurve;
 use super::fit::Fitter;
+use super::lines::Lines;
 use super::loops::{Limits, Loop};
 use super::nest::{Directions, arrange, come_home};
 use super::order;
-use super::preimage::{Lines, tips_beside, widen_poles};
+use super::preimage::{tips_beside, widen_poles};
 use super::rims::natural_border;
 use super::strand::{Part, Strand};
 use super::support::Support;
@@ -94,7 +95,7 @@ fn build(face: &FaceGeometry, edges: &[Edge], tolerance: f64, beside: bool) -> R
         })
         .collect();
     let mut loops = Vec::new();
-    let mut lines = Lines::new();
+    let mut lines = Lines::default();
     let mut hint = None;
     let mut ambiguous = face.ambiguous;
     for bound in uses {

@@ -100,7 +100,7 @@ pub(super) fn cut_open(
     let mut turned = vec![false; loops.len()];
     loop {
         let (chains, whole) = cut_loops(support, &loops, axis, cut, period);
-        let crossings = crossings(&chains, axis, loops.len());
+        let crossings = crossings(&chains, axis);
         let wrong: Vec<bool> =
             crossings.iter().enumerate().map(|(i, (c, _))| above(c.forward) != (i % 2 == 0)).collect();
         if !wrong.contains(&true) {
@@ -113,10 +113,14 @@ pub(super) fn cut_open(
             return Ok(out);
         }
         let mut progress = false;
-        for i in 0..loops.len() {
-            let mine = || crossings.iter().zip(&wrong).filter(|((_, source), _)| *source == i);
-            let faults = mine().filter(|(_, w)| **w).count();
-            if 2 * faults > mine().count() && !turned[i] {
+        // by loop: crossings that are wrong, and all
+        let mut counts = vec![[0usize; 2]; loops.len()];
+        for ((_, source), wrong) in crossings.iter().zip(&wrong) {
+            counts[*source][0] += usize::from(*wrong);
+            counts[*source][1] += 1;
+        }
+        for (i, [faults, all]) in counts.into_iter().enumerate() {
+            if 2 * faults > all && !turned[i] {
                 loops[i] = loops[i].clone().reversed();
                 turned[i] = true;
                 progress = true;
@@ -206,21 +210,22 @@ fn cut_strand(support: &Support, strand: &Strand, axis: usize, cut: f64, period:
     vec![strand.clone()]
 }
 
-/// Crossings from bottom to top with the loop that each belongs to.
-fn crossings(chains: &[Chain], axis: usize, loops: usize) -> Vec<(Crossing, usize)> {
+/// Crossings from bottom to top with the loop that each belongs to; the chains of a loop follow each other.
+fn crossings(chains: &[Chain], axis: usize) -> Vec<(Crossing, usize)> {
     let other = 1 - axis;
     let mut out = Vec::new();
-    for source in 0..loops {
-        let mine: Vec<usize> = (0..chains.len()).filter(|i| chains[*i].source == source).collect();
-        for (k, &ends) in mine.iter().enumerate() {
-            let begins = mine[(k + 1) % mine.len()];
+    let mut start = 0;
+    for mine in chains.chunk_by(|a, b| a.source == b.source) {
+        for k in 0..mine.len() {
+            let (ends, begins) = (start + k, start + (k + 1) % mine.len());
             let (Some(last), Some(first)) = (chains[ends].strands.last(), chains[begins].strands.first()) else {
                 continue;
             };
             // it leaves one side and enters at the opposite one
             let forward = last.end[axis] > first.start[axis];
-            out.push((Crossing { height: last.end[other], forward, ends, begins }, source));
+            out.push((Crossing { height: last.end[other], forward, ends, begins }, mine[k].source));
         }
+        start += mine.len();
     }
     out.sort_by(|a, b| a.0.height.total_cmp(&b.0.height));
     out

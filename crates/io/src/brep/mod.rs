@@ -18,7 +18,7 @@
 //! | edges and faces of a body that contradict each other | `settle` |
 //! | curves and surfaces made ready | `curve`, `pieces`, `edge`; `support`, `invert`, `spline` |
 //! | curves and surfaces derived from other ones | `derived`, `approximate` |
-//! | edge → pre-image in the standard's own `(u, v)` | `order`; `trace`, `border`, `preimage`, `strand` |
+//! | edge → pre-image in the standard's own `(u, v)` | `order`; `trace`, `border`, `lines`, `preimage`, `strand` |
 //! | strands → loops without seams, oriented | `loops`; `rims`, `cut`; `nest` |
 //! | the standard's `(u, v)` → a spline's | `law`, `carrier`, `fit` |
 //! | loops stated in a spline's own `(u, v)` | `given` |
@@ -39,6 +39,7 @@ mod frame;
 mod given;
 mod invert;
 mod law;
+mod lines;
 mod loops;
 mod map;
 mod nest;

@@ -10,15 +10,13 @@ use super::border::Border;
 use super::curve::Curve;
 use super::edge::EdgeCurve;
 use super::law::nearest;
+use super::lines::Lines;
 use super::strand::{Part, Path, Strand};
 use super::support::{Form, Support};
 use super::trace::Trace;
 use crate::spline::Bezier;
 use glam::{DVec2, DVec3, DVec4};
 use std::rc::Rc;
-
-/// Constant coordinates met so far on a face: `(axis, value)`. Edges on one line get one number.
-pub(super) type Lines = Vec<(usize, f64)>;
 
 impl Strand {
     /// The strands of one edge use: several where it passes through poles, none where it stays at one.
@@ -124,9 +122,10 @@ fn constant_line(support: &Support, trace: &Trace, lines: &mut Lines) -> Option<
     if off > support.target {
         return None;
     }
-    let known = lines.iter().filter(|l| l.0 == axis).map(|l| near(l.1)).find(|x| close(*x, support.target));
+    let (period, reach) = (support.periods[axis], support.target / speed);
+    let known = lines.first((axis, value), period, reach, |x| close(near(x), support.target)).map(near);
     if known.is_none() {
-        lines.push((axis, value));
+        lines.push(axis, value, period);
     }
     Some((axis, known.unwrap_or(value)))
 }

@@ -28,12 +28,15 @@ pub(super) fn choose_cut(support: &Support, loops: &[Loop], axis: usize, period:
     if let Some(c) = vertices.iter().find(|c| clear(**c)) {
         return (*c, true);
     }
+    // of equally wide gaps the last one
     let middle_of_widest = |marks: &mut Vec<f64>, good: &dyn Fn(f64) -> bool| {
         marks.iter_mut().for_each(|m| *m = m.rem_euclid(period));
         marks.sort_by(f64::total_cmp);
         marks.push(marks.first().copied().unwrap_or(0.0) + period);
-        let gaps = marks.windows(2).map(|w| (w[1] - w[0], 0.5 * (w[0] + w[1])));
-        gaps.filter(|g| good(g.1)).max_by(|a, b| a.0.total_cmp(&b.0)).map(|g| g.1)
+        let mut gaps: Vec<(f64, f64)> = marks.windows(2).map(|w| (w[1] - w[0], 0.5 * (w[0] + w[1]))).collect();
+        gaps.reverse();
+        gaps.sort_by(|a, b| b.0.total_cmp(&a.0));
+        gaps.into_iter().map(|gap| gap.1).find(|middle| good(*middle))
     };
     let mut borders: Vec<f64> = holes.iter().flat_map(|h| [h.0, h.1]).collect();
     if let Some(c) = middle_of_widest(&mut borders, &clear) {

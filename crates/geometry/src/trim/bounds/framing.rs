@@ -90,19 +90,20 @@ impl Camera {
     /// assert!(camera.check().is_ok());
     /// ```
     pub fn framing(model: &Model, from: DVec3, up: DVec3, fov_y: f64, size: (u32, u32)) -> Self {
-        let bounds = model.bounds();
+        let placed = Placed::new(&model.parts, &model.instances);
+        let bounds = model.bounds_with(&placed, 0..model.solids.len());
         if bounds.is_empty() {
             return Self::around(model.control_bounds(), from, up, fov_y, size);
         }
         let around = Self::around(bounds, from, up, fov_y, size);
-        around.fitted(model, bounds, fov_y).filter(|camera| camera.check().is_ok()).unwrap_or(around)
+        around.fitted(model, placed, bounds, fov_y).filter(|camera| camera.check().is_ok()).unwrap_or(around)
     }
 
     /// The same camera moved until the model covers [`FILL`] of the picture; `None` of a model without size.
-    fn fitted(&self, model: &Model, bounds: Bounds, fov_y: f64) -> Option<Self> {
+    fn fitted<'a>(&self, model: &'a Model, placed: Placed<'a>, bounds: Bounds, fov_y: f64) -> Option<Self> {
         let diagonal = bounds.diagonal();
         let tolerance = Tolerance { analytic: WITHIN * diagonal, other: WITHIN * diagonal };
-        let reach = Reach { model, placed: Placed::new(&model.parts, &model.instances), tolerance };
+        let reach = Reach { model, placed, tolerance };
         let (right, up, forward) = self.axes();
         let slope_y = FILL * (0.5 * fov_y).tan();
         let slope_x = slope_y * f64::from(self.size.0) / f64::from(self.size.1);

@@ -10,12 +10,13 @@
 //! ```
 //!
 //! *Method.* Each of the six sides is a search for the highest point along a direction. Its candidates are in a heap,
-//! the highest bound first: placed parts, their faces, pieces of trim curves, patches and their sides. Bounds come from
-//! boxes, then from control values. A piece of a trim curve over one patch is a rational curve in space ([`height`]),
-//! and is halved until the bound is met. A patch is halved likewise, and dropped where the loops leave nothing of it or
-//! where it is nowhere level. Points that certainly belong to the model raise a mark: ends of curves, and corners
-//! inside the loops. The search is over when no bound is above the mark by more than the tolerance, so parts and faces
-//! away from the border of the model are never examined.
+//! the highest bound first: placed parts, their faces, pieces of trim curves (many in groups), patches and their sides.
+//! Bounds come from boxes, then from control values. A piece of a trim curve over one patch is a rational curve in
+//! space ([`height`]), and is halved until the bound is met. A patch is halved likewise, and dropped where the loops
+//! leave nothing of it or where it is nowhere level. Trimmed planes, cylinders, cones and other ruled faces are highest
+//! on their trim curves. Points that certainly belong to the model raise a mark: ends of curves, and corners inside the
+//! loops. The search is over when no bound is above the mark by more than the tolerance, so parts and faces away from
+//! the border of the model are never examined.
 //!
 //! *Accuracy.* Each side touches a point of the model, and no point is beyond it by more than [`ANALYTIC`] of the box's
 //! diagonal, or [`OTHER`] of it for faces without an equation, plus some roundings of the largest coordinate. The faces
@@ -91,8 +92,12 @@ impl Model {
     /// # Panics
     /// Where a number is out of range.
     pub fn bounds_of(&self, instances: Range<usize>, solids: Range<usize>) -> Bounds {
-        let Placed { bodies, placements } = Placed::new(&self.parts, &self.instances[instances]);
-        let faces = of(&bodies, &placements);
+        self.bounds_with(&Placed::new(&self.parts, &self.instances[instances]), solids)
+    }
+
+    /// The same with placed parts that are prepared already.
+    fn bounds_with(&self, Placed { bodies, placements }: &Placed<'_>, solids: Range<usize>) -> Bounds {
+        let faces = of(bodies, placements);
         let faces = self.trim.as_ref().map_or(faces, |volume| meet(faces, solid::bounds(volume)));
         let solids = self.solids[solids].iter().map(solid::bounds);
         let finite = solids.filter(|b| b.min.is_finite() && b.max.is_finite());

@@ -2,18 +2,23 @@
 //!
 //! ```text
 //!   body ──▶ face ──┬─▶ piece of a trim curve ──▶ its halves …      the heap, the highest bound first
+//!     │             │     ▲
+//!     │             ├─▶ group of many pieces ──▶ its halves …
 //!     │             └─▶ patch ──┬─▶ its halves, inside or across the loops …
 //!     └────▶ mesh               └─▶ its four sides ──▶ their halves …
 //! ```
+//!
+//! Patches of a face that is nowhere higher than its trim curves ([`Carried::is_ruled`]) are searched only if a piece is
+//! left out, because the face is not beside it at the places where that is tested.
 
-use super::carried::{Carried, Piece};
+use super::carried::{Carried, Parts, Piece};
 use super::height::{Height, ROUNDING, Up, quotient};
 use crate::model::{Bounds, Face, Mesh};
 use crate::trim::RectSide;
 use glam::{DAffine3, DVec2, DVec3};
 use std::cell::OnceCell;
 use std::cmp::Ordering;
-use std::collections::{BinaryHeap, HashMap};
+use std::collections::{BinaryHeap, HashMap, HashSet};
 
 /// Steps of one search; after them each candidate counts as high as its bound.
 const MOST_STEPS: usize = 1 << 16;
@@ -68,7 +73,12 @@ enum What {
     Body,
     Face(usize),
     Mesh(usize),
-    /// A piece of a trim curve, as high as its patch.
+    /// Several pieces of trim curves over one patch.
+    Group {
+        face: usize,
+        group: usize,
+    },
+    /// A piece of a trim curve, as high as its patch or group.
     Piece {
         face: usize,
         piece: usize,
@@ -125,6 +135,8 @@ pub(super) struct Search<'s, 'a> {
     /// For each placed body, its upward direction and its number.
     placed: Vec<(Up, usize)>,
     heap: BinaryHeap<Candidate>,
+    /// Placed bodies and faces: ruled ones whose patches are candidates, too, since a piece was left out.
+    inside: HashSet<(usize, usize)>,
     /// The height of the highest point that certainly belongs to the model.
     low: f64,
     /// The largest bound of candidates that were not examined to the end.
@@ -155,7 +167,8 @@ impl<'s, 'a> Search<'s, 'a> {
         let rounding = ROUNDING * size.fold(0.0, f64::max);
         let candidates = placed.iter().enumerate();
         let heap = candidates.map(|(n, p)| Candidate { upper: upper(p), placed: n, what: What::Body }).collect();
-        Self { bodies, placed, heap, low: f64::NEG_INFINITY, unsure: f64::NEG_INFINITY, rounding, steps: 0 }
+        let (low, unsure) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+        Self { bodies, placed, heap, inside: HashSet::new(), low, unsure, rounding, steps: 0 }
     }
 
     /// The largest height, or less by the tolerance; more where the allowed work does not suffice. Negative infinity
@@ -188,9 +201,11 @@ impl<'s, 'a> Search<'s, 'a> {
     fn allowed(&self, of: &Candidate, tolerance: Tolerance) -> f64 {
         let face = match &of.what {
             What::Body | What::Mesh(_) => return tolerance.analytic,
-            What::Face(face) | What::Piece { face, .. } | What::Curve { face, .. } | What::Area(Area { face, .. }) => {
-                *face
-            }
+            What::Face(face)
+            | What::Group { face, .. }
+            | What::Piece { face, .. }
+            | What::Curve { face, .. }
+            | What::Area(Area { face, .. }) => *face,
         };
         let (face, ..) = self.bodies[self.placed[of.placed].1].faces[face];
         if super::is_analytic(face.kind) { tolerance.analytic } else { tolerance.other }
@@ -225,12 +240,28 @@ impl<'s, 'a> Search<'s, 'a> {
                 self.find(corners.fold(f64::NEG_INFINITY, f64::max));
             }
             What::Face(face) => self.face(placed, up, face, body.carried(face)),
+            What::Group { face, group } => {
+                let carried = body.carried(face);
+                match &carried.groups[group].parts {
+                    Parts::Pieces(pieces) => {
+                        pieces.clone().for_each(|piece| self.push(placed, upper, What::Piece { face, piece }));
+                    }
+                    Parts::Groups(halves) => {
+                        for &group in halves {
+                            let upper = carried.upper_of(group, up).min(upper);
+                            self.push(placed, upper, What::Group { face, group });
+                        }
+                    }
+                }
+            }
             What::Piece { face, piece } => {
                 let carried = body.carried(face);
                 if carried.is_beside(piece) {
                     let Piece { patch, curve, .. } = &carried.pieces[piece];
                     let height = up.of_patch(&carried.grid.patches[*patch].patch).along(curve);
                     self.push(placed, height.upper().min(upper), What::Curve { face, height, halvings: 0 });
+                } else if carried.is_ruled && self.inside.insert((placed, face)) {
+                    self.patches(placed, face, carried, heights(carried, up));
                 }
             }
             What::Curve { face, height, halvings } => {
@@ -252,13 +283,26 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 
     fn face(&mut self, placed: usize, up: Up, face: usize, carried: &Carried<'_>) {
-        let heights: Vec<Height> = carried.grid.patches.iter().map(|p| up.of_patch(&p.patch)).collect();
+        let heights = heights(carried, up);
         let uppers: Vec<f64> = heights.iter().map(Height::upper).collect();
-        for (number, piece) in carried.pieces.iter().enumerate() {
-            self.push(placed, uppers[piece.patch], What::Piece { face, piece: number });
+        for &(patch, group) in &carried.tops {
+            self.push(placed, uppers[patch], What::Group { face, group });
         }
-        for ((patch, height), upper) in carried.grid.patches.iter().zip(heights).zip(uppers) {
+        if carried.tops.is_empty() {
+            for (number, piece) in carried.pieces.iter().enumerate() {
+                self.push(placed, uppers[piece.patch], What::Piece { face, piece: number });
+            }
+        }
+        if !carried.is_ruled {
+            self.patches(placed, face, carried, heights);
+        }
+    }
+
+    /// The patches of a face, whole.
+    fn patches(&mut self, placed: usize, face: usize, carried: &Carried<'_>, heights: Vec<Height>) {
+        for (patch, height) in carried.grid.patches.iter().zip(heights) {
             let (lo, hi) = (DVec2::new(patch.u.0, patch.v.0), DVec2::new(patch.u.1, patch.v.1));
+            let upper = height.upper();
             let area = Area { face, height, lo, hi, inside: false, whole: true, halvings: 0 };
             self.push(placed, upper, What::Area(area));
         }
@@ -292,12 +336,16 @@ impl<'s, 'a> Search<'s, 'a> {
         if self.is_done(upper, lower, &height, halvings) {
             return;
         }
-        let side = if inside { RectSide::Inside } else { carried.classify(lo, hi) };
-        let inside = side == RectSide::Inside;
-        // a level area is as high as the trim curves in it, which are candidates too
-        if side == RectSide::Outside || !inside && upper - lower <= self.rounding {
+        // a level area is as high as its corners, if they are in the face, or as the trim curves in it: all are
+        // candidates too
+        if !inside && upper - lower <= self.rounding {
             return;
         }
+        let side = if inside { RectSide::Inside } else { carried.classify(lo, hi) };
+        if side == RectSide::Outside {
+            return;
+        }
+        let inside = side == RectSide::Inside;
         let (middle, halvings) = (0.5 * (lo + hi), halvings + 1);
         let (halves, first_hi, second_lo) =
             if height.n == 0 || height.k > 0 && height.is_steeper_in_v(self.low.max(lower)) {
@@ -324,6 +372,11 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         false
     }
+}
+
+/// The height of each patch of a face.
+fn heights(carried: &Carried<'_>, up: Up) -> Vec<Height> {
+    carried.grid.patches.iter().map(|p| up.of_patch(&p.patch)).collect()
 }
 
 /// The largest height of a box; negative infinity for an empty box.

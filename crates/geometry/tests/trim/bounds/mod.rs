@@ -3,5 +3,6 @@
 mod damage;
 mod framing;
 mod free;
+mod many;
 mod solids;
 pub mod support;

@@ -3,6 +3,7 @@
 use super::super::border::Border;
 use super::super::edge::EdgeCurve;
 use super::super::fit::Fitter;
+use super::super::lines::Lines;
 use super::super::spline::SplineForm;
 use super::super::strand::Strand;
 use super::super::support::Support;
@@ -154,7 +155,7 @@ fn an_edge_far_off_its_surface_takes_bounded_work() {
     let nodes = edge.node_count as u64;
     assert_eq!(nodes, 3 * 6000 + 1);
     support.allow(edge.node_count);
-    let strands = Strand::of_edge(&support, &Rc::new(edge), None, &mut Vec::new());
+    let strands = Strand::of_edge(&support, &Rc::new(edge), None, &mut Lines::default());
     let carrier = support.carrier([(0.0, 3.0), (0.0, 2.0)]).unwrap();
     let fitter = Fitter { support: &support, carrier: &carrier };
     let curves: usize = strands.iter().map(|s| fitter.curves(s).curves.len()).sum();
