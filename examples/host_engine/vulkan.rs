@@ -1,7 +1,7 @@
 //! What an engine owns before it meets the renderer: instance, device, allocator, command buffers, fences and a picture.
 
 use selvedge::ash::{self, vk};
-use selvedge::gpu::{HostDevice, Image, Requirements};
+use selvedge::gpu::{GpuAllocator, HostDevice, Image, Requirements};
 use selvedge::gpu_allocator::MemoryLocation;
 use selvedge::gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc};
 use std::error::Error;
@@ -66,8 +66,9 @@ impl Engine {
     }
 
     /// What the renderer borrows.
-    pub fn lend(&self) -> HostDevice<'_> {
-        let (instance, device, allocator) = (&self.instance, self.device.clone(), Arc::clone(&self.allocator));
+    pub fn lend(&self) -> HostDevice {
+        let (instance, device) = (self.instance.clone(), self.device.clone());
+        let allocator = Arc::new(GpuAllocator::new(Arc::clone(&self.allocator)));
         let (debug_names, pipeline_statistics) = (false, false);
         let (physical, queue_family) = (self.physical, self.family);
         let (pipeline_cache, memory_budget) = (vk::PipelineCache::null(), None);
