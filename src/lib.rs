@@ -12,6 +12,7 @@
 //! | feature | gives |
 //! |---|---|
 //! | none | the renderer for hosts, from committed SPIR-V |
+//! | `gpu-allocator` (default) | hosts share a gpu-allocator with the renderer |
 //! | `headless` | an instance, a device and targets without a window |
 //! | `serde` | settings and statistics as JSON |
 //! | `compile-shaders` | shaders compiled from `glsl/` by shaderc |
@@ -36,8 +37,12 @@
 //! through a frame.
 #![warn(missing_docs)]
 
-/// Vulkan's bindings, the allocator and the vectors, in the versions that this crate uses in its types.
-pub use {ash, glam, gpu_allocator};
+/// Vulkan's bindings and the vectors, in the versions that this crate uses in its types.
+pub use {ash, glam};
+
+/// An allocator that hosts may share, in the version that this crate uses in its types.
+#[cfg(feature = "gpu-allocator")]
+pub use gpu_allocator;
 
 /// Models and their geometry: `selvedge-geometry`.
 pub use selvedge_geometry::{construct, csg, edges, model, spline, trim};

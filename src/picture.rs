@@ -460,7 +460,7 @@ pub struct PassTime {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PoolBytes {
-    /// `persistent`, `ring` or `transient`.
+    /// `persistent`, `ring`, `transient` or `staging`.
     pub name: String,
     /// Bytes in buffers and images of this pool.
     pub bytes: u64,

@@ -10,12 +10,13 @@
 //!
 //! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the GPU can count (the
 //! trim table, the list of sub-patches) may be too small for a new view: the report of that frame says `complete:
-//! false`, and the next `record` into its slot makes them larger. A view from very near is resolved by what is cut out
-//! of the model for it: [`Renderer::prepare`]. Instances change, and models come and go, between frames:
-//! [`Renderer::add`].
+//! false`, and the next `record` into its slot makes them larger. A scene of more bytes than staging memory holds is
+//! copied by several frames, which report the same. A view from very near is resolved by what is cut out of the model for
+//! it: [`Renderer::prepare`]. Instances change, and models come and go, between frames: [`Renderer::add`].
 
 mod centres;
 mod constants;
+mod copies;
 mod edit;
 mod error;
 mod failure;
@@ -41,7 +42,9 @@ use crate::frame::solids::Solids;
 use crate::frame::transparency::solid_layers;
 use crate::frame::viewport as rectangle;
 use crate::frame::{Frame, Near, Passes, Stages, target};
-use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Load, TexelBuffer, Uploads};
+use crate::gpu::{
+    Attachment, Buffer, Commands, Device, GpuError, HostDevice, Load, MemoryReport, Staging, TexelBuffer, Uploads,
+};
 use crate::model::{Camera, Model};
 use crate::picture::{FrameSettings, PoolBytes};
 use crate::scene::{Array, Cut, Joinable, Picking, Scene, SceneData, Write};
@@ -101,6 +104,8 @@ struct Loaded {
     passes: Passes,
     picking: Arc<Picking>,
     scene: Option<Scene>,
+    /// Arrays of the scene that the GPU does not have yet.
+    waiting: Uploads<'static>,
     stages: Option<Stages>,
     /// Edits of loops that the next frame copies.
     edits: Vec<Write>,
@@ -140,7 +145,7 @@ enum Retired {
     Stages(Box<Stages>),
     Viewport(Box<Viewport>),
     Loaded(Box<Loaded>),
-    Uploads(Uploads),
+    Staging(Staging),
     Buffer(Buffer),
     TexelBuffer(TexelBuffer),
     Array(Array),
@@ -163,7 +168,7 @@ impl Renderer {
     /// # Safety
     /// As [`Device::new`]. The renderer is dropped when the GPU has finished its frames, before the
     /// device and the allocator.
-    pub unsafe fn new(host: HostDevice<'_>, formats: TargetFormats, frame_slots: usize) -> Result<Self, GpuError> {
+    pub unsafe fn new(host: HostDevice, formats: TargetFormats, frame_slots: usize) -> Result<Self, GpuError> {
         // SAFETY: the caller's promise.
         let device = unsafe { Device::new(host) };
         Self::on(&device, formats, frame_slots)
@@ -238,9 +243,15 @@ impl Renderer {
         self.prepare(input.camera)?;
         self.make_room(input.slot, input.camera)?;
         self.make_viewport(&input.targets, input.camera.size)?;
+        let (device, most) = (self.device.clone(), self.most_staging());
         // SAFETY: the caller's promise.
-        let cmd = unsafe { Commands::new(&self.device, cmd) };
+        let cmd = unsafe { Commands::new(&device, cmd) };
         let Some(loaded) = &mut self.loaded else { panic!("upload a model before recording") };
+        let copied = loaded.copy(&cmd, most)?;
+        let left = copied.left(most);
+        if copied.waits() || loaded.edit_bytes() > left {
+            return Ok(self.record_copies(&cmd, input, copied, most)?);
+        }
         let slot = &mut self.slots[input.slot];
         let view = (*input.camera, input.settings);
         if loaded.moved {
@@ -250,12 +261,12 @@ impl Renderer {
         let edited = loaded.moved || !loaded.edits.is_empty();
         let history = History::after(loaded.history, view, table, edited, loaded.counts.hides);
         slot.write(&self.device, loaded, input, &self.formats, &history)?;
-        let mut new = if loaded.scene.is_none() { Some(Scene::record(&cmd, &loaded.data)?) } else { None };
+        let (mut new, staging) = copied.into_parts();
         pick::make_room(self.pick, &mut slot.pick, &self.device)?;
         let scene = loaded.scene.as_mut().or(new.as_mut().map(|(scene, _)| scene));
         let (Some(scene), Some(stages)) = (scene, &loaded.stages) else { unreachable!("made above") };
         let writes = loaded.edits.iter().chain(loaded.changes.values());
-        let edits = writes.clone().next().map(|_| Frame::edit(&cmd, scene, writes)).transpose()?;
+        let edits = writes.clone().next().map(|_| Frame::edit(&cmd, scene, writes, left)).transpose()?;
         // nothing fails from here on: larger arrays are in the scene
         let scene = &*scene;
         let (Some(views), Some(in_sight)) = (&slot.views, &slot.in_sight) else { unreachable!("written above") };
@@ -314,18 +325,16 @@ impl Renderer {
         pick::record(self.pick, &mut slot.pick, (&cmd, &frame), (source, &loaded.picking, input));
         // only now: a frame that was not recorded left nothing
         self.pick = None;
-        slot.edit_bytes = edits.as_ref().map_or(0, |(uploads, _)| uploads.staging_bytes());
-        if let Some((uploads, replaced)) = edits {
-            slot.retired.push(Retired::Uploads(uploads));
+        slot.edit_bytes = edits.as_ref().map_or(0, |(staging, _)| staging.bytes());
+        if let Some((staging, replaced)) = edits {
+            slot.retired.push(Retired::Staging(staging));
             slot.retired.extend(replaced.into_iter().map(Retired::Array));
         }
         loaded.edits.clear();
         loaded.changes.clear();
-        if let Some((scene, uploads)) = new {
-            slot.retired.push(Retired::Uploads(uploads));
-            loaded.scene = Some(scene);
-            loaded.data.drop_uploaded();
-        }
+        loaded.keep(new, &staging);
+        slot.retired.push(Retired::Staging(staging));
+        slot.copies = None;
         loaded.history = Some(history);
         loaded.moved = false;
         (slot.recorded, slot.reused) = (true, history.reuses_view);
@@ -353,6 +362,11 @@ impl Renderer {
     /// Names of the buffers, images and pipelines that exist for the loaded model.
     pub fn objects(&self) -> Vec<String> {
         self.device.objects()
+    }
+
+    /// The bytes of the memory that the allocator has taken, and of those that are in use.
+    pub fn memory_report(&self) -> MemoryReport {
+        self.device.memory_report()
     }
 
     /// Frees what the slot's last frame used, and makes the buffers large enough for the counts that this frame

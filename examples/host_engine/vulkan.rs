@@ -2,7 +2,7 @@
 
 use super::picture::{RANGE, picture};
 use selvedge::ash::{self, vk};
-use selvedge::gpu::{HostDevice, Image, Requirements};
+use selvedge::gpu::{GpuAllocator, HostDevice, Image, Requirements};
 use selvedge::gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::error::Error;
 use std::sync::{Arc, Mutex};
@@ -65,13 +65,13 @@ impl Engine {
     }
 
     /// What the renderer borrows.
-    pub fn lend(&self) -> HostDevice<'_> {
+    pub fn lend(&self) -> HostDevice {
         HostDevice {
-            instance: &self.instance,
+            instance: self.instance.clone(),
             physical: self.physical,
             device: self.device.clone(),
             queue_family: self.family,
-            allocator: Arc::clone(&self.allocator),
+            allocator: Arc::new(GpuAllocator::new(Arc::clone(&self.allocator))),
             debug_names: false,
             pipeline_statistics: false,
             pipeline_cache: vk::PipelineCache::null(),

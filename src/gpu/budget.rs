@@ -9,9 +9,9 @@
 //!
 //! The driver's figures are read again for each object, because other programs take memory, too. The allocator may try
 //! several memory types, so an object is refused only if none of their heaps has room. The allocator takes memory in
-//! blocks: the figures count whole blocks, although an object may fit into a block that is already taken.
+//! blocks, which the driver counts whole: an object that has room in a block takes nothing of a heap, and is not refused.
 
-use super::{BudgetOwner, Device, GpuError, MemoryLocation};
+use super::{BudgetOwner, Device, GpuError, MemoryLocation, MemoryRequest};
 use ash::vk;
 use vk::MemoryPropertyFlags as Kind;
 
@@ -51,26 +51,22 @@ impl Heaps {
         self.most
     }
 
-    /// Refuses an object of `bytes` bytes that does not fit.
-    pub(super) fn check(
-        &self,
-        device: &Device,
-        name: &str,
-        (types, location): (u32, MemoryLocation),
-        bytes: u64,
-    ) -> Result<(), GpuError> {
+    /// Refuses an object that does not fit; else the bytes that are left.
+    pub(super) fn check(&self, device: &Device, request: &MemoryRequest<'_>) -> Result<u64, GpuError> {
         let taken = device.pool_bytes().iter().map(|(_, bytes)| bytes).sum();
+        let (bytes, types) = (request.requirements.size, request.requirements.memory_type_bits);
         let (room, of) = match self.most {
             Some(most) => (Room { left: most.saturating_sub(taken), most }, BudgetOwner::Host),
-            None => match self.of_heaps(types, location, taken) {
+            None => match self.of_heaps(types, request.location, taken) {
                 Some(room) => (room, BudgetOwner::Heap),
-                None => return Ok(()), // no such memory type: the allocator returns the error
+                None => return Ok(u64::MAX), // no such memory type: the allocator returns the error
             },
         };
-        if bytes <= room.left {
-            return Ok(());
+        if bytes <= room.left || of == BudgetOwner::Heap && device.allocator().fits(request) {
+            return Ok(room.left);
         }
-        Err(GpuError::OverBudget { resource: name.to_owned(), bytes, left: room.left, most: room.most, of })
+        let (resource, Room { left, most }) = (request.name.to_owned(), room);
+        Err(GpuError::OverBudget { resource, bytes, left, most, of })
     }
 
     /// The heap with the most room, among those of an object's memory types.

@@ -225,14 +225,19 @@ impl<'a> Commands<'a> {
     /// # Panics
     /// When the bytes do not fit in both.
     pub fn copy(&self, from: &Buffer, from_offset: u64, to: &Buffer, to_offset: u64, bytes: u64) {
-        let fits = from_offset + bytes <= from.bytes() && to_offset + bytes <= to.bytes();
-        assert!(fits, "copy of {bytes} bytes from `{}` to `{}`", from.name(), to.name());
+        assert!(to_offset + bytes <= to.bytes(), "copy of {bytes} bytes from `{}` to `{}`", from.name(), to.name());
+        self.copy_to(from, from_offset, to.handle(), to_offset, bytes);
+    }
+
+    /// As [`copy`](Self::copy), to a buffer that has room for the bytes.
+    pub(super) fn copy_to(&self, from: &Buffer, from_offset: u64, to: vk::Buffer, to_offset: u64, bytes: u64) {
+        assert!(from_offset + bytes <= from.bytes(), "copy of {bytes} bytes from `{}`", from.name());
         if bytes == 0 {
             return;
         }
         let region = vk::BufferCopy { src_offset: from_offset, dst_offset: to_offset, size: bytes };
         // SAFETY: recording outside rendering; the regions lie within the buffers.
-        unsafe { self.device.raw().cmd_copy_buffer(self.raw, from.handle(), to.handle(), &[region]) };
+        unsafe { self.device.raw().cmd_copy_buffer(self.raw, from.handle(), to, &[region]) };
     }
 
     /// Copies one pixel, of `bytes` bytes, of a colour image in layout `GENERAL` to `offset` bytes of a buffer.

@@ -4,38 +4,15 @@ use super::budget::Heaps;
 use super::description::Description;
 use super::memory::lock;
 use super::pipeline::Made;
-use super::{GpuError, Pool, Quirks, Texel};
+use super::upload::STAGING_BYTES;
+use super::{GpuError, HostDevice, MemoryAllocator, MemoryReport, Pool, Quirks, Texel};
 use ash::vk;
 use ash::vk::Handle;
-use gpu_allocator::vulkan::Allocator;
 use std::collections::{BTreeMap, HashMap};
 use std::ffi::CString;
 use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, Weak};
+use std::sync::{Arc, Mutex, OnceLock, Weak};
 use std::time::{Duration, Instant};
-
-/// The host's objects. The engine destroys none of them.
-pub struct HostDevice<'a> {
-    /// The instance of `physical`.
-    pub instance: &'a ash::Instance,
-    /// A device for which [`Requirements::missing`](super::Requirements::missing) is empty.
-    pub physical: vk::PhysicalDevice,
-    /// Made with the features and extensions of [`Requirements`](super::Requirements).
-    pub device: ash::Device,
-    /// Family of the command buffers that the engine will record into.
-    pub queue_family: u32,
-    /// The host's allocator for this device.
-    pub allocator: Arc<Mutex<Allocator>>,
-    /// The instance has `VK_EXT_debug_utils`: objects and passes get names.
-    pub debug_names: bool,
-    /// The device has the feature `pipelineStatisticsQuery`: the triangle count is measured.
-    pub pipeline_statistics: bool,
-    /// The cache for all pipelines; null for none. It must outlive everything made from the device, and meanwhile the
-    /// host must not merge into it.
-    pub pipeline_cache: vk::PipelineCache,
-    /// Most bytes of memory on this device; `None`: no limit but the heaps.
-    pub memory_budget: Option<u64>,
-}
 
 /// Replaces limits of a device by lower ones, so that tests reach them with small scenes.
 #[doc(hidden)]
@@ -45,11 +22,13 @@ pub struct LowerLimits {
     pub work_groups: Option<u32>,
     /// Of `maxStorageBufferRange`, in bytes, and of the bytes of a texel buffer.
     pub storage_range: Option<u32>,
+    /// Of the staging memory of a renderer's frames, bytes.
+    pub staging: Option<u64>,
 }
 
 impl LowerLimits {
     /// No change.
-    pub const NONE: Self = Self { work_groups: None, storage_range: None };
+    pub const NONE: Self = Self { work_groups: None, storage_range: None, staging: None };
 
     fn lower(self, limits: &mut vk::PhysicalDeviceLimits) {
         let least = |limit: &mut u32, lower: Option<u32>| *limit = lower.map_or(*limit, |lower| lower.min(*limit));
@@ -78,7 +57,8 @@ struct Inner {
     driver: String,
     quirks: Quirks,
     stencil_format: vk::Format,
-    allocator: Arc<Mutex<Allocator>>,
+    allocator: Arc<dyn MemoryAllocator>,
+    staging_bytes: u64,
     pool_bytes: [AtomicI64; Pool::ALL.len()],
     objects: Mutex<BTreeMap<u64, (String, u64)>>,
     next_object: AtomicU64,
@@ -103,7 +83,7 @@ impl Device {
     /// # Safety
     /// The handles are valid and belong together as [`HostDevice`] states, and stay so until the last clone of this value
     /// and everything made from it is dropped.
-    pub unsafe fn new(host: HostDevice<'_>) -> Self {
+    pub unsafe fn new(host: HostDevice) -> Self {
         // SAFETY: the caller's promise.
         unsafe { Self::limited(host, LowerLimits::NONE) }
     }
@@ -112,7 +92,7 @@ impl Device {
     ///
     /// # Safety
     /// As [`new`](Self::new).
-    pub(crate) unsafe fn limited(host: HostDevice<'_>, lower: LowerLimits) -> Self {
+    pub(crate) unsafe fn limited(host: HostDevice, lower: LowerLimits) -> Self {
         let HostDevice { instance, physical, device, queue_family, allocator, debug_names, .. } = host;
         let HostDevice { pipeline_statistics, pipeline_cache, memory_budget, .. } = host;
         let mut driver = vk::PhysicalDeviceDriverProperties::default();
@@ -137,21 +117,22 @@ impl Device {
         // SAFETY: the caller's promise.
         let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
         Self(Arc::new(Inner {
-            push_descriptor: ash::khr::push_descriptor::Device::new(instance, &device),
-            debug_utils: debug_names.then(|| ash::ext::debug_utils::Device::new(instance, &device)),
+            push_descriptor: ash::khr::push_descriptor::Device::new(&instance, &device),
+            debug_utils: debug_names.then(|| ash::ext::debug_utils::Device::new(&instance, &device)),
             raw: device,
             queue_family,
             timestamp_bits: families[queue_family as usize].timestamp_valid_bits,
             pipeline_statistics,
             pipeline_cache,
             // SAFETY: the caller's promise.
-            heaps: unsafe { Heaps::new(instance, physical, memory_budget) },
+            heaps: unsafe { Heaps::new(&instance, physical, memory_budget) },
             limits: properties.limits,
             name: text(&properties.device_name),
             driver: format!("{} {}", text(&driver.driver_name), text(&driver.driver_info)),
             quirks: Quirks::of(driver.driver_id),
             stencil_format,
             allocator,
+            staging_bytes: lower.staging.map_or(STAGING_BYTES, |lower| lower.min(STAGING_BYTES)),
             pool_bytes: Default::default(),
             objects: Mutex::default(),
             next_object: AtomicU64::new(0),
@@ -196,6 +177,7 @@ impl Device {
     /// Marks the device's handle as invalid: objects made from it then free only host memory.
     pub(crate) fn abandon(&self) {
         self.0.gone.store(true, Ordering::Relaxed);
+        self.0.allocator.abandon();
     }
 
     /// The device's handle is no longer valid.
@@ -309,8 +291,18 @@ impl Device {
         self.0.pipeline_statistics
     }
 
-    pub(crate) fn allocator(&self) -> MutexGuard<'_, Allocator> {
-        lock(&self.0.allocator)
+    pub(super) fn allocator(&self) -> &dyn MemoryAllocator {
+        self.0.allocator.as_ref()
+    }
+
+    /// The bytes of the allocator.
+    pub fn memory_report(&self) -> MemoryReport {
+        self.0.allocator.report()
+    }
+
+    /// Most bytes of staging memory that all frames of a renderer hold together.
+    pub(crate) fn staging_bytes(&self) -> u64 {
+        self.0.staging_bytes
     }
 
     pub(crate) fn count_bytes(&self, pool: Pool, change: i64) {

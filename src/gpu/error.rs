@@ -1,7 +1,7 @@
 //! Errors below the passes. A Vulkan error names its call, an allocation its resource.
 
+use super::AllocationError;
 use ash::vk;
-use gpu_allocator::AllocationError;
 
 /// A failure that the caller could not foresee. Misuse panics instead and names the invariant.
 #[derive(Debug, thiserror::Error)]
@@ -53,7 +53,7 @@ pub enum GpuError {
         /// The owner of the budget.
         of: BudgetOwner,
     },
-    /// The allocator failed, without an error of the driver.
+    /// The allocator failed for another reason than a lack of memory.
     #[error("no memory for `{resource}` ({bytes} bytes): {source}")]
     Allocation {
         /// Name of the buffer or image.
@@ -138,25 +138,11 @@ impl GpuError {
         }
     }
 
-    /// The error of the allocator. It has a variant for the commonest result of `vkAllocateMemory`; other results, and
-    /// those of `vkMapMemory`, are only in its text.
+    /// The error of the allocator.
     pub(super) fn of_allocator(source: AllocationError, resource: &str, bytes: u64) -> Self {
-        let call = match &source {
-            AllocationError::FailedToMap(_) => "vkMapMemory",
-            _ => "vkAllocateMemory",
-        };
-        let result = match &source {
-            AllocationError::OutOfMemory => Some(vk::Result::ERROR_OUT_OF_DEVICE_MEMORY),
-            AllocationError::FailedToMap(words) | AllocationError::Internal(words) => {
-                let is_named =
-                    |result: &vk::Result| words.contains(&result.to_string()) || words.contains(&format!("{result:?}"));
-                TYPED.into_iter().find(is_named)
-            }
-            _ => None,
-        };
-        match result {
-            Some(result) => Self::of(result, call, resource),
-            None => Self::Allocation { resource: resource.to_owned(), bytes, source },
+        match source {
+            AllocationError::Vulkan { call, result } if TYPED.contains(&result) => Self::of(result, call, resource),
+            source => Self::Allocation { resource: resource.to_owned(), bytes, source },
         }
     }
 }

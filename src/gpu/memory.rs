@@ -1,16 +1,16 @@
-//! Device memory in three pools by lifetime; each pool counts its bytes.
+//! Device memory in four pools by lifetime; each pool counts its bytes.
 //!
 //! ```text
 //!   persistent   with the scene          control points, trim curves, trees
 //!   ring         one per frame slot      what the CPU writes or reads each frame
 //!   transient    with the frame's size   visibility buffer, counters, tables
+//!   staging      until a frame is done   bytes on their way to the other pools
 //! ```
 
-use super::{Device, GpuError};
+use super::{Allocation, Device, GpuError, MemoryRequest};
 use ash::vk;
-use gpu_allocator::MemoryLocation as AllocatorLocation;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 use std::mem::ManuallyDrop;
+use std::slice;
 use std::sync::PoisonError;
 
 /// The lifetime of a resource. Its bytes are counted in this pool (see [`Device::pool_bytes`]).
@@ -22,18 +22,21 @@ pub enum Pool {
     Ring,
     /// As long as the frame's size stays, or shorter.
     Transient,
+    /// Until the frame that copies it has finished.
+    Staging,
 }
 
 impl Pool {
     /// Every pool, in the order of [`Device::pool_bytes`].
-    pub const ALL: [Self; 3] = [Self::Persistent, Self::Ring, Self::Transient];
+    pub const ALL: [Self; 4] = [Self::Persistent, Self::Ring, Self::Transient, Self::Staging];
 
-    /// `persistent`, `ring` or `transient`.
+    /// `persistent`, `ring`, `transient` or `staging`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Persistent => "persistent",
             Self::Ring => "ring",
             Self::Transient => "transient",
+            Self::Staging => "staging",
         }
     }
 }
@@ -60,7 +63,7 @@ pub(crate) struct Memory {
 impl Memory {
     /// Its size.
     pub(crate) fn bytes(&self) -> u64 {
-        self.allocation.size()
+        self.allocation.size
     }
 
     pub(crate) fn new(
@@ -71,32 +74,28 @@ impl Memory {
         location: MemoryLocation,
         linear: bool,
     ) -> Result<Self, GpuError> {
-        let kind = match location {
-            MemoryLocation::Device => AllocatorLocation::GpuOnly,
-            MemoryLocation::Upload => AllocatorLocation::CpuToGpu,
-            MemoryLocation::ReadBack => AllocatorLocation::GpuToCpu,
-        };
-        let allocation_scheme = AllocationScheme::GpuAllocatorManaged;
-        let description = AllocationCreateDesc { name, requirements, location: kind, linear, allocation_scheme };
-        let size = requirements.size;
-        device.heaps().check(device, name, (requirements.memory_type_bits, location), size)?;
-        let of_allocator = |source| GpuError::of_allocator(source, name, size);
-        let allocation = device.allocator().allocate(&description).map_err(of_allocator)?;
-        device.count_bytes(pool, allocation.size() as i64);
+        let request = MemoryRequest { name, pool, requirements, location, linear, left: 0 };
+        let request = MemoryRequest { left: device.heaps().check(device, &request)?, ..request };
+        let of_allocator = |source| GpuError::of_allocator(source, name, requirements.size);
+        let allocation = device.allocator().allocate(&request).map_err(of_allocator)?;
+        device.count_bytes(pool, allocation.size as i64);
         Ok(Self { device: device.clone(), allocation: ManuallyDrop::new(allocation), pool })
     }
 
     pub(crate) fn raw(&self) -> (vk::DeviceMemory, u64) {
-        // SAFETY: the handle is only used to bind a resource that is destroyed before this memory.
-        (unsafe { self.allocation.memory() }, self.allocation.offset())
+        (self.allocation.memory, self.allocation.offset)
     }
 
     pub(crate) fn mapped(&self) -> Option<&[u8]> {
-        self.allocation.mapped_slice()
+        let bytes = self.allocation.size as usize;
+        // SAFETY: as `MemoryAllocator` promises.
+        self.allocation.mapped.map(|at| unsafe { slice::from_raw_parts(at.as_ptr(), bytes) })
     }
 
     pub(crate) fn mapped_mut(&mut self) -> Option<&mut [u8]> {
-        self.allocation.mapped_slice_mut()
+        let bytes = self.allocation.size as usize;
+        // SAFETY: as `MemoryAllocator` promises.
+        self.allocation.mapped.map(|at| unsafe { slice::from_raw_parts_mut(at.as_ptr(), bytes) })
     }
 
     pub(crate) fn pool(&self) -> Pool {
@@ -106,15 +105,14 @@ impl Memory {
 
 impl Drop for Memory {
     fn drop(&mut self) {
-        self.device.count_bytes(self.pool, -(self.allocation.size() as i64));
+        self.device.count_bytes(self.pool, -(self.allocation.size as i64));
         // SAFETY: the allocation is taken once, here.
         let allocation = unsafe { ManuallyDrop::take(&mut self.allocation) };
         if self.device.living().is_none() {
             return; // the memory was freed with its device
         }
-        // `free` fails only for memory of another allocator, which `new` rules out.
-        let freed = self.device.allocator().free(allocation);
-        debug_assert!(freed.is_ok(), "freed memory that this allocator did not make");
+        // SAFETY: of this allocator; what was bound to it is destroyed before, as `Buffer` and `Image` see to.
+        unsafe { self.device.allocator().free(allocation) }
     }
 }
 

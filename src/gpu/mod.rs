@@ -5,7 +5,7 @@
 //!        │  Requirements::missing / add_to        what the device must offer
 //!        ▼
 //!   Device ──▶ Buffer, Image, Sampler, Pipeline, Timestamps        free themselves on drop
-//!        │         each in one Pool: persistent │ ring │ transient
+//!        │         each in one Pool: persistent │ ring │ transient │ staging, from a MemoryAllocator
 //!        ▼
 //!   Commands = Device + a command buffer of the host's, recording
 //!        bind · dispatch · draw · rendering · barrier::buffers · Uploads · ReadBack
@@ -19,6 +19,7 @@
 pub mod barrier;
 
 mod access;
+mod allocator;
 mod budget;
 mod buffer;
 mod commands;
@@ -26,6 +27,7 @@ mod description;
 mod device;
 mod error;
 mod graphics;
+mod host;
 mod image;
 mod layout;
 mod memory;
@@ -41,10 +43,14 @@ mod upload;
 
 // for hosts
 pub use access::{Access, ImageAccess};
-pub use device::{Device, HostDevice};
+#[cfg(feature = "gpu-allocator")]
+pub use allocator::GpuAllocator;
+pub use allocator::{Allocation, AllocationError, BlockAllocator, MemoryAllocator, MemoryReport, MemoryRequest};
+pub use device::Device;
 pub use error::{BudgetOwner, GpuError, MemoryOwner};
+pub use host::{HostDevice, RawDevice, load_instance};
 pub use image::Image;
-pub use memory::Pool;
+pub use memory::{MemoryLocation, Pool};
 pub use quirks::Quirks;
 pub use requirements::Requirements;
 
@@ -57,14 +63,13 @@ pub use {
     graphics::{Blend, ColourTarget, DepthTest, GraphicsInfo, StencilTest},
     image::{ImageInfo, Sampler},
     layout::Binding,
-    memory::MemoryLocation,
     pipeline::{ComputeInfo, Pipeline},
     push::Resource,
     read_back::ReadBack,
     rendering::{Attachment, Load},
     texels::{Texel, TexelBuffer},
     timestamps::{ScopeTime, Statistics, Timestamps},
-    upload::Uploads,
+    upload::{Staging, Uploads},
 };
 
 #[cfg(feature = "headless")]

@@ -26,9 +26,8 @@ pub use images::PictureView;
 pub use messages::{Message, Severity};
 pub use renderer::HeadlessRenderer;
 
-use crate::gpu::{Commands, Device, GpuError, HostDevice, LowerLimits, Named, Requirements};
+use crate::gpu::{BlockAllocator, Commands, Device, GpuError, HostDevice, LowerLimits, Named, Requirements};
 use ash::vk;
-use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use instance::Instance;
 use messages::Messages;
 use pipelines::PipelineFile;
@@ -36,7 +35,7 @@ use queue::{Queue, Submission};
 use std::io;
 use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 /// Which device, and how closely it is watched.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -83,12 +82,6 @@ pub enum HeadlessError {
     /// The options want validation, and its layer is not installed.
     #[error("the Vulkan validation layers are not installed (on Debian: apt install vulkan-validationlayers)")]
     NoValidation,
-    /// The allocator could not be made.
-    #[error("no memory allocator for this device: {source}")]
-    Allocator {
-        /// Its reason.
-        source: gpu_allocator::AllocationError,
-    },
     /// A frame's buffers were still too small after they had grown several times.
     #[error("the frame did not fit its buffers even after they had grown several times")]
     NeverComplete,
@@ -120,9 +113,9 @@ pub struct HeadlessDevice {
 /// Dropped in this order.
 struct Parts {
     queue: Queue,
+    /// With the allocator.
     device: Device,
     cache: Option<Cache>,
-    _allocator: Arc<Mutex<Allocator>>,
     _owned: OwnedDevice,
     _instance: Instance,
 }
@@ -142,16 +135,15 @@ impl HeadlessDevice {
     /// As [`new`](Self::new).
     #[doc(hidden)]
     pub fn limited(options: &HeadlessOptions, lower: LowerLimits) -> Result<Self, HeadlessError> {
-        Self::on_entry(loader::load()?, options, lower)
+        Self::of_entry(loader::load()?, options, lower)
     }
 
-    /// As [`new`](Self::new), on another Vulkan loader than the system's: tests pass a double of the driver.
+    /// As [`limited`](Self::limited), on another Vulkan loader than the system's: tests pass a double of the driver.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
     #[doc(hidden)]
-    pub fn of_entry(entry: ash::Entry, options: &HeadlessOptions) -> Result<Self, HeadlessError> {
-        Self::on_entry(entry, options, LowerLimits::NONE)
-    }
-
-    fn on_entry(entry: ash::Entry, options: &HeadlessOptions, lower: LowerLimits) -> Result<Self, HeadlessError> {
+    pub fn of_entry(entry: ash::Entry, options: &HeadlessOptions, lower: LowerLimits) -> Result<Self, HeadlessError> {
         let instance = Instance::new(entry, options)?;
         let physical = instance.choose(options.device.as_deref())?;
         let messages = instance.messages.clone();
@@ -178,25 +170,17 @@ impl HeadlessDevice {
         let raw = unsafe { instance.raw.create_device(physical, &create, None) }.named("vkCreateDevice", "device")?;
         let owned = OwnedDevice(raw.clone());
 
-        let description = AllocatorCreateDesc {
-            instance: instance.raw.clone(),
-            device: raw.clone(),
-            physical_device: physical,
-            debug_settings: Default::default(),
-            buffer_device_address: false,
-            allocation_sizes: Default::default(),
-        };
-        let allocator = Allocator::new(&description).map_err(|source| HeadlessError::Allocator { source })?;
-        let allocator = Arc::new(Mutex::new(allocator));
+        // SAFETY: `Parts` drops the device's last user, and with it the allocator, before the device.
+        let allocator = unsafe { BlockAllocator::new(&instance.raw, physical, &raw) };
         let folder = options.pipeline_folder.as_deref();
         let cache =
             folder.map(|folder| Cache::new(&raw, folder, pipelines::identity(&instance.raw, physical))).transpose()?;
         let host = HostDevice {
-            instance: &instance.raw,
+            instance: instance.raw.clone(),
             physical,
             device: raw.clone(),
             queue_family,
-            allocator: allocator.clone(),
+            allocator: Arc::new(allocator),
             debug_names: instance.debug_utils,
             pipeline_statistics: core.pipeline_statistics_query == vk::TRUE,
             pipeline_cache: cache.as_ref().map_or(vk::PipelineCache::null(), |cache| cache.handle),
@@ -206,7 +190,7 @@ impl HeadlessDevice {
         let device = unsafe { Device::limited(host, lower) };
         // SAFETY: the device was made with one queue of this family.
         let queue = unsafe { Queue::new(&raw, queue_family) };
-        let parts = Parts { queue, device, cache, _allocator: allocator, _owned: owned, _instance: instance };
+        let parts = Parts { queue, device, cache, _owned: owned, _instance: instance };
         Ok(Self { parts: ManuallyDrop::new(parts), messages })
     }
 

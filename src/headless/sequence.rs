@@ -8,7 +8,8 @@
 //!
 //! While the GPU draws a picture, the CPU takes the one before and records the one after. Each flight is a frame slot of
 //! the renderer with a command buffer, images and host memory of its own, so a picture is read where the GPU copied it.
-//! A frame that lacked room is drawn again before its picture is taken; frames that are in flight by then go on.
+//! A frame that lacked room, or that copied a part of the scene instead of drawing it, is drawn again before its picture is
+//! taken; frames that are in flight by then go on.
 
 use super::images::{Kind, PictureView, TargetImages};
 use super::queue::Submission;
@@ -191,7 +192,7 @@ impl HeadlessRenderer {
         })
     }
 
-    /// Waits for a flight's frame. While one lacked room, it is drawn again.
+    /// Waits for a flight's frame. While one lacked room, or the scene was copied first, it is drawn again.
     pub(super) fn finish(&mut self, flight: usize, view: View<'_>) -> Result<FrameStats, HeadlessError> {
         let (mut retries, mut edit_bytes) = (0, 0);
         loop {
@@ -203,7 +204,8 @@ impl HeadlessRenderer {
             if report.complete {
                 return Ok(FrameStats { retries, edit_bytes, ..report.stats });
             }
-            retries += 1;
+            // each frame of copies leaves less to copy
+            retries += u32::from(report.waiting.is_none());
             if retries > MOST_RETRIES {
                 return Err(HeadlessError::NeverComplete);
             }

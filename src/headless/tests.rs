@@ -1,7 +1,7 @@
 //! A host's images, each by itself; and what crosses threads.
 
 use super::{HeadlessDevice, HeadlessError, HeadlessOptions, HeadlessRenderer};
-use crate::gpu::{Access, Device, Image, ImageInfo, Pool, ReadBack, barrier};
+use crate::gpu::{Access, Device, Image, ImageInfo, LowerLimits, Pool, ReadBack, barrier};
 use crate::model::{Camera, Model, Projection};
 use crate::parity::{placed, untrimmed};
 use crate::picture::{EdgeSettings, FrameSettings, Outputs, Picture, SceneSettings};
@@ -153,6 +153,67 @@ fn no_picture_is_drawn_twice() {
     drop((renderer, target));
     let messages = device.shutdown();
     assert!(messages.is_empty(), "{messages:?}");
+}
+
+/// A scene of more bytes than staging memory holds is copied by several frames, with one frame in flight or two. They
+/// draw the background, and all of them together hold no more staging memory than there may be.
+#[test]
+fn a_large_scene_is_copied_in_pieces() {
+    const MOST: u64 = 2048;
+    // a driver pads a buffer by no more
+    const PADDING: u64 = 256;
+    let (model, format) = (tall(), vk::Format::R8G8B8A8_SRGB);
+    let camera = Camera::around(model.control_bounds(), DVec3::Z, DVec3::Y, 0.6, SIZE);
+    let few = LowerLimits { staging: Some(MOST), ..LowerLimits::NONE };
+    let mut pictures = Vec::new();
+    for (lower, slots) in [(LowerLimits::NONE, 1), (few, 1), (few, 2)] {
+        let options = HeadlessOptions { validation: true, ..Default::default() };
+        let device = HeadlessDevice::limited(&options, lower).unwrap();
+        let mut renderer = Renderer::on(device.device(), TargetFormats::new(format), slots).unwrap();
+        renderer.upload(&model).unwrap();
+        let (target, read, bytes) = image(device.device(), "colour", format, 4);
+        let mut waited = Vec::new();
+        for frame in 0.. {
+            let (slot, targets) = (frame % slots, Targets::new(&target));
+            let input = FrameInput { camera: &camera, settings: FrameSettings::default(), slot, targets };
+            let recorded = device.try_submit(|cmd| {
+                barrier::images(cmd, &[(&target, Access::TRANSFER_READ.discarded(), Access::COLOUR_WRITE)]);
+                // SAFETY: recording; the submission is waited for.
+                unsafe { renderer.record(cmd.raw(), &input) }?;
+                barrier::images(cmd, &[(&target, Access::COLOUR_WRITE, Access::TRANSFER_READ)]);
+                read.record_image(cmd, &target, vk::ImageAspectFlags::COLOR);
+                Ok::<_, RenderError>(())
+            });
+            recorded.unwrap().unwrap();
+            let held: u64 = device.device().pool_bytes().iter().filter(|(p, _)| *p == Pool::Staging).map(|p| p.1).sum();
+            assert!(
+                lower == LowerLimits::NONE || held <= MOST + PADDING * slots as u64,
+                "{held} bytes in {slots} slots"
+            );
+            let report = renderer.report(slot).unwrap().unwrap();
+            let seen: Vec<u8> = read.values(bytes as usize);
+            match report.waiting {
+                Some(left) => {
+                    waited.push(left);
+                    assert!(!report.complete && seen.iter().all(|byte| *byte == 255), "frame {frame}: no background");
+                }
+                None if report.complete => {
+                    assert!(seen.iter().any(|byte| *byte != 255), "nothing is seen");
+                    pictures.push(seen);
+                    break;
+                }
+                None => {}
+            }
+            assert!(frame < 100, "{waited:?} bytes waited");
+        }
+        let frames = if lower == LowerLimits::NONE { 0..=0 } else { 3..=50 };
+        assert!(frames.contains(&waited.len()), "{waited:?} bytes waited");
+        assert!(waited.windows(2).all(|two| two[0] - two[1] == MOST / slots as u64), "{waited:?}");
+        drop((renderer, target, read));
+        let messages = device.shutdown();
+        assert!(messages.is_empty(), "{messages:?}");
+    }
+    assert!(pictures[1] == pictures[0] && pictures[2] == pictures[0], "another picture in pieces");
 }
 
 #[test]

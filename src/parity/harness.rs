@@ -86,9 +86,10 @@ impl Gpu {
         let record = |cmd: &Commands<'_>| {
             let mut uploads = Uploads::new();
             let usage = Buffer::INDIRECT | vk::BufferUsageFlags::UNIFORM_BUFFER;
-            let buffer = uploads.buffer(cmd, Pool::Transient, name, usage, data).unwrap();
-            uploads.finish(cmd, Access::COMPUTE_WRITE | Access::INDIRECT_READ | Access::UNIFORM_READ);
-            (buffer, uploads)
+            let buffer = uploads.buffer(cmd.device(), Pool::Transient, name, usage, data).unwrap();
+            let staging = uploads.record(cmd, name, u64::MAX).unwrap();
+            staging.finish(cmd, Access::COMPUTE_WRITE | Access::INDIRECT_READ | Access::UNIFORM_READ);
+            (buffer, staging)
         };
         self.watched.submit(record).unwrap().0
     }
@@ -98,9 +99,10 @@ impl Gpu {
         let record = |cmd: &Commands<'_>| {
             let mut uploads = Uploads::new();
             let usage = Buffer::STORAGE | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
-            let buffer = uploads.buffer(cmd, Pool::Transient, name, usage, data).unwrap();
-            uploads.finish(cmd, Access::COMPUTE_READ);
-            (TexelBuffer::new(cmd.device(), buffer, texel).unwrap(), uploads)
+            let buffer = uploads.buffer(cmd.device(), Pool::Transient, name, usage, data).unwrap();
+            let staging = uploads.record(cmd, name, u64::MAX).unwrap();
+            staging.finish(cmd, Access::COMPUTE_READ);
+            (TexelBuffer::new(cmd.device(), buffer, texel).unwrap(), staging)
         };
         self.watched.submit(record).unwrap().0
     }

@@ -14,7 +14,7 @@ use super::{Loaded, RenderError, Renderer, Retired, TargetFormats, validate};
 use crate::frame::Passes;
 use crate::frame::capacities::{Capacities, Ranges};
 use crate::frame::counts::Counts;
-use crate::gpu::Device;
+use crate::gpu::{Device, Uploads};
 use crate::model::{Camera, Model};
 use crate::picture::{SceneSettings, Smooth, TakenWay, TrimWay};
 use crate::scene::{Cut, DeepZoomUpload, Joinable, SceneData, SceneRequest, Told};
@@ -22,7 +22,8 @@ use std::sync::Arc;
 
 impl Renderer {
     /// Replaces the model: makes the pipelines that it needs; the next [`record`](Self::record)
-    /// copies its data. Frames in flight keep the old one until their slots come round. The renderer keeps a copy of the
+    /// copies its data, or the next few where it is more than staging memory holds ([`FrameReport`](super::FrameReport)).
+    /// Frames in flight keep the old one until their slots come round. The renderer keeps a copy of the
     /// model: [`upload_shared`](Self::upload_shared) makes none.
     ///
     /// # Errors
@@ -196,6 +197,7 @@ impl Loaded {
             passes,
             picking: Arc::new(picking),
             scene: None,
+            waiting: Uploads::new(),
             stages: None,
             room: counts,
             joinable,

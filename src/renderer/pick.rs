@@ -85,6 +85,11 @@ pub(super) fn make_room(at: Option<(u32, u32)>, slot: &mut Option<SlotPick>, dev
     Ok(())
 }
 
+/// The frame shows nothing, and reads nothing back.
+pub(super) fn skip(slot: &mut Option<SlotPick>) {
+    slot.iter_mut().for_each(|slot| slot.asked = None);
+}
+
 /// Records the copies, where the host wants some of this frame.
 pub(super) fn record(
     at: Option<(u32, u32)>,

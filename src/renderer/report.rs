@@ -1,6 +1,7 @@
 //! What became of a frame, once the GPU has finished it.
 
 use super::Renderer;
+use crate::abi::Counters;
 use crate::gpu::GpuError;
 use crate::picture::{FrameStats, PassTime, PoolBytes, TakenWay};
 
@@ -8,8 +9,11 @@ use crate::picture::{FrameStats, PassTime, PoolBytes, TakenWay};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FrameReport {
-    /// Every buffer sufficed; otherwise record the frame again.
+    /// Every buffer sufficed, and the scene was there; otherwise record the frame again.
     pub complete: bool,
+    /// The frame drew the background alone, because arrays of the scene were copied first: these bytes waited still after
+    /// it. Staging memory is bounded, so a large scene or edit takes several such frames. `None`: the scene was drawn.
+    pub waiting: Option<u64>,
     /// What it cost.
     pub stats: FrameStats,
 }
@@ -26,7 +30,7 @@ impl Renderer {
         if !slot.recorded {
             return Ok(None);
         }
-        let c = slot.read_counters();
+        let c = if slot.copies.is_none() { slot.read_counters() } else { Counters::default() };
         let scopes = slot.times.read().inspect_err(|error| self.device.note(error))?;
         let stats = FrameStats {
             passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
@@ -59,6 +63,6 @@ impl Renderer {
             device: self.device.name().to_owned(),
             driver: self.device.driver().to_owned(),
         };
-        Ok(Some(FrameReport { complete: c.failed == 0, stats }))
+        Ok(Some(FrameReport { complete: c.failed == 0 && slot.copies.is_none(), waiting: slot.copies, stats }))
     }
 }

@@ -48,6 +48,8 @@ pub(super) struct Slot {
     pub(super) reused: bool,
     /// Copied for edits at the beginning of the frame.
     pub(super) edit_bytes: u64,
+    /// The frame copied arrays of the scene and drew nothing of it: the bytes that waited still. `None`: it was drawn.
+    pub(super) copies: Option<u64>,
     /// What the frame had room for; `None` when its model has been replaced since.
     pub(super) capacities: Option<Capacities>,
     /// Of the picture.
@@ -79,6 +81,7 @@ impl Slot {
             recorded: false,
             reused: false,
             edit_bytes: 0,
+            copies: None,
             capacities: None,
             size: (0, 0),
             counts: Counts::default(),

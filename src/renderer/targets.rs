@@ -1,9 +1,9 @@
 //! The host's images: their formats, and those of one frame.
 
 use super::RenderError;
-use crate::frame::shading::resolve;
+use crate::frame::shading::{NOWHERE, resolve};
 use crate::frame::{Stages, target};
-use crate::gpu::{Attachment, Image};
+use crate::gpu::{Attachment, Commands, Image, Load};
 use crate::picture::Outputs;
 use ash::vk;
 
@@ -146,6 +146,24 @@ impl<'a> Targets<'a> {
         assert_eq!(outputs, formats.outputs, "the targets are those of TargetFormats::outputs");
         assert_eq!(is_there(self.depth), formats.depth.is_some(), "the targets are those of TargetFormats::depth");
         Ok(())
+    }
+
+    /// Draws nothing: what pixels without a surface have, into each image. Without a background the host's picture stays,
+    /// and only the lengths within solids are cleared.
+    pub(super) fn clear(&self, cmd: &Commands<'_>, background: Option<[f32; 4]>) {
+        let clear = |image: Option<&Image>, load| {
+            if let Some(image) = image {
+                cmd.rendering(image.size(), &[Attachment { image, load }], None, || ());
+            }
+        };
+        clear(self.thickness, Load::ColourF32([0.0; 4]));
+        let Some(background) = background else { return };
+        clear(Some(self.colour), Load::ColourF32(background));
+        self.points().into_iter().zip(NOWHERE).for_each(|(image, load)| clear(image, load));
+        self.all_numbers().into_iter().for_each(|image| clear(image, Load::ColourU32([0; 4])));
+        if let Some(image) = self.depth {
+            cmd.rendering(image.size(), &[], Some(Attachment { image, load: Load::Depth(0.0) }), || ());
+        }
     }
 
     /// What pass `resolve` draws into.

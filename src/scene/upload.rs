@@ -7,7 +7,7 @@ use super::{Blister, EdgeData, SceneData, SolidData};
 #[cfg(feature = "baselines")]
 use crate::baselines::TrimMethod;
 use crate::bindings::{Placed, Primitives};
-use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texel, TexelBuffer, Uploads};
+use crate::gpu::{Buffer, Device, GpuError, Pool, Texel, TexelBuffer, Uploads};
 use crate::picture::TakenWay;
 use ash::vk;
 use bytemuck::Pod;
@@ -219,66 +219,66 @@ impl Scene {
         }
     }
 
-    /// Records the copies; the returned [`Uploads`] must live until the GPU has made them.
-    pub(crate) fn record(cmd: &Commands<'_>, data: &SceneData) -> Result<(Self, Uploads), GpuError> {
+    /// Makes the buffers. The arrays that they are for are in the returned [`Uploads`].
+    pub(crate) fn new<'d>(device: &Device, data: &'d SceneData) -> Result<(Self, Uploads<'d>), GpuError> {
         let mut uploads = Uploads::new();
         let scene = Self {
-            patches: read_both(&mut uploads, cmd, "patches", &data.patches, Texel::U32x4)?,
+            patches: read_both(&mut uploads, device, "patches", &data.patches, Texel::U32x4)?,
             outside: (!data.outside.is_empty())
-                .then(|| persistent(&mut uploads, cmd, "patches outside", &data.outside))
+                .then(|| persistent(&mut uploads, device, "patches outside", &data.outside))
                 .transpose()?,
             cones: (!data.cones.is_empty())
-                .then(|| persistent(&mut uploads, cmd, "patch cones", &data.cones))
+                .then(|| persistent(&mut uploads, device, "patch cones", &data.cones))
                 .transpose()?,
-            points: texels(&mut uploads, cmd, "points", &data.points, Texel::F32x4)?,
+            points: texels(&mut uploads, device, "points", &data.points, Texel::F32x4)?,
             links: (!data.links.is_empty())
-                .then(|| persistent(&mut uploads, cmd, "patch links", &data.links))
+                .then(|| persistent(&mut uploads, device, "patch links", &data.links))
                 .transpose()?,
-            faces: read_both(&mut uploads, cmd, "faces", &data.faces, Texel::U32x4)?,
-            face_instances: read_both(&mut uploads, cmd, "face instances", &data.face_instances, Texel::U32x4)?,
-            instances: read_both(&mut uploads, cmd, "instances", &data.instances, Texel::U32x4)?,
-            patch_instances: read_both(&mut uploads, cmd, "patch_instances", &data.patch_instances, Texel::Words)?,
+            faces: read_both(&mut uploads, device, "faces", &data.faces, Texel::U32x4)?,
+            face_instances: read_both(&mut uploads, device, "face instances", &data.face_instances, Texel::U32x4)?,
+            instances: read_both(&mut uploads, device, "instances", &data.instances, Texel::U32x4)?,
+            patch_instances: read_both(&mut uploads, device, "patch_instances", &data.patch_instances, Texel::Words)?,
             #[cfg(feature = "baselines")]
             slefes: match &data.division {
                 Division::Bound => None,
-                Division::Slefe(table) => Some(persistent(&mut uploads, cmd, "slefes", table)?),
+                Division::Slefe(table) => Some(persistent(&mut uploads, device, "slefes", table)?),
             },
             trims: match data.trim_way() {
                 None => None,
-                Some(TakenWay::Table) => Some(Trims::Table(Box::new(table_scene(&mut uploads, cmd, data)?))),
+                Some(TakenWay::Table) => Some(Trims::Table(Box::new(table_scene(&mut uploads, device, data)?))),
                 #[cfg(feature = "baselines")]
                 Some(TakenWay::Baseline(method)) => {
-                    Some(Trims::Baseline(Box::new(baseline_scene(&mut uploads, cmd, data, method)?)))
+                    Some(Trims::Baseline(Box::new(baseline_scene(&mut uploads, device, data, method)?)))
                 }
                 Some(TakenWay::Exact) => Some(Trims::Exact(Box::new(ExactScene {
-                    faces: texels(&mut uploads, cmd, "trim faces", &data.exact.faces, Texel::U32x4)?,
-                    cells: texels(&mut uploads, cmd, "trim cells", &data.exact.cells, Texel::Words)?,
-                    arcs: texels(&mut uploads, cmd, "trim arcs", &data.exact.arcs, Texel::U32x4)?,
+                    faces: texels(&mut uploads, device, "trim faces", &data.exact.faces, Texel::U32x4)?,
+                    cells: texels(&mut uploads, device, "trim cells", &data.exact.cells, Texel::Words)?,
+                    arcs: texels(&mut uploads, device, "trim arcs", &data.exact.arcs, Texel::U32x4)?,
                 }))),
             },
             solids: (!data.solids.leaves.is_empty())
                 .then(|| {
                     Ok(Solids {
-                        leaves: persistent(&mut uploads, cmd, "solid leaves", &data.solids.leaves)?,
+                        leaves: persistent(&mut uploads, device, "solid leaves", &data.solids.leaves)?,
                         leaf_surfaces: texels(
                             &mut uploads,
-                            cmd,
+                            device,
                             "solid sides",
                             &data.solids.leaf_surfaces,
                             Texel::U32x2,
                         )?,
-                        surfaces: surfaces(&mut uploads, cmd, "solid surfaces", &data.solids)?,
+                        surfaces: surfaces(&mut uploads, device, "solid surfaces", &data.solids)?,
                         boundary_operands: (!data.solids.operand_leaves.is_empty())
-                            .then(|| boundary_operands(&mut uploads, cmd, &data.solids))
+                            .then(|| boundary_operands(&mut uploads, device, &data.solids))
                             .transpose()?,
                         order: (!data.solids.order.is_empty())
-                            .then(|| persistent(&mut uploads, cmd, "solid order", &data.solids.order))
+                            .then(|| persistent(&mut uploads, device, "solid order", &data.solids.order))
                             .transpose()?
                             .map(|order| (order, data.solids.order.len() as u32)),
                         blister: (data.solids.blister.as_ref())
                             .map(|b| {
                                 let order = if b.order.is_empty() { &[0] } else { b.order.as_slice() };
-                                Ok((b.clone(), persistent(&mut uploads, cmd, "solid order", order)?))
+                                Ok((b.clone(), persistent(&mut uploads, device, "solid order", order)?))
                             })
                             .transpose()?,
                     })
@@ -289,14 +289,14 @@ impl Scene {
                 .then(|| {
                     let m = &data.meshes;
                     Ok(MeshBuffers {
-                        meshes: persistent(&mut uploads, cmd, "meshes", &m.meshes)?,
-                        instances: persistent(&mut uploads, cmd, "mesh instances", &m.instances)?,
-                        positions: persistent(&mut uploads, cmd, "mesh positions", &m.positions)?,
-                        triangles: persistent(&mut uploads, cmd, "mesh triangles", &m.triangles)?,
+                        meshes: persistent(&mut uploads, device, "meshes", &m.meshes)?,
+                        instances: persistent(&mut uploads, device, "mesh instances", &m.instances)?,
+                        positions: persistent(&mut uploads, device, "mesh positions", &m.positions)?,
+                        triangles: persistent(&mut uploads, device, "mesh triangles", &m.triangles)?,
                         neighbours: (!m.neighbours.is_empty())
-                            .then(|| persistent(&mut uploads, cmd, "mesh neighbours", &m.neighbours))
+                            .then(|| persistent(&mut uploads, device, "mesh neighbours", &m.neighbours))
                             .transpose()?,
-                        normals: persistent(&mut uploads, cmd, "mesh normals", &m.normals)?,
+                        normals: persistent(&mut uploads, device, "mesh normals", &m.normals)?,
                         draws: m.draws.clone(),
                         outward: m.outward,
                     })
@@ -307,66 +307,66 @@ impl Scene {
                 .as_ref()
                 .map(|v| {
                     Ok(Volume {
-                        leaves: persistent(&mut uploads, cmd, "volume leaves", &v.leaves)?,
-                        leaf_surfaces: texels(&mut uploads, cmd, "volume sides", &v.leaf_surfaces, Texel::U32x2)?,
-                        surfaces: surfaces(&mut uploads, cmd, "volume surfaces", v)?,
+                        leaves: persistent(&mut uploads, device, "volume leaves", &v.leaves)?,
+                        leaf_surfaces: texels(&mut uploads, device, "volume sides", &v.leaf_surfaces, Texel::U32x2)?,
+                        surfaces: surfaces(&mut uploads, device, "volume surfaces", v)?,
                     })
                 })
                 .transpose()?,
             sources: (data.has_numbers || data.has_lines())
-                .then(|| texels(&mut uploads, cmd, "instance sources", &data.sources, Texel::U32x2))
+                .then(|| texels(&mut uploads, device, "instance sources", &data.sources, Texel::U32x2))
                 .transpose()?,
             edges: (data.edges.as_ref().filter(|edges| !edges.piece_instances.is_empty()))
-                .map(|edges| edge_buffers(&mut uploads, cmd, edges))
+                .map(|edges| edge_buffers(&mut uploads, device, edges))
                 .transpose()?,
             sun: (data.sun.as_ref().filter(|sun| sun.has_casters()))
                 .map(|sun| {
                     let none = [Default::default()];
                     let leaves = if sun.leaves.is_empty() { &none } else { sun.leaves.as_slice() };
+                    let usage = Buffer::STORAGE;
                     Ok(SunTiles {
-                        tiles: persistent(&mut uploads, cmd, "sun tiles", &sun.tiles)?,
-                        leaves: persistent(&mut uploads, cmd, "sun leaves", leaves)?,
-                        triangles: some_texels(&mut uploads, cmd, "sun triangles", &sun.triangles, Texel::U32x4)?,
-                        facets: some_texels(&mut uploads, cmd, "sun facets", &sun.facets, Texel::U32x4)?,
-                        lists: some_texels(&mut uploads, cmd, "sun lists", &sun.lists, Texel::Words)?,
+                        tiles: persistent(&mut uploads, device, "sun tiles", &sun.tiles)?,
+                        leaves: uploads.owned_buffer(device, Pool::Persistent, "sun leaves", usage, leaves)?,
+                        triangles: some_texels(&mut uploads, device, "sun triangles", &sun.triangles, Texel::U32x4)?,
+                        facets: some_texels(&mut uploads, device, "sun facets", &sun.facets, Texel::U32x4)?,
+                        lists: some_texels(&mut uploads, device, "sun lists", &sun.lists, Texel::Words)?,
                     })
                 })
                 .transpose()?,
         };
-        uploads.finish(cmd, Access::COMPUTE_READ | Access::VERTEX_READ | Access::FRAGMENT_READ);
         Ok((scene, uploads))
     }
 }
 
-fn edge_buffers(uploads: &mut Uploads, cmd: &Commands<'_>, edges: &EdgeData) -> Result<EdgeBuffers, GpuError> {
+fn edge_buffers<'d>(uploads: &mut Uploads<'d>, device: &Device, edges: &'d EdgeData) -> Result<EdgeBuffers, GpuError> {
     Ok(EdgeBuffers {
-        pieces: persistent(uploads, cmd, "edge pieces", &edges.pieces)?,
-        points: texels(uploads, cmd, "edge points", &edges.points, Texel::F32x4)?,
-        lines: persistent(uploads, cmd, "edge lines", &edges.lines)?,
-        own_faces: persistent(uploads, cmd, "edge faces", &edges.own_faces)?,
-        piece_instances: persistent(uploads, cmd, "piece instances", &edges.piece_instances)?,
-        face_keys: texels(uploads, cmd, "edge face keys", &edges.face_keys, Texel::Words)?,
+        pieces: persistent(uploads, device, "edge pieces", &edges.pieces)?,
+        points: texels(uploads, device, "edge points", &edges.points, Texel::F32x4)?,
+        lines: persistent(uploads, device, "edge lines", &edges.lines)?,
+        own_faces: persistent(uploads, device, "edge faces", &edges.own_faces)?,
+        piece_instances: persistent(uploads, device, "piece instances", &edges.piece_instances)?,
+        face_keys: texels(uploads, device, "edge face keys", &edges.face_keys, Texel::Words)?,
     })
 }
 
-fn table_scene(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SceneData) -> Result<TableScene, GpuError> {
+fn table_scene<'d>(uploads: &mut Uploads<'d>, device: &Device, data: &'d SceneData) -> Result<TableScene, GpuError> {
     Ok(TableScene {
-        cells: persistent(uploads, cmd, "trim cells", &data.cells)?,
-        cell_instances: persistent(uploads, cmd, "trim cell instances", &data.cell_instances)?,
-        curves: texels(uploads, cmd, "trim curves", &data.curves, Texel::U32x4)?,
-        curve_points: texels(uploads, cmd, "trim curve points", &data.curve_points, Texel::Numbers)?,
-        curve_instances: texels(uploads, cmd, "trim curve instances", &data.curve_instances, Texel::Words)?,
+        cells: persistent(uploads, device, "trim cells", &data.cells)?,
+        cell_instances: persistent(uploads, device, "trim cell instances", &data.cell_instances)?,
+        curves: texels(uploads, device, "trim curves", &data.curves, Texel::U32x4)?,
+        curve_points: texels(uploads, device, "trim curve points", &data.curve_points, Texel::Numbers)?,
+        curve_instances: texels(uploads, device, "trim curve instances", &data.curve_instances, Texel::Words)?,
         wide_strips: (!data.wide_strips.is_empty())
-            .then(|| persistent(uploads, cmd, "trim wide strips", &data.wide_strips))
+            .then(|| persistent(uploads, device, "trim wide strips", &data.wide_strips))
             .transpose()?,
     })
 }
 
 #[cfg(feature = "baselines")]
-fn baseline_scene(
-    uploads: &mut Uploads,
-    cmd: &Commands<'_>,
-    data: &SceneData,
+fn baseline_scene<'d>(
+    uploads: &mut Uploads<'d>,
+    device: &Device,
+    data: &'d SceneData,
     method: TrimMethod,
 ) -> Result<BaselineScene, GpuError> {
     Ok(match method {
@@ -374,77 +374,85 @@ fn baseline_scene(
         TrimMethod::Bisect { .. } => {
             let b = &data.bisect;
             BaselineScene::Bisect([
-                texels(uploads, cmd, "trim bisect faces", &b.faces, Texel::Words)?,
-                texels(uploads, cmd, "trim bisect bands", &b.bands, Texel::U32x2)?,
-                texels(uploads, cmd, "trim bisect cells", &b.cells, Texel::U32x4)?,
-                texels(uploads, cmd, "trim bisect lists", &b.lists, Texel::Words)?,
-                texels(uploads, cmd, "trim bisect pieces", &b.pieces, Texel::U32x2)?,
-                texels(uploads, cmd, "trim bisect points", &b.points, Texel::Numbers)?,
+                texels(uploads, device, "trim bisect faces", &b.faces, Texel::Words)?,
+                texels(uploads, device, "trim bisect bands", &b.bands, Texel::U32x2)?,
+                texels(uploads, device, "trim bisect cells", &b.cells, Texel::U32x4)?,
+                texels(uploads, device, "trim bisect lists", &b.lists, Texel::Words)?,
+                texels(uploads, device, "trim bisect pieces", &b.pieces, Texel::U32x2)?,
+                texels(uploads, device, "trim bisect points", &b.points, Texel::Numbers)?,
             ])
         }
         TrimMethod::Texture { eighths } => {
             let knob = [(eighths as f32 / 8.0).to_bits(), data.face_instances.len() as u32];
-            let knob = persistent(uploads, cmd, "trim texture knob", &knob)?;
-            BaselineScene::Texture(table_scene(uploads, cmd, data)?, knob)
+            let knob = uploads.owned_buffer(device, Pool::Persistent, "trim texture knob", Buffer::STORAGE, &knob)?;
+            BaselineScene::Texture(table_scene(uploads, device, data)?, knob)
         }
     })
 }
 
-fn boundary_operands(
-    uploads: &mut Uploads,
-    cmd: &Commands<'_>,
-    data: &SolidData,
+fn boundary_operands<'d>(
+    uploads: &mut Uploads<'d>,
+    device: &Device,
+    data: &'d SolidData,
 ) -> Result<BoundaryOperands, GpuError> {
     Ok(BoundaryOperands {
-        leaves: persistent(uploads, cmd, "operand leaves", &data.operand_leaves)?,
-        meshes: persistent(uploads, cmd, "operand meshes", &data.operand_meshes)?,
-        triangles: persistent(uploads, cmd, "operand triangles", &data.operand_triangles)?,
-        positions: persistent(uploads, cmd, "operand positions", &data.operand_positions)?,
-        planes: persistent(uploads, cmd, "operand planes", &data.operand_planes)?,
+        leaves: persistent(uploads, device, "operand leaves", &data.operand_leaves)?,
+        meshes: persistent(uploads, device, "operand meshes", &data.operand_meshes)?,
+        triangles: persistent(uploads, device, "operand triangles", &data.operand_triangles)?,
+        positions: persistent(uploads, device, "operand positions", &data.operand_positions)?,
+        planes: persistent(uploads, device, "operand planes", &data.operand_planes)?,
         draws: data.operand_draws.clone(),
     })
 }
 
-fn surfaces(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &SolidData) -> Result<TexelBuffer, GpuError> {
-    texels(uploads, cmd, name, &data.surfaces.iter().map(Surface::texels).collect::<Vec<_>>(), Texel::F32x4)
+fn surfaces(uploads: &mut Uploads<'_>, device: &Device, name: &str, data: &SolidData) -> Result<TexelBuffer, GpuError> {
+    let texels: Vec<_> = data.surfaces.iter().map(Surface::texels).collect();
+    let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
+    let buffer = uploads.owned_buffer(device, Pool::Persistent, name, usage, &texels)?;
+    TexelBuffer::new(device, buffer, Texel::F32x4)
 }
 
 /// Buffers for passes that read structs and for passes that fetch texels.
-fn read_both<T: Pod>(
-    uploads: &mut Uploads,
-    cmd: &Commands<'_>,
+fn read_both<'d, T: Pod>(
+    uploads: &mut Uploads<'d>,
+    device: &Device,
     name: &str,
-    data: &[T],
+    data: &'d [T],
     texel: Texel,
 ) -> Result<TexelBuffer, GpuError> {
     let usage = Buffer::STORAGE | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
-    TexelBuffer::new(cmd.device(), uploads.buffer(cmd, Pool::Persistent, name, usage, data)?, texel)
+    TexelBuffer::new(device, uploads.buffer(device, Pool::Persistent, name, usage, data)?, texel)
 }
 
 /// Buffers for passes that only fetch texels, so the size limit of storage buffers does not apply.
-fn texels<T: Pod>(
-    uploads: &mut Uploads,
-    cmd: &Commands<'_>,
+fn texels<'d, T: Pod>(
+    uploads: &mut Uploads<'d>,
+    device: &Device,
     name: &str,
-    data: &[T],
+    data: &'d [T],
     texel: Texel,
 ) -> Result<TexelBuffer, GpuError> {
     let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
-    let buffer = uploads.buffer(cmd, Pool::Persistent, name, usage, data)?;
-    TexelBuffer::new(cmd.device(), buffer, texel)
+    let buffer = uploads.buffer(device, Pool::Persistent, name, usage, data)?;
+    TexelBuffer::new(device, buffer, texel)
 }
 
 /// `None` if `data` is empty.
-fn some_texels<T: Pod>(
-    uploads: &mut Uploads,
-    cmd: &Commands<'_>,
+fn some_texels<'d, T: Pod>(
+    uploads: &mut Uploads<'d>,
+    device: &Device,
     name: &str,
-    data: &[T],
+    data: &'d [T],
     texel: Texel,
 ) -> Result<Option<TexelBuffer>, GpuError> {
-    (!data.is_empty()).then(|| texels(uploads, cmd, name, data, texel)).transpose()
+    (!data.is_empty()).then(|| texels(uploads, device, name, data, texel)).transpose()
 }
 
-fn persistent<T: Pod>(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &[T]) -> Result<Buffer, GpuError> {
-    uploads.buffer(cmd, Pool::Persistent, name, Buffer::STORAGE, data)
+fn persistent<'d, T: Pod>(
+    uploads: &mut Uploads<'d>,
+    device: &Device,
+    name: &str,
+    data: &'d [T],
+) -> Result<Buffer, GpuError> {
+    uploads.buffer(device, Pool::Persistent, name, Buffer::STORAGE, data)
 }

@@ -1,8 +1,9 @@
 //! A host in plain ash, with everything that an engine has before it uses the renderer.
 
 use ash::vk;
+use ash::vk::Handle;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
-use selvedge::gpu::{HostDevice, Requirements};
+use selvedge::gpu::{GpuAllocator, HostDevice, RawDevice, Requirements};
 use std::ffi::{CStr, c_void};
 use std::mem::ManuallyDrop;
 use std::sync::{Arc, Mutex};
@@ -11,7 +12,7 @@ use std::sync::{Arc, Mutex};
 pub const SLOTS: usize = 2;
 
 pub struct Host {
-    _entry: ash::Entry,
+    entry: ash::Entry,
     pub instance: ash::Instance,
     debug: ash::ext::debug_utils::Instance,
     messenger: vk::DebugUtilsMessengerEXT,
@@ -80,7 +81,7 @@ impl Host {
             let fences = [(); SLOTS].map(|()| device.create_fence(&signaled, None).unwrap());
             let allocator = ManuallyDrop::new(allocator);
             Self {
-                _entry: entry,
+                entry,
                 instance,
                 debug,
                 messenger,
@@ -116,17 +117,28 @@ impl Host {
     }
 
     /// The objects that the renderer borrows.
-    pub fn lend(&self) -> HostDevice<'_> {
+    pub fn lend(&self) -> HostDevice {
         HostDevice {
-            instance: &self.instance,
+            instance: self.instance.clone(),
             physical: self.physical,
             device: self.device.clone(),
             queue_family: self.family,
-            allocator: Arc::clone(&self.allocator),
+            allocator: Arc::new(GpuAllocator::new(Arc::clone(&self.allocator))),
             debug_names: true,
             pipeline_statistics: false,
             pipeline_cache: vk::PipelineCache::null(),
             memory_budget: None,
+        }
+    }
+
+    /// The same as numbers, as a host has them whose bindings are not ash.
+    pub fn raw(&self) -> RawDevice {
+        RawDevice {
+            get_instance_proc_addr: self.entry.static_fn().get_instance_proc_addr as *const c_void,
+            instance: self.instance.handle().as_raw(),
+            physical: self.physical.as_raw(),
+            device: self.device.handle().as_raw(),
+            queue_family: self.family,
         }
     }
 

@@ -3,6 +3,7 @@
 //!
 //! Needs a Vulkan driver and the validation layers, like the other tests on a device.
 
+mod allocators;
 mod flight;
 mod host;
 mod picture;

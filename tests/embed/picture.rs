@@ -5,11 +5,12 @@ use crate::shapes;
 use crate::targets::{DEPTH_FORMAT, Targets};
 use ash::vk;
 use glam::{DVec2, DVec3};
+use selvedge::gpu::HostDevice;
 use selvedge::model::{Camera, Model, Projection};
 use selvedge::picture::{FrameSettings, Samples, SceneSettings, Smooth};
 use selvedge::renderer::{FrameInput, Renderer, TargetFormats, Targets as Into};
 
-const SIZE: (u32, u32) = (120, 90);
+pub const SIZE: (u32, u32) = (120, 90);
 const HOST_BLUE: [f32; 4] = [0.0, 0.0, 1.0, 1.0];
 const BLUE: [u8; 4] = [0, 0, 255, 255];
 /// Depth of the host's middle box, through the sphere.
@@ -17,15 +18,20 @@ const WALL: f64 = 9.0;
 
 /// The renderer on the host's device; the model is uploaded.
 pub fn renderer(host: &Host, model: &Model, colour: vk::Format) -> Renderer {
+    renderer_on(host.lend(), model, colour)
+}
+
+/// The same on the device of a host that lives longer than the renderer.
+pub fn renderer_on(lent: HostDevice, model: &Model, colour: vk::Format) -> Renderer {
     let formats = TargetFormats { depth: Some(DEPTH_FORMAT), ..TargetFormats::new(colour) };
     // SAFETY: the host's device meets the requirements and outlives the renderer.
-    let mut renderer = unsafe { Renderer::new(host.lend(), formats, crate::host::SLOTS) }.unwrap();
+    let mut renderer = unsafe { Renderer::new(lent, formats, crate::host::SLOTS) }.unwrap();
     renderer.upload(model).unwrap();
     renderer
 }
 
 /// A camera 10 away from the sphere.
-fn camera() -> Camera {
+pub fn camera() -> Camera {
     Camera {
         eye: DVec3::new(0.0, -10.0, 0.0),
         target: DVec3::ZERO,
@@ -56,7 +62,7 @@ fn front(camera: &Camera, pixel: DVec2) -> Option<f64> {
 }
 
 /// The host's picture with the sphere in it; the host's overlay on top.
-fn draw(host: &Host, renderer: &mut Renderer, targets: &Targets, camera: &Camera, background: Option<[f32; 4]>) {
+pub fn draw(host: &Host, renderer: &mut Renderer, targets: &Targets, camera: &Camera, background: Option<[f32; 4]>) {
     let cmd = host.begin(0);
     let third = SIZE.0 / 3;
     let wall = reversed(camera, WALL) as f32;

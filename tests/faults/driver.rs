@@ -46,6 +46,8 @@ struct State {
     /// The driver's functions, by name.
     real: HashMap<&'static str, usize>,
     handles: u64,
+    /// `VK_EXT_memory_budget` says that all heaps are full, or that they are empty; `None`: what the driver says.
+    full: Option<bool>,
     /// Bytes of null buffers and images, and of memory.
     bytes: HashMap<u64, u64>,
     memory: HashMap<u64, Vec<u64>>,
@@ -97,6 +99,11 @@ impl Driver {
             state.calls.clear();
         });
         OTHERS.store(0, Ordering::Relaxed);
+    }
+
+    /// From now on `VK_EXT_memory_budget` is there, and says that all heaps are full or empty.
+    pub fn tell_heaps(&self, full: bool) {
+        with(|state| state.full = Some(full));
     }
 
     /// Number of calls that failed by plan.
@@ -361,6 +368,58 @@ unsafe extern "system" fn nothing() -> i32 {
     0
 }
 
+/// The driver's extensions, and the one that tells the budget.
+unsafe extern "system" fn extensions(
+    physical: vk::PhysicalDevice,
+    layer: *const c_char,
+    count: *mut u32,
+    all: *mut vk::ExtensionProperties,
+) -> vk::Result {
+    let original = real("vkEnumerateDeviceExtensionProperties").expect("asked for before");
+    // SAFETY: the driver's function; room for its answer, and for one more where there is an array.
+    unsafe {
+        let original = transmute::<usize, vk::PFN_vkEnumerateDeviceExtensionProperties>(original);
+        if with(|state| state.full.is_none()) {
+            return original(physical, layer, count, all);
+        }
+        if all.is_null() {
+            let result = original(physical, layer, count, all);
+            *count += 1;
+            return result;
+        }
+        *count -= 1;
+        let result = original(physical, layer, count, all);
+        let mut added = vk::ExtensionProperties::default();
+        let name = ash::ext::memory_budget::NAME.to_bytes_with_nul();
+        added.extension_name.iter_mut().zip(name).for_each(|(to, byte)| *to = *byte as c_char);
+        all.add(*count as usize).write(added);
+        *count += 1;
+        result
+    }
+}
+
+unsafe extern "system" fn memory_properties(
+    physical: vk::PhysicalDevice,
+    properties: *mut vk::PhysicalDeviceMemoryProperties2<'_>,
+) {
+    let original = real("vkGetPhysicalDeviceMemoryProperties2").expect("asked for before");
+    // SAFETY: the driver's function, and the structs of the caller's chain.
+    unsafe {
+        transmute::<usize, vk::PFN_vkGetPhysicalDeviceMemoryProperties2>(original)(physical, properties);
+        let Some(full) = with(|state| state.full) else { return };
+        let heaps = (*properties).memory_properties.memory_heaps;
+        let mut next = (*properties).p_next.cast::<vk::BaseOutStructure<'_>>();
+        while !next.is_null() {
+            if (*next).s_type == vk::StructureType::PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT {
+                let budget = next.cast::<vk::PhysicalDeviceMemoryBudgetPropertiesEXT<'_>>();
+                (*budget).heap_budget = heaps.map(|heap| heap.size);
+                (*budget).heap_usage = heaps.map(|heap| if full { heap.size } else { 0 });
+            }
+            next = (*next).p_next;
+        }
+    }
+}
+
 type Function = vk::PFN_vkVoidFunction;
 
 fn function(address: usize) -> Function {
@@ -396,6 +455,14 @@ unsafe extern "system" fn get_instance_proc_addr(instance: vk::Instance, name: *
     if name == c"vkGetDeviceProcAddr" {
         with(|state| state.real.insert("vkGetDeviceProcAddr", original));
         return function(address!(get_device_proc_addr));
+    }
+    let told = [
+        ("vkEnumerateDeviceExtensionProperties", address!(extensions)),
+        ("vkGetPhysicalDeviceMemoryProperties2", address!(memory_properties)),
+    ];
+    if let Some((name, address)) = told.into_iter().find(|(told, _)| told.as_bytes() == name.to_bytes()) {
+        with(|state| state.real.insert(name, original));
+        return function(address);
     }
     // functions of devices come from get_device_proc_addr
     let of_instance = [c"vkCreateInstance", c"vkEnumeratePhysicalDevices", c"vkCreateDevice"].contains(&name);

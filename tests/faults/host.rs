@@ -3,12 +3,14 @@
 use crate::driver::Driver;
 use crate::shapes;
 use ash::vk;
+use ash::vk::Handle;
 use glam::DVec3;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
-use selvedge::gpu::{Device, HostDevice, Image, ImageInfo, Pool, Requirements};
+use selvedge::gpu::{Device, GpuAllocator, HostDevice, Image, ImageInfo, Pool, RawDevice, Requirements};
 use selvedge::model::Camera;
 use selvedge::picture::FrameSettings;
 use selvedge::renderer::{FrameInput, RenderError, Renderer, TargetFormats, Targets};
+use std::ffi::c_void;
 use std::sync::{Arc, Mutex};
 
 const SIZE: (u32, u32) = (48, 32);
@@ -19,7 +21,7 @@ struct Host {
     physical: vk::PhysicalDevice,
     device: ash::Device,
     allocator: Arc<Mutex<Allocator>>,
-    _entry: ash::Entry,
+    entry: ash::Entry,
 }
 
 impl Host {
@@ -41,21 +43,33 @@ impl Host {
                 allocation_sizes: Default::default(),
             };
             let allocator = Arc::new(Mutex::new(Allocator::new(&description).unwrap()));
-            Self { instance, physical, device, allocator, _entry: entry }
+            Self { instance, physical, device, allocator, entry }
         }
     }
 
-    fn lend(&self) -> HostDevice<'_> {
+    fn lend(&self) -> HostDevice {
         HostDevice {
-            instance: &self.instance,
+            instance: self.instance.clone(),
             physical: self.physical,
             device: self.device.clone(),
             queue_family: 0,
-            allocator: Arc::clone(&self.allocator),
+            allocator: Arc::new(GpuAllocator::new(Arc::clone(&self.allocator))),
             debug_names: false,
             pipeline_statistics: false,
             pipeline_cache: vk::PipelineCache::null(),
             memory_budget: None,
+        }
+    }
+}
+
+impl Host {
+    fn raw(&self) -> RawDevice {
+        RawDevice {
+            get_instance_proc_addr: self.entry.static_fn().get_instance_proc_addr as *const c_void,
+            instance: self.instance.handle().as_raw(),
+            physical: self.physical.as_raw(),
+            device: self.device.handle().as_raw(),
+            queue_family: 0,
         }
     }
 }
@@ -114,6 +128,29 @@ fn a_device_that_the_host_lost_is_not_touched() {
         drop(renderer);
         assert_eq!(driver.count(), 0, "no call but those that free");
         assert_eq!(handles(), if is_gone { before } else { 0 }, "of {before} handles");
+    }
+}
+
+/// The engine's own allocator frees its memory with the renderer, and leaves it when the device's handle is gone.
+#[test]
+fn an_allocator_of_the_engine_s_own_goes_with_the_renderer() {
+    for is_gone in [false, true] {
+        let driver = Driver::new(true);
+        let host = Host::new(&driver);
+        // SAFETY: the host outlives the renderer.
+        let renderer = unsafe { Renderer::new(HostDevice::from_raw(host.raw()), TargetFormats::new(FORMAT), 2) };
+        let mut renderer = renderer.unwrap();
+        renderer.upload(&shapes::cube()).unwrap();
+        let memory = || driver.living().into_iter().filter(|kind| *kind == "vkFreeMemory").count();
+        let before = memory();
+        assert!(before > 0);
+        if is_gone {
+            renderer.abandon()
+        } else {
+            renderer.device_lost()
+        }
+        drop(renderer);
+        assert_eq!(memory(), if is_gone { before } else { 0 }, "of {before}");
     }
 }
 

@@ -3,6 +3,7 @@
 //! The null driver draws nothing, which makes runs fast enough to fail each call of a script in turn. Pictures after a
 //! failure are compared on the system's driver.
 
+mod budget;
 mod driver;
 mod host;
 mod memory;

@@ -4,6 +4,7 @@ use crate::driver::{Driver, Fault};
 use crate::shapes;
 use ash::vk;
 use glam::{DAffine3, DVec2, DVec3};
+use selvedge::gpu::LowerLimits;
 use selvedge::headless::{HeadlessDevice, HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, LoopAt, Model};
 use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
@@ -21,7 +22,11 @@ fn bits(picture: &Picture) -> (Vec<[u8; 4]>, Vec<u32>) {
 }
 
 fn opened(driver: &Driver) -> HeadlessRenderer {
-    let device = HeadlessDevice::of_entry(driver.entry(), &HeadlessOptions::default()).unwrap();
+    limited(driver, LowerLimits::NONE)
+}
+
+fn limited(driver: &Driver, lower: LowerLimits) -> HeadlessRenderer {
+    let device = HeadlessDevice::of_entry(driver.entry(), &HeadlessOptions::default(), lower).unwrap();
     HeadlessRenderer::on(device).unwrap()
 }
 
@@ -84,6 +89,36 @@ fn memory_that_ends_once_leaves_no_mark() {
         draw(&mut renderer, &camera).unwrap();
         renderer.edit_loop(AT, next).unwrap();
         failing(&mut renderer, turn, &of_after);
+    }
+    drop(renderer);
+    assert!(driver.living().is_empty(), "{:?}", driver.living());
+}
+
+/// Little staging memory: several frames copy the scene, and memory ends in each of them.
+#[test]
+fn memory_that_ends_amid_the_copies_leaves_no_mark() {
+    let driver = Driver::new(false);
+    let [model, _] = edited();
+    let camera = Camera::around(model.control_bounds(), DVec3::new(0.3, -0.6, 1.1), DVec3::Z, 0.6, SIZE);
+    let draw = |renderer: &mut HeadlessRenderer| draw(renderer, &camera).map(|picture| bits(&picture));
+    let mut whole = opened(&driver);
+    whole.upload_with(&model, editable()).unwrap();
+    let right = draw(&mut whole).unwrap();
+    drop(whole);
+    let mut renderer = limited(&driver, LowerLimits { staging: Some(256), ..LowerLimits::NONE });
+    renderer.upload_with(&model, editable()).unwrap();
+    driver.plan(None);
+    assert!(draw(&mut renderer).as_ref() == Ok(&right));
+    let frames = driver.calls()["vkQueueSubmit2"];
+    assert!(frames > 3, "{frames} frames");
+    for (call, nth) in turns(driver.calls()) {
+        renderer.upload_with(&model, editable()).unwrap();
+        let fault = Fault { call, nth, result: vk::Result::ERROR_OUT_OF_DEVICE_MEMORY };
+        driver.plan(Some(fault));
+        let failed = draw(&mut renderer);
+        assert_eq!(driver.injected(), 1, "{fault:?}");
+        driver.plan(None);
+        assert!(draw(&mut renderer).as_ref() == Ok(&right), "another picture after {fault:?}, {:?}", failed.err());
     }
     drop(renderer);
     assert!(driver.living().is_empty(), "{:?}", driver.living());

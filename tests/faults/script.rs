@@ -4,7 +4,7 @@ use crate::driver::{Driver, Fault};
 use crate::{memory, shapes};
 use ash::vk;
 use glam::DVec3;
-use selvedge::gpu::{GpuError, MemoryOwner};
+use selvedge::gpu::{GpuError, LowerLimits, MemoryOwner};
 use selvedge::headless::{HeadlessDevice, HeadlessError, HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, LoopAt, Model};
 use selvedge::picture::{FrameSettings, Outputs, SceneSettings};
@@ -47,7 +47,7 @@ impl Script {
 
     fn open(&self, driver: &Driver) -> Result<HeadlessRenderer, HeadlessError> {
         let options = HeadlessOptions { pipeline_folder: Some(self.folder.clone()), ..HeadlessOptions::default() };
-        HeadlessRenderer::on(HeadlessDevice::of_entry(driver.entry(), &options)?)
+        HeadlessRenderer::on(HeadlessDevice::of_entry(driver.entry(), &options, LowerLimits::NONE)?)
     }
 
     fn upload(&self, renderer: &mut HeadlessRenderer) -> Result<(), HeadlessError> {

@@ -38,6 +38,7 @@ mod objects;
 mod off_centre;
 mod operands;
 mod picks;
+mod pieces;
 mod real_solids;
 mod regular;
 mod room;

@@ -39,7 +39,7 @@ fn bytes_are_counted_in_their_pool() {
     assert!((640 * 480 * 4..640 * 480 * 4 * 11 / 10).contains(&bytes(Pool::Transient)));
     assert_eq!(bytes(Pool::Ring), 0);
     drop((scene, depth));
-    assert_eq!(device.device().pool_bytes().map(|(_, bytes)| bytes), [0; 3]);
+    assert_eq!(device.device().pool_bytes().map(|(_, bytes)| bytes), [0; 4]);
     assert_silent(device);
 }
 
@@ -161,6 +161,7 @@ fn more_than_the_budget_is_refused_before_it_is_allocated() {
     assert!(*bytes >= MIB + MIB / 2 && refused.is_out_of_memory() && refused.to_string().contains("smaller picture"));
     assert_eq!(device.pool_bytes().iter().map(|(_, bytes)| bytes).sum::<u64>(), taken, "nothing was allocated");
     assert_eq!(device.objects(), ["first"]);
+    assert!(device.memory_report().taken <= 2 * MIB, "blocks are no larger than the budget");
     let image = ImageInfo {
         name: "image",
         size: (1024, 1024),
@@ -171,6 +172,29 @@ fn more_than_the_budget_is_refused_before_it_is_allocated() {
     assert!(matches!(Image::new(device, &image), Err(GpuError::OverBudget { .. })), "images are counted, too");
     drop(first);
     drop(make("second", MIB + MIB / 2).expect("there is room now"));
+    assert_silent(watched);
+}
+
+/// Buffers share blocks of memory. A larger one has a block of its own, which goes with it.
+#[test]
+fn blocks_are_shared_and_given_back() {
+    const BYTES: u64 = 1 << 16;
+    let watched = watched();
+    let device = watched.device();
+    let make = |name, bytes| Buffer::storage(device, Pool::Transient, name, bytes).unwrap();
+    let first = make("first", BYTES);
+    let one = device.memory_report();
+    let more: Vec<_> = (0..50).map(|_| make("more", BYTES)).collect();
+    let many = device.memory_report();
+    assert_eq!(many.taken, one.taken);
+    assert!(one.used >= BYTES && many.used >= 51 * BYTES && many.used <= many.taken, "{many:?}");
+    let large = make("large", one.taken + 1);
+    assert!(device.memory_report().taken > 2 * one.taken);
+    drop(large);
+    assert_eq!(device.memory_report(), many);
+    drop((first, more));
+    let empty = device.memory_report();
+    assert_eq!((empty.taken, empty.used), (one.taken, 0), "one block is kept");
     assert_silent(watched);
 }
 

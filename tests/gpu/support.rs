@@ -21,9 +21,10 @@ pub fn assert_silent(device: HeadlessDevice) {
 pub fn upload<T: Pod>(device: &HeadlessDevice, name: &str, data: &[T]) -> Buffer {
     let record = |cmd: &Commands<'_>| {
         let mut uploads = Uploads::new();
-        let buffer = uploads.buffer(cmd, Pool::Transient, name, Buffer::INDIRECT, data).unwrap();
-        uploads.finish(cmd, Access::COMPUTE_READ);
-        (buffer, uploads)
+        let buffer = uploads.buffer(cmd.device(), Pool::Transient, name, Buffer::INDIRECT, data).unwrap();
+        let staging = uploads.record(cmd, name, u64::MAX).unwrap();
+        staging.finish(cmd, Access::COMPUTE_READ);
+        (buffer, staging)
     };
     device.submit(record).unwrap().0
 }

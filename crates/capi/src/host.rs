@@ -10,10 +10,9 @@ use crate::border::{Failure, SelvedgeStatus, Sized, argument, border, free, give
 use crate::model::SelvedgeModel;
 use crate::renderer::{NO_VIEW, SelvedgeView};
 use glam::{DAffine3, DVec3};
+use selvedge::ash::vk;
 use selvedge::ash::vk::Handle;
-use selvedge::ash::{self, vk};
-use selvedge::gpu::{HostDevice, Image, Requirements};
-use selvedge::gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use selvedge::gpu::{HostDevice, Image, RawDevice, Requirements, load_instance};
 use selvedge::model::Model;
 use selvedge::picture::Outputs;
 use selvedge::renderer::{Aovs, FrameInput, Renderer, TargetFormats, Targets};
@@ -105,7 +104,8 @@ pub struct SelvedgeReport {
     pub struct_size: usize,
     /// 1: a frame was recorded into the slot.
     pub recorded: u32,
-    /// 1: the frame is whole. 0: a list was too short; the next frame recorded into the slot has room for all of it.
+    /// 1: the frame is whole. 0: a list was too short, and the next frame recorded into the slot has room for all of it; or
+    /// a part of a large model was copied first, and the next frames copy the rest.
     pub complete: u32,
     /// Places where the frame could not keep the promise of accuracy.
     pub clamps: u64,
@@ -113,12 +113,10 @@ pub struct SelvedgeReport {
 
 /// A renderer on the host's device. One thread uses it at a time.
 pub struct SelvedgeHost {
-    // fields are dropped in this order: the renderer returns its memory to the allocator, which comes last
     renderer: Mutex<Renderer>,
     model: Mutex<Option<Arc<Model>>>,
     formats: TargetFormats,
     slots: usize,
-    _allocator: Arc<Mutex<Allocator>>,
 }
 
 const NO_VULKAN: SelvedgeVulkan = SelvedgeVulkan {
@@ -165,25 +163,19 @@ fn render(error: impl std::fmt::Display) -> Failure {
 }
 
 impl SelvedgeVulkan {
-    /// The instance's functions.
-    ///
-    /// # Safety
-    /// The function is the loader's, and the instance is alive.
-    unsafe fn instance(&self) -> Result<ash::Instance, Failure> {
+    /// The handles; that of the device may be null.
+    fn raw(&self) -> Result<RawDevice, Failure> {
         let function = self.get_instance_proc_addr.ok_or_else(|| argument("get_instance_proc_addr is null"))?;
         if self.instance.is_null() || self.physical_device.is_null() {
             return Err(argument("the instance or the physical device is a null handle"));
         }
-        // SAFETY: a dispatchable handle is a pointer; both functions take it and a text, and return a function
-        let get_instance_proc_addr =
-            unsafe { std::mem::transmute::<*const c_void, vk::PFN_vkGetInstanceProcAddr>(function as *const c_void) };
-        let entry = ash::StaticFn { get_instance_proc_addr };
-        // SAFETY: as the caller promises
-        Ok(unsafe { ash::Instance::load(&entry, vk::Instance::from_raw(self.instance as u64)) })
-    }
-
-    fn physical(&self) -> vk::PhysicalDevice {
-        vk::PhysicalDevice::from_raw(self.physical_device as u64)
+        Ok(RawDevice {
+            get_instance_proc_addr: function as *const c_void,
+            instance: self.instance as u64,
+            physical: self.physical_device as u64,
+            device: self.device as u64,
+            queue_family: self.queue_family,
+        })
     }
 }
 
@@ -197,8 +189,9 @@ pub unsafe extern "C" fn selvedge_vulkan_missing(vulkan: *const SelvedgeVulkan) 
     border(|| {
         // SAFETY: as the caller promises
         let missing = unsafe {
-            let vulkan = taken(vulkan, NO_VULKAN)?;
-            Requirements::missing(&vulkan.instance()?, vulkan.physical())
+            let raw = taken(vulkan, NO_VULKAN)?.raw()?;
+            let instance = load_instance(raw.get_instance_proc_addr, raw.instance);
+            Requirements::missing(&instance, vk::PhysicalDevice::from_raw(raw.physical))
         };
         if missing.is_empty() {
             return Ok(());
@@ -247,16 +240,14 @@ pub unsafe extern "C" fn selvedge_host_new(
     border(|| {
         // SAFETY: as the caller promises
         let (place, vulkan) = unsafe { (place(host)?, taken(vulkan, NO_VULKAN)?) };
-        // SAFETY: as the caller promises
-        let instance = unsafe { vulkan.instance() }?;
+        let raw = vulkan.raw()?;
         if vulkan.device.is_null() {
             return Err(argument("the device is a null handle"));
         }
-        let physical = vulkan.physical();
         // SAFETY: as the caller promises
-        let device = unsafe { ash::Device::load(instance.fp_v1_0(), vk::Device::from_raw(vulkan.device as u64)) };
+        let lent = unsafe { HostDevice::from_raw(raw) };
         // SAFETY: as the caller promises
-        let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
+        let families = unsafe { lent.instance.get_physical_device_queue_family_properties(lent.physical) };
         let family = families.get(vulkan.queue_family as usize);
         if !family.is_some_and(|f| f.queue_flags.contains(Requirements::QUEUE_FLAGS)) {
             return Err(argument(format!("queue family {} is not one for graphics and compute", vulkan.queue_family)));
@@ -268,31 +259,11 @@ pub unsafe extern "C" fn selvedge_host_new(
             return Err(argument("colour_format is VK_FORMAT_UNDEFINED"));
         }
         let formats = TargetFormats { colour: format(vulkan.colour_format), depth, outputs };
-        let allocator = Allocator::new(&AllocatorCreateDesc {
-            instance: instance.clone(),
-            device: device.clone(),
-            physical_device: physical,
-            debug_settings: Default::default(),
-            buffer_device_address: false,
-            allocation_sizes: Default::default(),
-        });
-        let allocator = Arc::new(Mutex::new(allocator.map_err(render)?));
-        let lent = HostDevice {
-            instance: &instance,
-            physical,
-            device,
-            queue_family: vulkan.queue_family,
-            allocator: Arc::clone(&allocator),
-            debug_names: false,
-            pipeline_statistics: false,
-            pipeline_cache: vk::PipelineCache::null(),
-            memory_budget: None,
-        };
         let slots = if vulkan.slots == 0 { 2 } else { vulkan.slots as usize };
         // SAFETY: as the caller promises
         let renderer = unsafe { Renderer::new(lent, formats, slots) }.map_err(render)?;
         let (renderer, model) = (Mutex::new(renderer), Mutex::default());
-        *place = Box::into_raw(Box::new(SelvedgeHost { renderer, model, formats, slots, _allocator: allocator }));
+        *place = Box::into_raw(Box::new(SelvedgeHost { renderer, model, formats, slots }));
         Ok(())
     })
 }

@@ -78,7 +78,7 @@ fn targets(device: &Device, data: &SceneData, formats: resolve::Formats) -> Resu
 }
 
 /// Depth, face, (u, v) and normal of pixels without a surface.
-const NOWHERE: [Load; 4] = [
+pub(crate) const NOWHERE: [Load; 4] = [
     Load::ColourF32([f32::INFINITY; 4]),
     Load::ColourU32([0; 4]),
     Load::ColourF32([f32::NAN; 4]),

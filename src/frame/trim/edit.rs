@@ -7,17 +7,19 @@
 //! ```
 
 use crate::frame::Frame;
-use crate::gpu::{Access, Buffer, Commands, GpuError, Uploads, barrier};
+use crate::gpu::{Access, Commands, GpuError, Staging, Uploads, barrier};
 use crate::scene::{Array, Scene, Write};
 
 impl Frame<'_> {
-    /// Records the copies. The returned [`Uploads`], and the arrays that larger ones replaced, must live until the GPU
-    /// has made them. After an error the scene is as it was.
+    /// Records copies of the first bytes of the writes, at most `most`. The returned [`Staging`], and the arrays that
+    /// larger ones replaced, must live until the GPU has made them. After an error the scene is as it was. Writes to
+    /// arrays that the scene does not have are passed over.
     pub(crate) fn edit<'w>(
         cmd: &Commands<'_>,
         scene: &mut Scene,
         writes: impl Iterator<Item = &'w Write> + Clone,
-    ) -> Result<(Uploads, Vec<Array>), GpuError> {
+        most: u64,
+    ) -> Result<(Staging, Vec<Array>), GpuError> {
         let larger = scene.larger(writes.clone())?;
         let mut uploads = Uploads::new();
         let reads = Access::COMPUTE_READ | Access::VERTEX_READ | Access::FRAGMENT_READ;
@@ -36,11 +38,12 @@ impl Frame<'_> {
             barrier::memory(cmd, copied, copied);
         }
         let target = |write: &Write| larger.get(&write.to).map(Array::buffer).or_else(|| scene.buffer(write.to));
-        let copies = writes.filter_map(|w| Some((target(w)?, w.offset, w.bytes.as_slice())));
-        let copies: Vec<(&Buffer, u64, &[u8])> = copies.collect();
-        uploads.scatter(cmd, "edits", &copies)?;
-        uploads.finish(cmd, reads);
+        for (target, write) in writes.filter_map(|write| Some((target(write)?, write))) {
+            uploads.write(target, write.offset, &write.bytes);
+        }
+        let staging = uploads.record(cmd, "edits", most)?;
+        staging.finish(cmd, reads);
         let replaced = larger.into_iter().map(|(of, array)| scene.replace(of, array)).collect();
-        Ok((uploads, replaced))
+        Ok((staging, replaced))
     }
 }

@@ -103,7 +103,8 @@ fn a_boolean_solid_hides_details_and_has_an_outline() {
 /// A mesh whose vertices are out of the picture hides the block behind it.
 #[test]
 fn a_mesh_hides_details() {
-    let corner = |k: u32| DVec3::new(5.0, if k % 2 == 0 { -100.0 } else { 100.0 }, if k < 2 { -100.0 } else { 100.0 });
+    let corner =
+        |k: u32| DVec3::new(5.0, if k.is_multiple_of(2) { -100.0 } else { 100.0 }, if k < 2 { -100.0 } else { 100.0 });
     let plate = Mesh::new(7, (0..4).map(corner).collect(), vec![[0, 1, 3], [0, 3, 2]], Vec::new()).unwrap();
     let plate = Part { meshes: vec![plate], ..Part::default() };
     let model = placed(vec![body(-DVec3::ONE, DVec3::ONE), (plate, DAffine3::IDENTITY)]);

@@ -7,7 +7,7 @@ use super::ViewError;
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use selvedge::ash;
-use selvedge::gpu::{HostDevice, Requirements};
+use selvedge::gpu::{GpuAllocator, HostDevice, Requirements};
 use selvedge::gpu_allocator;
 use std::ffi::{CStr, c_void};
 use std::mem::ManuallyDrop;
@@ -128,13 +128,13 @@ impl Context {
     }
 
     /// The device, lent to the engine.
-    pub fn lend(&self) -> HostDevice<'_> {
+    pub fn lend(&self) -> HostDevice {
         HostDevice {
-            instance: &self.instance,
+            instance: self.instance.clone(),
             physical: self.physical,
             device: self.device.clone(),
             queue_family: self.family,
-            allocator: Arc::clone(&self.allocator),
+            allocator: Arc::new(GpuAllocator::new(Arc::clone(&self.allocator))),
             debug_names: self.debug.is_some(),
             pipeline_statistics: false,
             pipeline_cache: vk::PipelineCache::null(),

@@ -45,16 +45,20 @@ impl Screen {
     }
 
     fn drawn(&self, picture: &mut Picture<'_>, targets: &Targets, to: vk::Buffer) -> Result<(), Failure> {
-        for _ in 0..MOST_TRIES {
+        let mut tries = 0;
+        while tries < MOST_TRIES {
             self.begin()?;
             let again =
                 Picture { renderer: &mut *picture.renderer, camera: picture.camera, settings: picture.settings };
             self.record_into(again, targets).map_err(Failure::Picture)?;
             targets.copy_all(&self.context, to, IMAGES);
             self.submit_and_wait()?;
-            if picture.renderer.report(0).map_err(ViewError::from)?.is_some_and(|report| report.complete) {
+            let report = picture.renderer.report(0).map_err(ViewError::from)?;
+            if report.as_ref().is_some_and(|report| report.complete) {
                 return Ok(());
             }
+            // a frame that copied a part of the scene tried nothing
+            tries += usize::from(report.is_none_or(|report| report.waiting.is_none()));
         }
         Err(ViewError::Memory("a picture of this size never had enough room".to_owned()).into())
     }
