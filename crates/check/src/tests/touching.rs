@@ -33,9 +33,12 @@ fn stacked(mut part: Part, lift: f64) -> Model {
     Model { parts: vec![block, part], instances, ..Model::default() }
 }
 
-/// A block and a cylinder that stand on a plate, the number of their lower face, and the way outwards from their
-/// footprint to a point beside it.
-fn parts() -> [(Part, u32, fn(DVec2) -> DVec2); 2] {
+/// A part that stands on a plate, the number of its lower face, and the way outwards from its footprint to a point
+/// beside it.
+type Standing = (Part, u32, fn(DVec2) -> DVec2);
+
+/// A block and a cylinder.
+fn parts() -> [Standing; 2] {
     let block = bodies::block(DVec3::new(-0.3, -0.3, 0.0), DVec3::new(0.3, 0.3, 0.4)).unwrap().part;
     let cylinder = bodies::cylinder(0.3, 0.4).unwrap().part;
     let beside_block: fn(DVec2) -> DVec2 = |p| p - p.clamp(DVec2::splat(-0.3), DVec2::splat(0.3));
