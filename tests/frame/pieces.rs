@@ -72,8 +72,8 @@ fn edits_in_pieces_draw_the_same() {
             renderer.set_transform(nth, step(2)).unwrap();
             (0..40).for_each(|nth| renderer.set_visible(nth, nth % 3 > 0).unwrap());
         }),
-        ("a globe", |renderer| {
-            renderer.add(&shapes::globe()).unwrap();
+        ("a cube", |renderer| {
+            renderer.add(&shapes::cube()).unwrap();
         }),
     ];
     for (what, edit) in edits {
