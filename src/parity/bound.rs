@@ -97,7 +97,7 @@ fn parity_of_what_looks_away() {
         let share = left_out().count() as f64 / with.len() as f64;
         assert!((0.15..0.5).contains(&share), "{share} of the patches are left out");
         for patch_instance in left_out() {
-            assert!(faces_away(case, camera, patch_instance), "patch_instance {patch_instance}");
+            assert!(faces_away(case, camera, patch_instance), "patch instance {patch_instance}");
         }
     }
     let case = &cases[1].1;

@@ -65,7 +65,7 @@ fn compare(gpu: &Gpu, given: &View, expected: &View) -> Result<(), Mismatch> {
     let frame = gpu.upload("frame", &[given.frame]);
     let views = gpu.upload("views", &given.views);
     let [piece_instances, pieces] =
-        [gpu.upload("piece_instances", &edges.piece_instances), gpu.upload("pieces", &edges.pieces)];
+        [gpu.upload("piece instances", &edges.piece_instances), gpu.upload("pieces", &edges.pieces)];
     let points = gpu.upload_texels("points", &edges.points, Texel::F32x4);
     let lines = gpu.upload("lines", &edges.lines);
     let (twin, clamps) = divide(&expected.frame, &expected.given());

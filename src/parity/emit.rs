@@ -26,7 +26,7 @@ fn compare(gpu: &Gpu, frame: &Frame, given: &Chain, expected: &Chain) -> Result<
         sub_patches: &sub_patches,
         draws: &draws,
         counters: &counters,
-        in_sight: &gpu.upload("patch_instances in sight", &[PatchRun::default()]),
+        in_sight: &gpu.upload("patch instances in sight", &[PatchRun::default()]),
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, frame.patch_instances_in_sight));
     let (mut twin_list, mut twin_draws, mut twin_counters) = (list, empty, Counters::default());

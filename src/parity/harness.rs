@@ -202,13 +202,13 @@ impl SceneBuffers {
             faces: gpu.upload_texels("faces", &d.faces, Texel::U32x4),
             patches: gpu.upload("patches", &d.patches),
             points: gpu.upload_texels("points", &d.points, Texel::F32x4),
-            patch_instances: gpu.upload("patch_instances", &d.patch_instances),
+            patch_instances: gpu.upload("patch instances", &d.patch_instances),
             cells: gpu.upload("cells", &d.cells),
             cell_instances: gpu.upload("cell instances", &d.cell_instances),
             curves: gpu.upload_texels("curves", &d.curves, Texel::U32x4),
             curve_points: gpu.upload_texels("curve points", &d.curve_points, Texel::Numbers),
             curve_instances: gpu.upload_texels("curve instances", &d.curve_instances, Texel::Words),
-            in_sight: gpu.upload("patch_instances in sight", &case.runs),
+            in_sight: gpu.upload("patch instances in sight", &case.runs),
         }
     }
 

@@ -140,7 +140,7 @@ impl Slot {
     fn write_in_sight(&mut self, device: &Device, in_sight: &InSight) -> Result<(), GpuError> {
         let bytes = size_of_val(in_sight.runs.as_slice()) as u64;
         if self.in_sight.as_ref().is_none_or(|b| b.bytes() < bytes) {
-            let made = upload_buffer(device, "patch_instances in sight", bytes.next_power_of_two())?;
+            let made = upload_buffer(device, "patch instances in sight", bytes.next_power_of_two())?;
             self.retired.extend(self.in_sight.replace(made).map(Retired::Buffer));
         }
         if let Some(buffer) = &mut self.in_sight {

@@ -237,7 +237,7 @@ impl Scene {
             faces: read_both(&mut uploads, device, "faces", &data.faces, Texel::U32x4)?,
             face_instances: read_both(&mut uploads, device, "face instances", &data.face_instances, Texel::U32x4)?,
             instances: read_both(&mut uploads, device, "instances", &data.instances, Texel::U32x4)?,
-            patch_instances: read_both(&mut uploads, device, "patch_instances", &data.patch_instances, Texel::Words)?,
+            patch_instances: read_both(&mut uploads, device, "patch instances", &data.patch_instances, Texel::Words)?,
             #[cfg(feature = "baselines")]
             slefes: match &data.division {
                 Division::Bound => None,

@@ -68,7 +68,7 @@ fn what_is_left_out_pass_bound_would_leave_out() {
         assert_eq!(
             told.iter().filter(|told| **told).count(),
             in_sight.patch_instances as usize,
-            "each patch_instance once"
+            "each patch instance once"
         );
         let lost = taus.iter().zip(&told).filter(|(tau, told)| **tau != 0 && !**told).count();
         assert_eq!(lost, 0, "of {} in sight", in_sight.patch_instances);
