@@ -90,7 +90,7 @@ fn only_a_scene_with_meshes_has_what_they_need() {
         for name in needed {
             assert_eq!(objects.iter().any(|o| o == name), has, "{name} in {}: {objects:?}", shape.name);
         }
-        assert_eq!(objects.iter().any(|o| o == "visibility of others"), has && shape.trimmed, "{}", shape.name);
+        assert_eq!(objects.iter().any(|o| o == "visibility without patches"), has && shape.trimmed, "{}", shape.name);
         assert_eq!(objects.iter().any(|o| o.contains("mesh")), has, "{}: {objects:?}", shape.name);
         assert_silent(renderer);
     }
@@ -164,7 +164,7 @@ fn only_a_scene_with_solids_has_what_they_need() {
         assert!(objects.iter().any(|o| o.starts_with(name)), "{name}: {objects:?}");
     }
     assert!(!objects.iter().any(|name| is_of_trimming(name) || name.contains("mesh")), "{objects:?}");
-    assert!(!objects.iter().any(|name| name == "visibility of others"), "{objects:?}");
+    assert!(!objects.iter().any(|name| name == "visibility without patches"), "{objects:?}");
     let of_patches = ["bound", "split", "emit", "seen squares", "resolve (polynomial", "resolve (rational"];
     assert!(!objects.iter().any(|o| of_patches.iter().any(|name| o.starts_with(name))), "{objects:?}");
     assert!(!objects.iter().any(|o| o.starts_with("resolve (background")), "{objects:?}");

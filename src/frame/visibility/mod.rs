@@ -67,7 +67,7 @@ impl Visibility {
         let apart = counts.trim.is_some() && (counts.mesh_instances > 0 || counts.leaves > 0);
         // pixels are read back
         let usage = DRAWN_AND_READ | vk::ImageUsageFlags::TRANSFER_SRC;
-        let meshes_and_solids = || room.image("visibility of meshes and solids", VISIBILITY_FORMAT, usage);
+        let meshes_and_solids = || room.image("visibility without patches", VISIBILITY_FORMAT, usage);
         Ok(Self {
             passes: Arc::clone(passes),
             image: room.image("visibility", VISIBILITY_FORMAT, usage)?,
