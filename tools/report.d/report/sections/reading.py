@@ -36,7 +36,7 @@ def measure(context):
         return [1e3 * one["read_s"] for one in found]
 
     ours = lambda: [context.program.read_ms(path) for path in there.values()]
-    results = rounds({"ours": ours, "theirs": theirs}, context.pick(30, 300), most=context.pick(5, 9))
+    results = rounds({"ours": ours, "theirs": theirs}, context.pick(30, 150), most=context.pick(5, 9))
     if isinstance(results["ours"], Unmeasurable):
         raise results["ours"]
     for k, name in enumerate(there):

@@ -147,7 +147,7 @@ class Case:
         width, height = self.camera["size"]
         _, problem, took = run(
             ["povray", f"+I{file}", f"+O{picture}", f"+W{width}", f"+H{height}", "-D", "-A", "+FN8"],
-            self.context.pick(60, 600),
+            self.context.pick(60, 300),
         )
         if problem or not picture.exists():
             raise Unmeasurable(f"POV-Ray drew nothing: {problem or 'no picture'}")
@@ -161,7 +161,7 @@ class Case:
             "Manifold": self.manifold,
             "POV-Ray": self.povray,
         }
-        results = rounds(competitors, self.context.pick(25, 300), most=self.context.pick(3, 5))
+        results = rounds(competitors, self.context.pick(25, 90), most=self.context.pick(3, 5))
         if isinstance(results["selvedge"], Unmeasurable):
             raise results["selvedge"]
         errors, judged = self.errors(section)

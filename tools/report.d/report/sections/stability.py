@@ -98,7 +98,7 @@ def soak(context, section, judge):
     rows = []
     for kind, made in kinds.items():
         context.say(f"random {kind}")
-        end, number, total = time.monotonic() + context.pick(12, 180), SEED, Total()
+        end, number, total = time.monotonic() + context.pick(12, 120), SEED, Total()
         wrong, failures = [], []
         while time.monotonic() < end:
             scene, parts = made(random.Random(number))

@@ -146,7 +146,7 @@ class Case:
                 self.model, self.camera, "--tolerance", tolerance, images=["face"], stats=False
             )
             pictures[f"ours {tolerance}"] = {"path": str(drawn["face"]), "own": True}
-        seconds = self.context.pick(6, 15)
+        seconds = self.context.pick(6, 8)
         whole = {"whole": {"camera": self.camera, "pictures": pictures}}
         job = {"model": str(self.model), "views": whole, "seconds": seconds}
         (head,) = self.context.peers.results("kernel", job, limit_s=60 + seconds * (1 + len(pictures)))
@@ -154,7 +154,7 @@ class Case:
 
     def into(self, section):
         """Measures, and adds the results."""
-        seconds = self.context.pick(45, 180)
+        seconds = self.context.pick(45, 110)
         results = rounds(
             {"ours": self.ours, "meshed": self.meshed, "F3D": self.f3d}, seconds, most=self.context.pick(3, 5)
         )

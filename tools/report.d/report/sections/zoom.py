@@ -75,7 +75,7 @@ def measure(context):
         return found
 
     context.say("in turn")
-    results = rounds({"ours": ours, "meshed": meshed}, context.pick(30, 600), least=3, most=least)
+    results = rounds({"ours": ours, "meshed": meshed}, context.pick(30, 200), least=3, most=least)
     if isinstance(results["ours"], Unmeasurable):
         raise results["ours"]
     errors = kernel_errors(context, model, cameras, results["meshed"])
@@ -102,7 +102,7 @@ def kernel_errors(context, model, cameras, meshed):
             if (kind, name) in meshed[0]:
                 pictures[kind] = {"path": meshed[0][kind, name]["ids"], "own": False}
         wanted[name] = {"camera": camera, "pictures": pictures}
-    seconds = context.pick(4, 60)
+    seconds = context.pick(4, 20)
     job = {"model": str(model), "views": wanted, "seconds": seconds}
     try:
         found = context.peers.results("kernel", job, limit_s=60 + 4 * seconds * len(wanted))
