@@ -255,6 +255,8 @@ impl Frame<'_> {
             }
         }
         if let (Some(layers), Some(solids)) = (&stages.transparency, self.solids()) {
+            // without layers, nothing is drawn into the image behind them
+            let written = if behind.is_some() { written } else { Access::COLOUR_WRITE };
             times.scope(cmd, "layers", || layers.record(self, cmd, &solids, drawing, written));
         }
         let counters = &stages.common.counters;
