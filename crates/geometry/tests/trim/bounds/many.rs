@@ -57,8 +57,8 @@ fn a_plane_with_many_holes_has_the_box_of_its_border_however_it_is_placed() {
     assert_support(&plane, support, 1e-12);
 }
 
-/// `(x, y, -x²)`, highest along the y axis, which ends in the middle of two tongues. Beside them notches cancel the border
-/// where it is tested whether the face is there, so both ends of the face are left out.
+/// `(x, y, -x²)`, highest along the y axis, which ends in the middle of two tongues. Beside them notches cancel the
+/// border where it is tested whether the face is there, so both ends of the face are left out.
 #[test]
 fn a_ruled_face_is_searched_inside_where_most_of_its_ends_is_cancelled() {
     let point = |k: usize| DVec4::new([-1.0, 1.0, 3.0][k % 3], [0.0, 4.0][k / 3], [-1.0, 3.0, -9.0][k % 3], 1.0);
