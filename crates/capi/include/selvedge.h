@@ -211,7 +211,8 @@ typedef struct SelvedgeReport {
     size_t struct_size;
     // 1: a frame was recorded into the slot.
     uint32_t recorded;
-    // 1: the frame is whole. 0: a list was too short; the next frame recorded into the slot has room for all of it.
+    // 1: the frame is whole. 0: a list was too short, and the next frame recorded into the slot has room for all of it; or
+    // a part of a large model was copied first, and the next frames copy the rest.
     uint32_t complete;
     // Places where the frame could not keep the promise of accuracy.
     uint64_t clamps;
