@@ -364,7 +364,7 @@ impl Renderer {
         self.device.objects()
     }
 
-    /// The bytes of the memory that the allocator has taken, and of those that are in use.
+    /// The bytes that the allocator has taken from the device, and the bytes in use.
     pub fn memory_report(&self) -> MemoryReport {
         self.device.memory_report()
     }

@@ -138,7 +138,7 @@ impl State {
 impl Block {
     fn piece(&mut self, key: u64, needs: vk::MemoryRequirements) -> Option<Allocation> {
         let offset = self.free.take(needs.size, needs.alignment)?;
-        // SAFETY: the offset lies within the block, all of which is mapped.
+        // SAFETY: the whole block is mapped, and the offset lies within it.
         let mapped = self.mapped.map(|Mapped(start)| unsafe { start.add(offset as usize) });
         Some(Allocation { memory: self.memory, offset, size: needs.size, mapped, key })
     }
@@ -272,7 +272,7 @@ mod tests {
 
     #[test]
     fn memory_types_come_in_order_of_preference() {
-        // as drivers list them: a type comes before those that have all of its flags and more
+        // in the order of a driver's list: if a type has all flags of another and more, it comes later
         let all = memory(&[
             Flags::DEVICE_LOCAL,
             MAPPED,

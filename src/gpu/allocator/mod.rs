@@ -96,8 +96,8 @@ pub enum AllocationError {
 /// A host may count by [`MemoryRequest::pool`] and [`name`](MemoryRequest::name). Several threads may call at a time.
 ///
 /// # Safety
-/// A piece that [`allocate`](Self::allocate) returns belongs to the device, to a memory type of the request and to nobody
-/// else until it is freed. It lies at a multiple of the alignment. If it has an address, all of it is mapped from there,
+/// [`allocate`](Self::allocate) returns memory of the device, of a type that the request allows. No other piece overlaps
+/// it until it is freed. It lies at a multiple of the alignment. If it has an address, all of it is mapped from there,
 /// coherently, and stays so. Pieces for [`MemoryLocation::Upload`] and [`MemoryLocation::ReadBack`] have one.
 pub unsafe trait MemoryAllocator: Send + Sync {
     /// Takes a piece.

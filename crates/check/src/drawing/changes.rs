@@ -1,4 +1,4 @@
-//! Where, between two exact rays, the surface changes that is seen of Boolean solids, and why.
+//! Where the visible surface of Boolean solids changes between two exact rays, and why.
 //!
 //! ```text
 //!   ●─────────×─────●     halved to CLOSE px; on both sides of the change the way is looked at again
@@ -100,7 +100,7 @@ pub(super) struct Changes<'a> {
 }
 
 impl<'a> Changes<'a> {
-    /// `None` in a model without Boolean solids, or with none but those that are seen through.
+    /// `None` in a model without opaque Boolean solids.
     pub fn new(model: &Model, tracer: &'a Tracer, camera: &'a Camera, settings: &DrawingSettings) -> Option<Self> {
         let primitives = tracer.solids.as_ref()?.union().primitives();
         if !primitives.iter().any(Primitive::is_opaque) {
@@ -242,7 +242,7 @@ impl<'a> Changes<'a> {
         (if self.camera.is_perspective() { depth } else { 1.0 }) / self.camera.focal_px().min_element()
     }
 
-    /// What happens between two rays that are as near to each other as none.
+    /// The change between two rays that are [`CLOSE`] to each other.
     fn why(&self, low: &Ray, high: &Ray, probe: &mut Probe<'_>) -> Option<Change> {
         let depth = |ray: &Ray| ray.hit.map_or(f64::INFINITY, |hit| hit.depth);
         let (first, other) = if depth(low) <= depth(high) { (low, high) } else { (high, low) };

@@ -1,4 +1,4 @@
-//! Lines of constant `u` or `v` that edges of a face follow: those that nearly coincide get one number.
+//! Lines of constant `u` or `v` along which edges of a face run. Lines that nearly coincide get one number.
 //!
 //! ```text
 //!   ──●─────────●──●───────────────●──▶ coordinate      a set sorted by value, in periods by the residue: only lines
