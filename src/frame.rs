@@ -143,15 +143,15 @@ impl Frame<'_> {
         self.stages.shading.begin(cmd);
         match &self.stages.samples {
             Some(samples) => {
-                self.unless_view_reused(cmd, || self.make(cmd, times));
+                self.unless_view_reused(cmd, || self.prepare(cmd, times));
                 samples.record(self, cmd, times);
             }
             None => {
                 self.unless_view_reused(cmd, || {
-                    self.make(cmd, times);
-                    self.see(cmd, &mut Scopes::of(times));
+                    self.prepare(cmd, times);
+                    self.visibility(cmd, &mut Scopes::of(times));
                 });
-                self.show(cmd, &mut Scopes::of(times), (self.stages.shading.resolve(), Drawing::Whole), 0);
+                self.shade(cmd, &mut Scopes::of(times), (self.stages.shading.resolve(), Drawing::Whole), 0);
             }
         }
         self.no_thickness(cmd);
@@ -169,7 +169,7 @@ impl Frame<'_> {
     }
 
     /// Makes the input of drawing: the trim table and the divided patches.
-    fn make(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
+    fn prepare(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
         let stages = self.stages;
         self.begin(cmd);
         if let Some(trim) = &stages.trim {
@@ -191,7 +191,7 @@ impl Frame<'_> {
     }
 
     /// Draws the visibility images from the patches and the trim table.
-    fn see(&self, cmd: &Commands<'_>, times: &mut Scopes<'_>) {
+    fn visibility(&self, cmd: &Commands<'_>, times: &mut Scopes<'_>) {
         let stages = self.stages;
         let test = self.trim_test();
         self.clear(cmd);
@@ -217,7 +217,7 @@ impl Frame<'_> {
     }
 
     /// Shades the visible surfaces into `self.colour` and `self.depth`; the `nth` time in this frame.
-    fn show(
+    fn shade(
         &self,
         cmd: &Commands<'_>,
         times: &mut Scopes<'_>,

@@ -43,14 +43,14 @@ shared uint keys[(ROWS + 2) * LANES];
 shared float depths[(ROWS + 2) * LANES];
 shared uint tints[(ROWS + 2) * LANES]; // colours of meshes: roots of linear light, as bytes
 
-// What is seen as one: a placed face, a placed mesh, a side of a solid, OTHER where it is not asked; 0 where nothing
+// What is seen as one: a placed face, a placed mesh, a side of a solid, OTHER where it is not sampled; 0 where nothing
 // is.
 uint key_at(ivec2 at, float depth) {
     uint word = imageLoad(visibility, at).x;
     if (sees_nothing(word) || sees_other(word)) {
         if (depth >= UNSEEN) return 0u;
         if (sees_nothing(word)) word = imageLoad(meshes_and_solids, at).x;
-        if (!is_asked(word)) return OTHER;
+        if (!is_sampled(word)) return OTHER;
         return sees_solid(word) && seen_side(word) >= frame.side_count ? FACET : word;
     }
     // what the host drew hides it
@@ -96,9 +96,9 @@ void main() {
                 step_ = step_ || tints_differ(tints[before], tints[middle]) || tints_differ(tints[behind], tints[middle]);
             }
         }
-        bool asked = key != 0u && key != OTHER;
+        bool sampled = key != 0u && key != OTHER;
         bool crease = SCENE_HAS_MESHES_OR_SOLIDS && (sees_mesh(key) || key == FACET) && step_;
-        if (first.y + row < int(end) && (!alone || asked && jump || crease)) listed |= 1u << row;
+        if (first.y + row < int(end) && (!alone || sampled && jump || crease)) listed |= 1u << row;
     }
     for (; listed != 0u; listed &= listed - 1u) {
         ivec2 at = first + ivec2(0, findLSB(listed));

@@ -22,28 +22,28 @@ layout(scalar, binding = 4) buffer List { BorderPixel list[]; };
 layout(scalar, binding = 5) readonly buffer Grids { BorderGrids grids; };
 layout(scalar, binding = 6) readonly buffer SeenPoints { BorderPoint seen_points[]; };
 
-bool is_asked_at(ivec2 at) {
+bool is_sampled_at(ivec2 at) {
     uint word = imageLoad(visibility, at).x;
-    return is_asked(sees_nothing(word) ? imageLoad(meshes_and_solids, at).x : word);
+    return is_sampled(sees_nothing(word) ? imageLoad(meshes_and_solids, at).x : word);
 }
 
 void main() {
     uint n = thread_number();
     if (n >= grids.count) return;
     ivec2 at = pixel_of(list[n]);
-    uint unasked = 0u; // bits of pixels around
+    uint unsampled = 0u; // bits of pixels around
     for (uint from = 0u; from < AROUND; ++from) {
         ivec2 beside = around(at, from);
-        if (is_in_picture(beside) && !is_asked_at(beside)) unasked |= 1u << from;
+        if (is_in_picture(beside) && !is_sampled_at(beside)) unsampled |= 1u << from;
     }
-    // what is not asked is all over its pixel, but for what lies before it
-    bool own = (unasked >> OWN & 1u) != 0u;
+    // a surface that is not sampled covers its whole pixel, except for what lies before it
+    bool own = (unsampled >> OWN & 1u) != 0u;
     float own_depth = imageLoad(resolved, at).a;
     vec4 sum = vec4(0.0);
     for (uint k = 0u; k < BORDER_POINTS; ++k) {
         BorderPoint seen = seen_points[n * BORDER_POINTS + k];
         uint shown = own && own_depth < UNSEEN && seen.depth >= own_depth ? OWN : seen.shown;
-        sum += shown_at(at, k, shown, unasked);
+        sum += shown_at(at, k, shown, unsampled);
     }
     list[n].mean = packed_mean(sum);
 }

@@ -38,7 +38,7 @@ layout(scalar, binding = 12) readonly buffer List { BorderPixel list[]; };
 layout(scalar, binding = 13) readonly buffer Grids { BorderGrids grids; };
 layout(scalar, binding = 14) buffer SeenPoints { BorderPoint seen_points[]; };
 
-// No pass has asked before: there are neither patches nor meshes.
+// No pass has sampled the points before: there are neither patches nor meshes.
 layout(constant_id = 38) const bool ASKS_FIRST = false;
 const bool SOLIDS_HAVE_BOUNDARY_OPERANDS = false;
 

@@ -1,4 +1,4 @@
-// Which things the points of a pixel at a border are asked for. Needs visible.glsl.
+// Which surfaces are sampled at the points of a border pixel. Needs visible.glsl.
 #ifndef BORDER_KINDS_GLSL
 #define BORDER_KINDS_GLSL
 
@@ -6,7 +6,7 @@
 // solids are as the centre has them.
 layout(constant_id = 13) const bool SOLIDS_HAVE_BOUNDARY_OPERANDS = true;
 
-bool is_asked(uint word) {
+bool is_sampled(uint word) {
     return !sees_nothing(word) && (!SOLIDS_HAVE_BOUNDARY_OPERANDS || !(sees_solid(word) || sees_operand(word)));
 }
 

@@ -77,10 +77,10 @@ bool is_covered(EdgePoint e, ivec2 at) {
     for (int k = 0; k < 5 && !covered; ++k) {
         ivec2 around = k == 4 ? at : first + ivec2(k & 1, k >> 1);
         bool is_inside = all(greaterThanEqual(around, ivec2(0))) && all(lessThan(around, ivec2(frame.size)));
-        bool is_asked = is_inside && (k == 4 || around != at);
+        bool is_read = is_inside && (k == 4 || around != at);
         uvec2 seen = uvec2(0u);
-        if (is_asked) seen = imageLoad(visibility, around).xy;
-        if (SCENE_HAS_MESHES_OR_SOLIDS && is_asked && sees_nothing(seen.x)) {
+        if (is_read) seen = imageLoad(visibility, around).xy;
+        if (SCENE_HAS_MESHES_OR_SOLIDS && is_read && sees_nothing(seen.x)) {
             seen = imageLoad(meshes_and_solids, around).xy;
         }
         if (!sees_nothing(seen.x) && !sees_other(seen.x)) covered = patch_covers(e, seen);

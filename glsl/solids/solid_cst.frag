@@ -32,7 +32,7 @@ layout(scalar, binding = 7) readonly buffer TileEntries { uint tile_entries[]; }
 
 layout(scalar, binding = 10) buffer CountersBuffer { Counters counters; };
 
-layout(location = 0) flat in uint asked;
+layout(location = 0) flat in uint ordered;
 #include "leaf_span.glsl"
 
 layout(location = 0) out uvec2 visible;
@@ -58,7 +58,7 @@ void main() {
     uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
     uint entry = tile_entries[first_of_band(frame) + n];
     if (entry >= EXIT_FALSE) discard; // the same everywhere in the tile
-    uint own = asked & LEAF_OF;
+    uint own = ordered & LEAF_OF;
     Ray ray = eye_ray(frame, gl_FragCoord.xy);
     Span mine = NOTHING;
     uint purpose = OWN;
@@ -76,7 +76,7 @@ void main() {
         if (purpose == WALK && next >= EXIT_FALSE) {
             bool appears = at.before == EXIT_FALSE && at.behind == EXIT_TRUE;
             bool owns = at.before_flipped == EXIT_TRUE || at.behind_flipped == EXIT_FALSE;
-            if (appears && (owns || (asked & UNOWNED) != 0u)) {
+            if (appears && (owns || (ordered & UNOWNED) != 0u)) {
                 purpose = SIDE;
             } else {
                 // the next end between the near plane and the far one

@@ -12,11 +12,11 @@ layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 8) readonly buffer Rects { Rect rects[]; };
 layout(scalar, binding = 9) readonly buffer Order { uint order[]; };
 
-layout(location = 0) flat out uint asked;
+layout(location = 0) flat out uint ordered;
 
 void main() {
-    asked = order[gl_InstanceIndex];
-    Rect rect = rects[asked & LEAF_OF];
+    ordered = order[gl_InstanceIndex];
+    Rect rect = rects[ordered & LEAF_OF];
     bool seen = all(lessThanEqual(rect.first, rect.last));
     gl_Position = seen ? tile_corner(frame, rect, gl_VertexIndex) : OFF_THE_PICTURE;
 }

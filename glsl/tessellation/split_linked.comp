@@ -43,7 +43,7 @@ uint patch_beyond(uint patch_, uint side) {
 }
 
 // The largest tau of other patches along a side; 0 if none of them is drawn.
-uint asked_beyond(uint patch_, uint side) {
+uint tau_beyond(uint patch_, uint side) {
     uint beyond = patch_beyond(patch_, side);
     if (beyond != NO_PATCH) return tau_at(beyond, axis_of(side));
     uint self = 4u * patch_ + side;
@@ -61,7 +61,7 @@ uint asked_beyond(uint patch_, uint side) {
 
 uint splits_of(uint patch_, uint axis) {
     uvec2 sides = sides_of(axis);
-    return splits_for(asked_beyond(patch_, sides.x), tau_at(patch_, axis), asked_beyond(patch_, sides.y));
+    return splits_for(tau_beyond(patch_, sides.x), tau_at(patch_, axis), tau_beyond(patch_, sides.y));
 }
 
 // The most sub-patches along a side, among the other patches that are drawn.
@@ -91,7 +91,7 @@ void main() {
     uint patch_ = patch_instance - instance_of_patch_0;
     for (uint axis = 0u; axis < 2u; ++axis) {
         uvec2 sides = sides_of(axis);
-        uvec2 others = uvec2(asked_beyond(patch_, sides.x), asked_beyond(patch_, sides.y));
+        uvec2 others = uvec2(tau_beyond(patch_, sides.x), tau_beyond(patch_, sides.y));
         uvec2 others_splits = uvec2(splits_beyond(patch_, sides.x), splits_beyond(patch_, sides.y));
         decide(axis, tau_at(patch_, axis), others, others_splits);
     }

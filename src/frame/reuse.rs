@@ -4,7 +4,7 @@
 //!   a new view, an edit, new buffers   ──▶ reset ─▶ trim table ─▶ tessellation ─▶ mesh … gaps ─▶ resolve … layers
 //!                                                   │ counters       ┊            │ counters
 //!                                                   ▼                ┊            ▼
-//!                                             counters of the        ┊      kept counters
+//!                                             counters of the        ┊    stored counters
 //!                                             table │                ┊            │
 //!                                                   │ counters       ┊            │
 //!   a view that the table serves       ──▶ reset ───●───────▶ tessellation ─ …    │ counters
@@ -34,7 +34,7 @@ fn counted() -> Access {
 impl Frame<'_> {
     /// Records the passes of a new view and stores their counters; or restores the counters of the previous frame.
     pub(super) fn unless_view_reused(&self, cmd: &Commands<'_>, record: impl FnOnce()) {
-        self.unless_reused(cmd, (self.reuses_view, &self.stages.common.kept_counters), record);
+        self.unless_reused(cmd, (self.reuses_view, &self.stages.common.counters_of_view), record);
     }
 
     /// The same for the trim table, at the start of a view, when nothing has been counted yet.
@@ -42,23 +42,23 @@ impl Frame<'_> {
         self.unless_reused(cmd, (self.reuses_table, &table.counters), record);
     }
 
-    fn unless_reused(&self, cmd: &Commands<'_>, (is_reused, kept): (bool, &Buffer), record: impl FnOnce()) {
+    fn unless_reused(&self, cmd: &Commands<'_>, (is_reused, stored): (bool, &Buffer), record: impl FnOnce()) {
         let counters = &self.stages.common.counters;
         let bytes = size_of::<Counters>() as u64;
         if is_reused {
             barrier::buffers(cmd, &[(counters, counted(), Access::TRANSFER_WRITE)]);
-            cmd.copy(kept, 0, counters, 0, bytes);
+            cmd.copy(stored, 0, counters, 0, bytes);
             barrier::buffers(cmd, &[(counters, Access::TRANSFER_WRITE, counted())]);
             return;
         }
         record();
         barrier::buffers(cmd, &[(counters, counted(), Access::TRANSFER_READ)]);
-        cmd.copy(counters, 0, kept, 0, bytes);
+        cmd.copy(counters, 0, stored, 0, bytes);
         barrier::buffers(
             cmd,
             &[
                 (counters, Access::TRANSFER_READ, Access::COMPUTE_WRITE),
-                (kept, Access::TRANSFER_WRITE, Access::TRANSFER_READ),
+                (stored, Access::TRANSFER_WRITE, Access::TRANSFER_READ),
             ],
         );
     }

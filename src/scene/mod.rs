@@ -14,6 +14,7 @@
 //! centre of their part, and the transform from there to the eye is composed in `f64` every frame. Patches with very
 //! short sides have a fine net in addition (`fine.rs`).
 
+mod after_upload;
 mod arrays;
 mod cells;
 mod cones;
@@ -28,7 +29,6 @@ mod flatten;
 mod in_sight;
 mod instance;
 mod join;
-mod kept;
 mod link;
 mod mesh;
 mod mixed;

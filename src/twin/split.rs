@@ -114,12 +114,12 @@ impl Part<'_> {
     }
 
     /// The largest tau of other patches along a side; 0 if none of them is drawn.
-    fn asked_beyond(&self, patch: u32, side: u32) -> u32 {
+    fn tau_beyond(&self, patch: u32, side: u32) -> u32 {
         self.most_beyond(patch, side, 0, |patch, axis| self.tau(patch, axis))
     }
 
     fn splits(&self, patch: u32, axis: u32) -> u32 {
-        let [low, high] = sides_of(axis).map(|side| self.asked_beyond(patch, side));
+        let [low, high] = sides_of(axis).map(|side| self.tau_beyond(patch, side));
         splits_for(self.tau(patch, axis).max(low).max(high))
     }
 
@@ -128,7 +128,7 @@ impl Part<'_> {
         let (mut splits, mut inner, mut low, mut high) = ([0; 2], [0; 2], [0; 2], [0; 2]);
         for axis in 0..2 {
             let (a, tau) = (axis as usize, self.tau(patch, axis));
-            let others = sides_of(axis).map(|side| self.asked_beyond(patch, side));
+            let others = sides_of(axis).map(|side| self.tau_beyond(patch, side));
             splits[a] = splits_for(tau.max(others[0]).max(others[1]));
             let asked = tau.max(1);
             inner[a] = if others == [0, 0] { asked } else { asked.next_power_of_two() }.next_multiple_of(splits[a]);

@@ -108,10 +108,10 @@ fn only_a_scene_of_many_patches_knows_which_lie_behind_others() {
     few.instances[3].transform.translation.x += 1e4; // none of them is split
     let default = SceneSettings::default();
     let samples = SceneSettings { samples: Samples::Four, ..default };
-    for (model, settings, is_asked) in [(&few, default, false), (&many, default, true), (&many, samples, false)] {
+    for (model, settings, is_used) in [(&few, default, false), (&many, default, true), (&many, samples, false)] {
         let (renderer, objects) = objects_with(model, settings, Outputs::default());
         let count = objects.iter().filter(|name| is_of_hiding(name)).count();
-        assert_eq!(count, if is_asked { of_hiding.len() + passes.len() } else { 0 }, "{objects:?}");
+        assert_eq!(count, if is_used { of_hiding.len() + passes.len() } else { 0 }, "{objects:?}");
         let adds_up = objects.iter().any(|name| name == "resolve (background, samples)");
         assert_eq!(adds_up, settings == samples, "{objects:?}");
         assert_silent(renderer);

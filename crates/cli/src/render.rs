@@ -27,7 +27,7 @@ use task::{Shot, Task};
 pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let tasks = Task::all(args)?;
     match tasks.as_slice() {
-        [task] if !args.many.is_asked() => alone(args, task),
+        [task] if !args.many.any() => alone(args, task),
         tasks => many::run(args, tasks),
     }
 }

@@ -141,8 +141,8 @@ fn draw(
     by: (Option<&resolve::Resolve>, Drawing),
     nth: u64,
 ) {
-    frame.see(cmd, times);
-    frame.show(cmd, times, by, nth);
+    frame.visibility(cmd, times);
+    frame.shade(cmd, times, by, nth);
 }
 
 /// Before the view is drawn once more, into `colour` again: what one drawing counts is cleared, what the patches

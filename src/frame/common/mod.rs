@@ -40,7 +40,7 @@ pub(crate) struct Common {
     pub draws: Buffer,
     pub counters: Buffer,
     /// The counters as they were after the reusable results; they stay from frame to frame.
-    pub kept_counters: Buffer,
+    pub counters_of_view: Buffer,
     pub sums: Buffer,
 }
 
@@ -51,7 +51,7 @@ impl Common {
             passes: Arc::clone(passes),
             draws: room.indirect::<vk::DrawIndirectCommand>("draws", 2 * room.capacities.tessellation.draws)?,
             counters: room.indirect::<Counters>("counters", 1)?,
-            kept_counters: room.structs::<Counters>("kept counters", 1)?,
+            counters_of_view: room.structs::<Counters>("counters of the view", 1)?,
             sums: room.words("scan sums", scan::block_count(scanned))?,
         })
     }

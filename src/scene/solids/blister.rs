@@ -8,7 +8,7 @@
 use super::SolidData;
 use crate::abi::{LEAF_BOUNDARY, LEAF_NEGATIVE, LEAF_UNBOUNDED};
 use crate::csg::{Blist, Convention, Labels, Tree, TreeError, covering_set};
-use crate::model::{Bounds, Camera, Primitive, outward};
+use crate::model::{Bounds, Camera, Primitive, oriented_outwards};
 use std::ops::Range;
 
 /// The primitive that a switch tests.
@@ -153,7 +153,7 @@ fn weight(primitive: &Primitive) -> f64 {
 
 /// Whether every mesh operand is oriented: rays enter it through triangles that face them and leave through the others.
 pub(super) fn face_outward(data: &SolidData, coincidence: f64) -> bool {
-    data.operands.iter().all(|operand| outward(&operand.primitive, coincidence).is_some())
+    data.operands.iter().all(|operand| oriented_outwards(&operand.primitive, coincidence).is_some())
 }
 
 #[cfg(test)]

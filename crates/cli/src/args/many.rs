@@ -20,8 +20,8 @@ pub struct ManyArgs {
 }
 
 impl ManyArgs {
-    /// Whether any of them was given.
-    pub fn is_asked(&self) -> bool {
+    /// Whether any of these options was given.
+    pub fn any(&self) -> bool {
         self.fail_fast || self.skip_existing || self.manifest.is_some()
     }
 }

@@ -43,7 +43,7 @@ pub use mesh::{Mesh, MeshError};
 pub(crate) use solid::{Boxes, meet};
 pub use solid::{
     CarriedFace, Carrier, Isolated, Primitive, Quadric, Shape, ShapeError, Solid, SolidError, Surface as SolidSurface,
-    SurfaceTable, outward,
+    SurfaceTable, oriented_outwards,
 };
 pub use xray::UnknownName;
 

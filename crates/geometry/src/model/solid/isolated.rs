@@ -11,11 +11,11 @@
 //! closed surface that is oriented outwards and does not cross itself where a triangle faces the eye. So the nearest
 //! such triangle is the result that a list of all crossings would give. This fails within a part that is inside out, or
 //! that lies in the mesh twice. So a mesh whose triangles cross or touch, or that has a shell too many around another
-//! (`embedded.rs`), does not count as isolated, nor does a mesh with two faces back to back, which bound nothing
-//! (`outward.rs`).
+//! (`self_intersection.rs`), does not count as isolated, nor does a mesh with two faces back to back, which bound nothing
+//! (`orientation.rs`).
 
 use super::operands::Operands;
-use super::outward::outward;
+use super::orientation::oriented_outwards;
 use super::reach::{self, Boxes};
 use super::{Primitive, Shape, Solid, SolidError, nearby::Nearby};
 use crate::csg::Node;
@@ -42,24 +42,24 @@ impl Isolated {
     /// [`SolidError`] when an expression becomes too large.
     pub fn of(solids: &[Solid], coincidence: f64) -> Result<Option<Self>, SolidError> {
         let operands: Vec<Operands<'_>> = solids.iter().map(Operands::of).collect();
-        let mut lone = vec![Vec::new(); solids.len()];
+        let mut roots = vec![Vec::new(); solids.len()];
         let mut meshes = Vec::new();
-        for (solid, root, primitive) in apart(solids, &operands, coincidence) {
-            if let Some(mesh) = outward(primitive, coincidence).and_then(|mesh| placed(primitive, &mesh)) {
+        for (solid, root, primitive) in isolated_roots(solids, &operands, coincidence) {
+            if let Some(mesh) = oriented_outwards(primitive, coincidence).and_then(|mesh| placed(primitive, &mesh)) {
                 meshes.push(mesh);
-                lone[solid].push(root);
+                roots[solid].push(root);
             }
         }
         if meshes.is_empty() {
             return Ok(None);
         }
         let mut rest = Vec::with_capacity(solids.len());
-        for ((solid, operands), lone) in solids.iter().zip(&operands).zip(&lone) {
-            if lone.is_empty() {
+        for ((solid, operands), roots) in solids.iter().zip(&operands).zip(&roots) {
+            if roots.is_empty() {
                 rest.push(solid.clone());
                 continue;
             }
-            let others: Vec<u32> = operands.roots().iter().copied().filter(|root| !lone.contains(root)).collect();
+            let others: Vec<u32> = operands.roots().iter().copied().filter(|root| !roots.contains(root)).collect();
             if !others.is_empty() {
                 rest.push(operands.union(&others)?);
             }
@@ -69,7 +69,11 @@ impl Isolated {
 }
 
 /// The meshes among the operands whose boxes touch no other operand's: solid, root and primitive.
-fn apart<'a>(solids: &'a [Solid], operands: &[Operands<'_>], coincidence: f64) -> Vec<(usize, u32, &'a Primitive)> {
+fn isolated_roots<'a>(
+    solids: &'a [Solid],
+    operands: &[Operands<'_>],
+    coincidence: f64,
+) -> Vec<(usize, u32, &'a Primitive)> {
     let (mut boxes, mut candidates) = (Vec::new(), Vec::new());
     for (s, (solid, operands)) in solids.iter().zip(operands).enumerate() {
         let is_mesh = |root: u32| match solid.tree().nodes()[root as usize] {
@@ -103,8 +107,8 @@ fn apart<'a>(solids: &'a [Solid], operands: &[Operands<'_>], coincidence: f64) -
             }
         });
     }
-    let lone = candidates.into_iter().zip(touched).filter(|(_, touched)| !touched);
-    lone.map(|((solid, root, primitive, _), _)| (solid, root, primitive)).collect()
+    let isolated = candidates.into_iter().zip(touched).filter(|(_, touched)| !touched);
+    isolated.map(|((solid, root, primitive, _), _)| (solid, root, primitive)).collect()
 }
 
 /// The primitive's mesh in its solid's coordinates, counter-clockwise from outside.
@@ -120,7 +124,7 @@ fn placed(primitive: &Primitive, mesh: &Mesh) -> Option<Mesh> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::outward::{is_closed, six_volumes};
+    use super::super::orientation::{is_closed, six_volumes};
     use super::*;
     use crate::csg::parse;
     use crate::model::SurfaceTable;
@@ -151,8 +155,8 @@ mod tests {
     fn counts_within(coincidence: f64, expression: &str, primitives: Vec<Primitive>) -> (usize, usize) {
         let solid = Solid::new(primitives, parse(expression).unwrap().tree).unwrap();
         let all = solid.primitives().len();
-        let lone = Isolated::of(&[solid], coincidence).unwrap();
-        lone.map_or((0, all), |l| (l.meshes.len(), l.rest.iter().map(|s| s.primitives().len()).sum()))
+        let isolated = Isolated::of(&[solid], coincidence).unwrap();
+        isolated.map_or((0, all), |l| (l.meshes.len(), l.rest.iter().map(|s| s.primitives().len()).sum()))
     }
 
     #[test]
@@ -209,9 +213,9 @@ mod tests {
     #[test]
     fn meshes_are_placed() {
         let transform = at(4.0) * DAffine3::from_scale(DVec3::new(-2.0, 1.0, 1.0));
-        let lone =
+        let isolated =
             Isolated::of(&[Solid::of(tetra(&TETRA, transform)).unwrap()], SurfaceTable::ROUNDED).unwrap().unwrap();
-        let mesh = &lone.meshes[0];
+        let mesh = &isolated.meshes[0];
         assert_eq!((mesh.id, mesh.colour), (7, Some([0.25; 4])));
         assert_eq!((mesh.bounds().min, mesh.bounds().max), (DVec3::X * 2.0, DVec3::new(4.0, 1.0, 1.0)));
         assert_eq!(six_volumes(mesh), 2.0);

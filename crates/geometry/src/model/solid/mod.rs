@@ -1,12 +1,12 @@
 //! A solid: primitives and the expression over them.
 
 mod carrier;
-mod embedded;
 mod isolated;
 mod nearby;
 mod operands;
-mod outward;
+mod orientation;
 mod reach;
+mod self_intersection;
 mod shape;
 mod surface;
 #[cfg(test)]
@@ -15,7 +15,7 @@ mod tests;
 pub use carrier::Carrier;
 pub use isolated::Isolated;
 pub(super) use operands::Operands;
-pub use outward::outward;
+pub use orientation::oriented_outwards;
 pub(crate) use reach::{Boxes, meet};
 pub use shape::{Primitive, Quadric, Shape, ShapeError};
 pub use surface::{CarriedFace, Surface, SurfaceTable};

@@ -15,7 +15,7 @@
 //! and its line passes the triangle's sides on the same side. The signs of volumes of tetrahedra decide this, each with
 //! a bound of its rounding; a sign within the bound counts as crossing. Edges in the triangle's plane need no test: if
 //! they cross it, other edges pass through. Triangles with an edge in common meet there only, unless they lie back to
-//! back, which `super::outward` tests.
+//! back, which `super::orientation` tests.
 
 use super::nearby::Nearby;
 use crate::math::orientation::orientation;
@@ -30,7 +30,7 @@ const WORK_EACH: usize = 64;
 const VOLUME_ROUNDING: f64 = (7.0 + 28.0 * f64::EPSILON) * (0.5 * f64::EPSILON);
 
 /// Each edge of `mesh` is there once in each direction.
-pub(super) fn is_embedded(mesh: &Mesh) -> bool {
+pub(super) fn bounds_space_once(mesh: &Mesh) -> bool {
     !crosses_itself(mesh) && turns_by_turns(mesh)
 }
 
@@ -212,7 +212,7 @@ mod tests {
             corners.extend(of);
             triangles.extend(sides.iter().map(|t| t.map(|v| v + first)));
         }
-        is_embedded(&Mesh::new(1, corners, triangles, Vec::new()).unwrap())
+        bounds_space_once(&Mesh::new(1, corners, triangles, Vec::new()).unwrap())
     }
 
     #[test]

@@ -6,7 +6,7 @@
 //!          ╱ │ │ ╲      edges are not shared         ╱ │ ╲     each edge is there once in each direction
 //! ```
 
-use super::embedded::is_embedded;
+use super::self_intersection::bounds_space_once;
 use super::{Primitive, Shape, Solid, SurfaceTable};
 use crate::model::Mesh;
 use glam::DVec3;
@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// The primitive's triangles as one mesh, own coordinates, which bounds each part of space once. `None` where they are
 /// not closed, not oriented outwards, cross themselves or lie back to back, or where there are spline faces.
 /// `coincidence` is that of [`Model::coincidence`](crate::model::Model::coincidence).
-pub fn outward(primitive: &Primitive, coincidence: f64) -> Option<Cow<'_, Mesh>> {
+pub fn oriented_outwards(primitive: &Primitive, coincidence: f64) -> Option<Cow<'_, Mesh>> {
     let mesh = match &primitive.shape {
         Shape::Mesh(mesh) => Cow::Borrowed(&**mesh),
         Shape::Part(part) if part.faces.is_empty() => match part.meshes.as_slice() {
@@ -30,7 +30,7 @@ pub fn outward(primitive: &Primitive, coincidence: f64) -> Option<Cow<'_, Mesh>>
     let clean = is_closed(&mesh)
         && six_volumes(&mesh) > 0.0
         && !is_back_to_back(primitive, &mesh, coincidence)
-        && is_embedded(&mesh);
+        && bounds_space_once(&mesh);
     clean.then_some(mesh)
 }
 
@@ -112,7 +112,7 @@ mod tests {
 
     fn triangles(shape: Shape) -> Option<usize> {
         let primitive = Primitive { shape, transform: DAffine3::IDENTITY, colour: [0.5; 4], id: 1 };
-        outward(&primitive, SurfaceTable::ROUNDED).map(|mesh| mesh.triangles().len())
+        oriented_outwards(&primitive, SurfaceTable::ROUNDED).map(|mesh| mesh.triangles().len())
     }
 
     fn of_mesh(mesh: Mesh) -> Option<usize> {
