@@ -7,8 +7,8 @@ use glam::{DMat3, DVec3};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Samples, SceneSettings, Style};
 use selvedge_session::{
-    Ambient, Backdrop, DeviceOptions, Directions, FOV_DEG, Image, Job, Lens, Pinhole, Viewpoint, Worker, colour, lines,
-    smooth,
+    Ambient, Backdrop, DeviceOptions, Directions, FOV_DEG, Image, Job, Lens, Limits, Pinhole, Viewpoint, Worker,
+    colour, lines, smooth,
 };
 use std::ffi::c_char;
 use std::str::FromStr;
@@ -203,6 +203,7 @@ impl SelvedgeView {
                 outputs: Image::outputs(images),
                 backdrop: word::<Backdrop>("the background", self.background, "gradient")?,
                 model: Arc::clone(&model.loaded.model),
+                limits: Limits::default(),
             })
         }
     }

@@ -11,11 +11,12 @@ use pyo3::prelude::*;
 use selvedge::model::Camera as View;
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Outputs, Samples, SceneSettings, Smooth, Style};
 use selvedge_session::{
-    Ambient, Backdrop, CameraFile, DeviceOptions, Drawn, Image, Job, SessionError, Ticket, Verdict, Viewpoint, Worker,
-    lines, smooth,
+    self as session, Ambient, Backdrop, CameraFile, DeviceOptions, Drawn, Image, Job, SessionError, Ticket, Verdict,
+    Viewpoint, Worker, lines, smooth,
 };
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
+use std::time::Duration;
 
 /// Longest side of a picture, pixels.
 const MOST_PIXELS: i64 = 16_384;
@@ -163,7 +164,8 @@ impl Chosen {
             curvature_range,
             ..FrameSettings::default()
         };
-        Ok(Job { model, camera, scene, frame, outputs: self.outputs, backdrop: self.backdrop })
+        let (outputs, backdrop) = (self.outputs, self.backdrop);
+        Ok(Job { model, camera, scene, frame, outputs, backdrop, limits: Default::default() })
     }
 }
 
@@ -187,8 +189,16 @@ impl Renderer {
     }
 
     /// Sends a picture to the device's thread.
-    fn submit(&self, py: Python<'_>, model: &Model, settings: Settings<'_>) -> PyResult<Pending> {
-        let job = settings.job(py, model)?;
+    #[pyo3(signature = (model, settings, limits = None))]
+    fn submit(
+        &self,
+        py: Python<'_>,
+        model: &Model,
+        settings: Settings<'_>,
+        limits: Option<PyRef<'_, Limits>>,
+    ) -> PyResult<Pending> {
+        let limits = limits.map(|limits| limits.inner.clone()).unwrap_or_default();
+        let job = Job { limits, ..settings.job(py, model)? };
         self.order(py, job)
     }
 
@@ -202,6 +212,25 @@ impl Renderer {
     #[getter]
     fn closed(&self) -> bool {
         self.worker.read().unwrap_or_else(PoisonError::into_inner).is_none()
+    }
+}
+
+/// The time of a file's pictures, which share it; see ``selvedge.render_files``.
+#[pyclass(frozen, module = "selvedge._native")]
+pub struct Limits {
+    inner: session::Limits,
+}
+
+#[pymethods]
+impl Limits {
+    /// Of a file, in seconds; reading it has spent some.
+    #[new]
+    #[pyo3(signature = (file, most_s, spent_s))]
+    fn new(file: String, most_s: Option<f64>, spent_s: f64) -> Self {
+        let duration = |seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+        let inner = session::Limits::new(&file, most_s.map(duration), None);
+        inner.spend(duration(spent_s));
+        Self { inner }
     }
 }
 

@@ -8,6 +8,7 @@
 
 use crate::backdrop::Backdrop;
 use crate::error::{SessionError, Stop};
+use crate::limits::{Limits, Work};
 use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
@@ -36,6 +37,9 @@ pub struct Job {
     pub outputs: Outputs,
     /// The background.
     pub backdrop: Backdrop,
+    /// Bounds of the work on the model's file, which its jobs share. They are tested where [`Stop`] is, and after the
+    /// picture.
+    pub limits: Limits,
 }
 
 impl Job {
@@ -110,8 +114,11 @@ impl Drawer {
             return Err(SessionError::Stopped);
         }
         let upload_s = self.load(job, stop)?;
+        let step = job.limits.begin(Work::Drawing);
+        step.test()?;
         let begun = Instant::now();
         let mut picture = self.renderer.render(&job.camera, &job.frame_settings(), job.outputs)?;
+        step.test()?;
         job.backdrop.under(picture.size, &mut picture.colour);
         let drawn = Drawn { picture, upload_s, draw_s: begun.elapsed().as_secs_f64() };
         let messages = self.renderer.messages();
@@ -123,7 +130,7 @@ impl Drawer {
     /// Uploads the job's model, if it is not there; returns the seconds that its upload took.
     ///
     /// # Errors
-    /// [`SessionError::Draw`].
+    /// [`SessionError::Draw`], [`SessionError::Limit`].
     pub(crate) fn load(&mut self, job: &Job, stop: &Stop) -> Result<f64, SessionError> {
         let scene = job.scene_settings();
         let is_there = |loaded: &&Uploaded| Arc::ptr_eq(&loaded.model, &job.model) && loaded.scene == scene;
@@ -131,8 +138,14 @@ impl Drawer {
             return Ok(loaded.seconds);
         }
         self.loaded = None;
+        let step = job.limits.begin(Work::Preparing);
+        step.test()?;
         let begun = Instant::now();
-        self.renderer.upload_shared(Arc::clone(&job.model), scene, &|_| stop.check())?;
+        let between_faces = |_: usize| {
+            stop.check();
+            step.check();
+        };
+        self.renderer.upload_shared(Arc::clone(&job.model), scene, &between_faces)?;
         let seconds = begun.elapsed().as_secs_f64();
         self.loaded = Some(Uploaded { model: Arc::clone(&job.model), scene, seconds });
         Ok(seconds)

@@ -132,9 +132,9 @@ fn the_first_failure_ends_it_where_that_is_wanted() {
     assert!(!folder.path().join("a_iso.png").exists());
 }
 
-/// A file that takes too long fails; nothing takes less than a nanosecond.
+/// A file that takes too long to read fails; nothing takes less than a nanosecond.
 #[test]
-fn a_file_has_its_time() {
+fn a_file_has_its_time_to_be_read() {
     let (folder, names) = files();
     let names = [names[0].clone(), names[2].clone()];
     let output = render(&names, &folder.path().join("{stem}_{view}.png"), &["--limit-s", "1e-9"]);
@@ -147,6 +147,53 @@ fn a_file_has_its_time() {
     refused(&["info", &names[0], "--limit-s", "0"], "above 0");
     refused(&["info", &names[0], "--limit-s", "1e-9"], "--limit-s");
     assert_eq!(selvedge(&["info", &names[0], "--limit-s", "1e9"]).status.code(), Some(0));
+}
+
+/// A hundred pictures of four million pixels take longer than a second, whose first part is enough to read a sphere.
+#[test]
+fn a_file_has_its_time_to_be_drawn() {
+    let (folder, names) = files();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (manifest, views) = (path("all.csv"), (0..100).map(|n| format!("{n},20")).collect::<Vec<_>>().join(","));
+    let output = path("{stem}_{view}.png");
+    let limited = ["--limit-s", "1", "--manifest", &manifest];
+    let drawn = ["render", &names[2], "-o", &output, "--size", "2000x2000", "--views", &views];
+    let output = selvedge(&[&drawn[..], &limited].concat());
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(told.contains("preparing") && told.contains("take more seconds than --limit-s allows"), "{told}");
+    let table = rows(Path::new(&manifest));
+    assert_eq!(table.len(), 100);
+    let count = table.iter().take_while(|row| row["status"] == "drawn").count();
+    let late = |row: &std::collections::HashMap<String, String>| {
+        row["status"] == "failed" && row["error"].contains("c.csg: reading") && !Path::new(&row["output"]).exists()
+    };
+    assert!(count < 100 && table[count..].iter().all(late), "{count} were drawn");
+    assert!(table[..count].iter().all(|row| Path::new(&row["output"]).is_file()), "pictures before stay");
+}
+
+/// The colour alone of the large picture takes 549 MiB on the device and as much beside it.
+#[test]
+fn a_file_has_its_memory() {
+    let (folder, names) = files();
+    let names = [names[0].clone(), names[2].clone()];
+    let draw = |size: &str, limit: &str| {
+        let output = folder.path().join(format!("{{stem}}_{size}.png")).display().to_string();
+        selvedge(&["render", &names[0], &names[1], "-o", &output, "--size", size, "--limit-mib", limit])
+    };
+    let output = draw("12000x12000", "1024");
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    for name in &names {
+        let line = told.lines().find(|line| line.contains(name.as_str()));
+        assert!(line.is_some_and(|line| line.contains("more than --limit-mib allows: ")), "{told}");
+    }
+    assert!(told.contains("0 of 2 files drawn, 0 skipped, 2 failed"), "{told}");
+    let output = draw("48x32", "1024");
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let output = draw("48x32", "8");
+    let told = text(&output.stderr);
+    assert!(output.status.code() == Some(1) && told.contains("reading it takes more than --limit-mib"), "{told}");
 }
 
 #[test]
