@@ -92,8 +92,8 @@ fn imported(
     import.map_err(|error| failure(error, name))
 }
 
-/// Why the work on something failed. An error of the device keeps its type, for it has an exit status of its own; a limit
-/// is named by its option.
+/// Why the work on something failed. An error of the device keeps its type, which has an exit status of its own. A limit is
+/// named by its option.
 fn failure(error: SessionError, what: &str) -> Error {
     match error {
         SessionError::Device(error) | SessionError::Draw(error) => error.into(),
