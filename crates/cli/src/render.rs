@@ -104,7 +104,8 @@ fn pictures(
     // a picture that is measured is drawn again before the next one
     let mut in_flight = is_small && cameras.len() > 1 && task.shots.iter().all(|shot| shot.stats.is_none());
     drop(preparing);
-    let drawing = limits.begin(Work::Drawing);
+    let drawing = Arc::new(limits.begin(Work::Drawing));
+    session.watch(&drawing);
     while next < cameras.len() {
         drawing.test().map_err(session::beyond)?;
         if in_flight {

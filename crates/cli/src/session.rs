@@ -261,10 +261,16 @@ impl Session {
         self.settings.curvature_range = curvature_range;
     }
 
+    /// Ends a picture between two of its frames if a limit of the step is exceeded; until the step ends.
+    pub fn watch(&mut self, step: &Arc<Step>) {
+        let step = Arc::downgrade(step);
+        self.renderer.set_watch(Some(Arc::new(move || step.upgrade().iter().for_each(|step| step.check()))));
+    }
+
     /// One frame.
     pub fn render(&mut self, camera: &Camera, outputs: Outputs) -> Result<Picture> {
         let start = Instant::now();
-        let picture = during("drawing", || self.renderer.render(camera, &self.settings, outputs))?;
+        let picture = during("drawing", || bounded(|| self.renderer.render(camera, &self.settings, outputs)))?;
         self.first_frame.get_or_insert_with(|| FirstFrame {
             pipelines_ms: self.renderer.pipeline_time().as_secs_f64() * 1e3,
             wall_ms: start.elapsed().as_secs_f64() * 1e3,
@@ -280,7 +286,7 @@ impl Session {
         outputs: Outputs,
         mut take: impl FnMut(usize, &PictureView<'_>) -> Result<()>,
     ) -> Result<()> {
-        self.renderer.render_sequence(cameras, &self.settings, outputs, |nth, picture| take(nth, picture))
+        bounded(|| self.renderer.render_sequence(cameras, &self.settings, outputs, |nth, picture| take(nth, picture)))
     }
 
     /// The cost of the first frame, once it is drawn.
@@ -291,7 +297,8 @@ impl Session {
     /// The statistics of a picture, measured again by a frame of all passes for which the driver compiles nothing.
     pub fn measured(&mut self, camera: &Camera, outputs: Outputs, first: &FrameStats) -> Result<Measured> {
         let settings = FrameSettings { all_passes: true, ..self.settings };
-        let again = during("drawing again, to measure", || self.renderer.render(camera, &settings, outputs))?.stats;
+        let draw = || bounded(|| self.renderer.render(camera, &settings, outputs));
+        let again = during("drawing again, to measure", draw)?.stats;
         let mut frame = again;
         frame.retries = first.retries;
         let objects = self.renderer.object_bytes().into_iter().map(|(name, bytes)| Object { name, bytes }).collect();
@@ -304,7 +311,7 @@ impl Session {
             return Ok(true);
         }
         let faces = Outputs { face: true, ..Outputs::default() };
-        Ok(shows(&self.renderer.render(camera, &self.settings, faces)?))
+        Ok(shows(&bounded(|| self.renderer.render(camera, &self.settings, faces))?))
     }
 
     /// Refuses a model that is invisible in a picture of all of it. Otherwise the camera looks past the model, which is
@@ -351,6 +358,11 @@ impl Session {
     pub fn close(self) -> bool {
         close(self.renderer)
     }
+}
+
+/// Draws what a limit may end.
+fn bounded<T, E: Into<Error>>(draw: impl FnOnce() -> Result<T, E>) -> Result<T> {
+    guarded(|| Ok(draw())).map_err(|error| failure(error, "drawing"))?.map_err(Into::into)
 }
 
 /// Work on a model that is bounded where it is read.

@@ -177,7 +177,8 @@ impl Ticket {
         }
     }
 
-    /// The job is not begun, or ends between two faces of its upload; a frame that the device draws is drawn to its end.
+    /// The job is not begun, or ends between two faces of its upload or between two of its frames. A frame that the
+    /// device draws is drawn to its end.
     pub fn stop(&self) {
         self.stop.set();
     }

@@ -210,6 +210,43 @@ fn two_files_do_not_go_to_one_place() {
     refused(&["render", a, c, "-o", &out("{stem}.png"), "--aov", &format!("depth={}", out("d.npy"))], "{stem}");
 }
 
+/// The script of docs/many.md, as Slurm runs its tasks. A task that was killed is submitted again.
+#[test]
+fn an_array_of_tasks_draws_every_file_once() {
+    let page = include_str!("../../../../docs/many.md");
+    let begun = page.split("```sh\n").find(|block| block.starts_with("#!/bin/bash")).expect("a script");
+    let script = begun.split("```").next().expect("its end").replace("512x512", "48x32");
+    assert!(script.contains("--size 48x32") && script.contains("#SBATCH --array"), "{script}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    fs::create_dir(path("models")).expect("a folder");
+    for stem in ["a", "b", "c"] {
+        fs::copy(sample("bracket.step"), path(&format!("models/{stem}.step"))).expect("a copy");
+    }
+    fs::write(path("draw.sh"), script).expect("written");
+    let programs = Path::new(env!("CARGO_BIN_EXE_selvedge")).parent().expect("a folder").display();
+    let programs = format!("{programs}:{}", std::env::var("PATH").expect("a path"));
+    let task = |id: &str| {
+        let mut bash = Command::new("bash");
+        bash.arg("draw.sh").current_dir(folder.path()).env("PATH", &programs);
+        let ran = bash.env("SLURM_ARRAY_TASK_ID", id).env("SLURM_ARRAY_TASK_COUNT", "2").output().expect("bash");
+        assert!(ran.status.success(), "task {id}: {}", text(&ran.stderr));
+        let told = |row: &std::collections::HashMap<String, String>| (row["file"].clone(), row["status"].clone());
+        rows(&path(&format!("out/{id}.csv"))).iter().map(told).collect::<Vec<_>>()
+    };
+    let all = |stem: &str, status: &str| vec![(format!("models/{stem}.step"), status.to_owned()); 3];
+    assert_eq!(task("0"), [all("a", "drawn"), all("c", "drawn")].concat());
+    assert_eq!(task("1"), all("b", "drawn"));
+    for stem in ["a", "b", "c"] {
+        for end in ["iso.png", "front.npy", "top.png", "top.npy"] {
+            assert!(path(&format!("out/{stem}_{end}")).is_file(), "{stem} {end}");
+        }
+    }
+    fs::remove_file(path("out/c_top.npy")).expect("it was not written yet");
+    assert_eq!(task("0"), [all("a", "skipped"), all("c", "drawn")].concat());
+    assert!(path("out/c_top.npy").is_file());
+}
+
 /// The call of the file that desktops read, with the specification's replacements for its fields.
 #[test]
 fn desktops_get_their_thumbnails() {
