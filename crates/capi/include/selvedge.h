@@ -226,6 +226,8 @@ typedef struct SelvedgeReadOptions {
     uint64_t limit_bytes;
     // If this is not 0, a file fails with SELVEDGE_STATUS_FILE when anything of it is left out.
     uint32_t strict;
+    // Most seconds for reading a file, beyond which it fails with SELVEDGE_STATUS_FILE; 0: no limit.
+    double limit_s;
 } SelvedgeReadOptions;
 
 // Counts and extent of a model.
@@ -290,6 +292,9 @@ typedef struct SelvedgeRendererOptions {
     const char *device;
     // Not 0: load Vulkan's validation layer; its messages about a picture give SELVEDGE_STATUS_RENDER.
     uint32_t validation;
+    // Most bytes of buffers and images on the device, beyond which a picture gives SELVEDGE_STATUS_RENDER; 0: as many
+    // as the device has left.
+    uint64_t limit_bytes;
 } SelvedgeRendererOptions;
 
 // A point of a model near a place in a picture.

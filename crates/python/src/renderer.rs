@@ -182,9 +182,11 @@ impl Renderer {
 #[pymethods]
 impl Renderer {
     #[new]
-    #[pyo3(signature = (device, validation))]
-    fn new(py: Python<'_>, device: Option<String>, validation: bool) -> PyResult<Self> {
-        let worker = apart(py, move |_| Worker::new(DeviceOptions { device, validation, ..Default::default() }))?;
+    #[pyo3(signature = (device, validation, limit_mib))]
+    fn new(py: Python<'_>, device: Option<String>, validation: bool, limit_mib: Option<f64>) -> PyResult<Self> {
+        let memory_budget = limit_mib.map(|mebibytes| (mebibytes * f64::from(1 << 20)) as u64);
+        let options = DeviceOptions { device, validation, memory_budget, ..Default::default() };
+        let worker = apart(py, move |_| Worker::new(options))?;
         Ok(Self { worker: RwLock::new(Some(worker)) })
     }
 

@@ -87,7 +87,9 @@ pub fn read(
             Source::Bytes { mut bytes, name } => import::read_from(&mut bytes, name, &options),
         }?)
     });
-    Loaded::new(file, import?)
+    let import = import?;
+    step.test()?;
+    Loaded::new(file, import)
 }
 
 impl Loaded {

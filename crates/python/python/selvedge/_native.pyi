@@ -278,7 +278,7 @@ class Limits:
 class Renderer:
     """A device, and a thread that draws on it; see ``selvedge.Renderer``."""
 
-    def __new__(cls, device: str | None, validation: bool) -> Renderer: ...
+    def __new__(cls, device: str | None, validation: bool, limit_mib: float | None) -> Renderer: ...
     def submit(self, model: Model, settings: Mapping[str, Any], limits: Limits | None = None) -> Pending:
         """Sends a picture to the device's thread."""
     def close(self) -> None:
