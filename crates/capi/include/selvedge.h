@@ -352,8 +352,8 @@ enum SelvedgeStatus selvedge_vulkan_features(void *core, void *vulkan12, void *v
 enum SelvedgeStatus selvedge_host_new(const struct SelvedgeVulkan *vulkan, struct SelvedgeHost **host);
 
 // Uploads the model that later frames show. Only samples, edges, line_width, ambient and sun of `view` are read,
-// whether its style shows curvature, and with edges its height: line_width counts pixels of a picture so high. The call does not wait for the GPU: objects
-// that frames in flight use are freed with their slots.
+// whether its style shows curvature, and with edges its height: line_width counts pixels of a picture so high. The call
+// does not wait for the GPU: objects that frames in flight use are freed with their slots.
 //
 // # Safety
 // Pointers are null or point to what they say.
@@ -362,8 +362,8 @@ enum SelvedgeStatus selvedge_host_upload(const struct SelvedgeHost *host,
                                          const struct SelvedgeView *view);
 
 // Records a frame into a VkCommandBuffer of the host's. Only size, camera, style, curvature_range (which a host sets:
-// where it is 0, the whole model is sampled), background and tolerance of `view` are read. With a null background the host's picture stays where no model is drawn. The frame that was recorded into
-// the slot before has finished.
+// where it is 0, the whole model is sampled), background and tolerance of `view` are read. With a null background the
+// host's picture stays where no model is drawn. The frame that was recorded into the slot before has finished.
 //
 // # Safety
 // Pointers are null or point to what they say. `commands` is recording, outside rendering, on the host's queue family,
