@@ -118,6 +118,8 @@ pub fn memory() -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use selvedge_io::import::ImportError;
+    use std::io::ErrorKind;
 
     const BRACKET: &[u8] = include_bytes!("../../../samples/bracket.step");
 
@@ -136,6 +138,14 @@ mod tests {
 
     #[test]
     fn what_cannot_be_drawn_is_an_error_that_names_the_file() {
+        let path = Source::Path(Path::new("no/such/file.step"));
+        let missing = read(path, &ReadOptions::default(), &Stop::default(), &|_| ()).expect_err("no file");
+        assert!(missing.to_string().contains("no/such/file.step"), "{missing}");
+        let kind = match &missing {
+            SessionError::Import(ImportError::Read { source, .. }) => Some(source.kind()),
+            _ => None,
+        };
+        assert_eq!(kind, Some(ErrorKind::NotFound));
         let damaged = bytes(b"ISO-10303-21;", "cut.step").expect_err("no data");
         assert!(
             matches!(damaged, SessionError::Import(_)) && damaged.to_string().starts_with("cut.step:"),

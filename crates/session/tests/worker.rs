@@ -11,6 +11,7 @@ use selvedge_session::{
 };
 use std::path::Path;
 use std::sync::Arc;
+use std::thread;
 use std::time::Duration;
 
 const SIZE: (u32, u32) = (320, 240);
@@ -165,6 +166,31 @@ fn a_file_beyond_its_limits_costs_itself_only() {
     let other = Job { model: bracket(), limits: none, ..jobs[0].clone() };
     assert_eq!(exceeded(answer(&submitted(&worker, &[other])[0])).1, Work::Preparing);
     assert_same(&answer(&submitted(&worker, &jobs[..1])[0]).expect("a picture"), &expected[0], "after them");
+}
+
+#[test]
+fn threads_share_a_worker_and_models_outlive_it() {
+    let jobs = jobs(4);
+    let expected = alone(&jobs);
+    let worker = Worker::new(DeviceOptions::default()).expect("a device");
+    thread::scope(|scope| {
+        for (half, expected) in jobs.chunks(2).zip(expected.chunks(2)) {
+            let worker = &worker;
+            scope.spawn(move || {
+                for _ in 0..3 {
+                    for (ticket, expected) in submitted(worker, half).iter().zip(expected) {
+                        assert_same(&answer(ticket).expect("a picture"), expected, "a thread's picture");
+                    }
+                }
+            });
+        }
+    });
+    drop(worker);
+    let mut other = Worker::new(DeviceOptions::default()).expect("a device");
+    let again = answer(&submitted(&other, &jobs[..1])[0]).expect("a picture");
+    assert_same(&again, &expected[0], "the picture of another worker");
+    other.close();
+    assert!(matches!(other.submit(jobs[0].clone()), Err(SessionError::Closed)));
 }
 
 /// A budget for one picture and a quarter of the images of another. One job needs more by itself.
