@@ -38,7 +38,7 @@ fn described_within(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs, lim
     let name = named(path);
     let step = limits.begin(Work::Reading);
     let import = if openscad::is_program(path) {
-        during("running openscad", || openscad::open(path, facets(subdivide)))?
+        during("running openscad", || openscad::open(path, facets(subdivide), &step))?
     } else {
         importing(&name, |tell| imported(path, &name, read, subdivide, (&step, tell)))?
     };
