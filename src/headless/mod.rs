@@ -24,7 +24,7 @@ mod tests;
 pub use devices::{DeviceLimits, DeviceSummary, devices};
 pub use images::PictureView;
 pub use messages::{Message, Severity};
-pub use renderer::HeadlessRenderer;
+pub use renderer::{HeadlessRenderer, Watch};
 
 use crate::gpu::{BlockAllocator, Commands, Device, GpuError, HostDevice, LowerLimits, Named, Requirements};
 use ash::vk;

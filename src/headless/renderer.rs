@@ -17,6 +17,9 @@ use std::time::Duration;
 /// Colour is rendered to 8 bits, encoded by the format.
 const COLOUR_FORMAT: vk::Format = vk::Format::R8G8B8A8_SRGB;
 
+/// What a [`HeadlessRenderer`] calls between two steps of a picture: [`HeadlessRenderer::set_watch`].
+pub type Watch = Arc<dyn Fn() + Send + Sync>;
+
 /// Renders models into [`Picture`]s, on a device of its own.
 pub struct HeadlessRenderer {
     // drop order: the GPU finishes, then everything made from the device goes, then the device
@@ -26,6 +29,7 @@ pub struct HeadlessRenderer {
     pub(super) device: ManuallyDrop<HeadlessDevice>,
     /// What the renderer draws into.
     pub(super) formats: TargetFormats,
+    watch: Option<Watch>,
 }
 
 /// Draws whole pictures only: a frame whose lists overflow draws no patches.
@@ -66,6 +70,7 @@ impl HeadlessRenderer {
             renderer: ManuallyDrop::new(renderer),
             device: ManuallyDrop::new(device),
             formats,
+            watch: None,
         })
     }
 
@@ -235,6 +240,20 @@ impl HeadlessRenderer {
         Ok(self.view(0, outputs, stats).to_picture())
     }
 
+    /// Lets `watch` be called between two frames of a picture that needs several, and between two faces of a model that
+    /// a picture prepares anew. To end the picture it unwinds, as by a panic; the renderer is as it was before, and draws
+    /// the next one. A frame that the device has begun is drawn to its end.
+    pub fn set_watch(&mut self, watch: Option<Watch>) {
+        self.watch = watch;
+    }
+
+    /// Between two steps.
+    pub(super) fn pause(&self) {
+        if let Some(watch) = &self.watch {
+            watch();
+        }
+    }
+
     /// The model that was uploaded, as edits have made it: see [`Renderer::model`].
     pub fn model(&self) -> Option<&Arc<Model>> {
         self.renderer.model()
@@ -268,6 +287,7 @@ impl HeadlessRenderer {
             ManuallyDrop::drop(&mut self.renderer);
             ManuallyDrop::take(&mut self.device)
         };
+        self.watch = None;
         std::mem::forget(self);
         device.shutdown().iter().map(ToString::to_string).collect()
     }
@@ -297,7 +317,7 @@ impl HeadlessRenderer {
             let source = source.with(request);
             self.noting(|this| {
                 let mut renderer = renderer(this.device.device(), formats)?;
-                renderer.upload_source(source, &|_| ())?;
+                renderer.upload_source(source, &|_| this.pause())?;
                 if let Some((x, y)) = this.renderer.take_pick() {
                     renderer.pick(x, y);
                 }

@@ -209,6 +209,7 @@ impl HeadlessRenderer {
             if retries > MOST_RETRIES {
                 return Err(HeadlessError::NeverComplete);
             }
+            self.pause();
             self.start(flight, view)?;
         }
     }

@@ -3,13 +3,16 @@
 
 use crate::living::{SIZE, assert_all_identical, camera, draw, scene, step, ways};
 use crate::shapes::{self, solids};
-use crate::support::{assert_silent, watched_with};
+use crate::support::{assert_silent, watched, watched_with};
 use crate::watched::limited;
 use glam::{DAffine3, DVec3};
 use selvedge::gpu::LowerLimits;
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{FrameSettings, Outputs, SceneSettings, TrimWay};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 const TABLE: TrimWay = TrimWay::Table;
 
@@ -44,6 +47,40 @@ fn a_scene_in_pieces_draws_the_same() {
         assert!(picked.is_some() || way == "solids", "{way}: nothing was picked");
         assert_silent(pieces);
         assert_silent(whole);
+    }
+}
+
+/// A watch is called between two faces and between two frames, and ends the picture at the first and at the last call.
+#[test]
+fn a_watch_ends_a_picture_between_two_steps() {
+    let model = shapes::plate();
+    let camera = camera(&model);
+    let mut whole = watched(&model);
+    let expected = draw(&mut whole, &camera);
+    assert_silent(whole);
+    // draws with a watch that ends the picture at this call, and counts the calls
+    let draw_until = |last: usize| {
+        let mut renderer = with_staging(256, &model, SceneSettings::default());
+        let calls = Arc::new(AtomicUsize::new(0));
+        let counted = Arc::clone(&calls);
+        renderer.set_watch(Some(Arc::new(move || {
+            if counted.fetch_add(1, Ordering::Relaxed) + 1 == last {
+                resume_unwind(Box::new("ended"));
+            }
+        })));
+        let drawn = catch_unwind(AssertUnwindSafe(|| draw(&mut renderer, &camera)));
+        (renderer, drawn, calls.load(Ordering::Relaxed))
+    };
+    let (renderer, drawn, calls) = draw_until(usize::MAX);
+    assert_all_identical(&drawn.expect("nothing ends it"), &expected, "watched");
+    assert_silent(renderer);
+    assert!(calls > 2, "{calls} calls");
+    for last in [1, calls] {
+        let (mut renderer, drawn, called) = draw_until(last);
+        assert!(drawn.is_err() && called == last, "ended at call {called} of {last}");
+        renderer.set_watch(None);
+        assert_all_identical(&draw(&mut renderer, &camera), &expected, "the next picture");
+        assert_silent(renderer);
     }
 }
 

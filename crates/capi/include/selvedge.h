@@ -226,6 +226,8 @@ typedef struct SelvedgeReadOptions {
     uint64_t limit_bytes;
     // If this is not 0, a file fails with SELVEDGE_STATUS_FILE when anything of it is left out.
     uint32_t strict;
+    // Most seconds for reading a file, beyond which it fails with SELVEDGE_STATUS_FILE; 0: no limit.
+    double limit_s;
 } SelvedgeReadOptions;
 
 // Counts and extent of a model.
@@ -290,6 +292,9 @@ typedef struct SelvedgeRendererOptions {
     const char *device;
     // Not 0: load Vulkan's validation layer; its messages about a picture give SELVEDGE_STATUS_RENDER.
     uint32_t validation;
+    // Most bytes of buffers and images on the device, beyond which a picture gives SELVEDGE_STATUS_RENDER; 0: as many
+    // as the device has left.
+    uint64_t limit_bytes;
 } SelvedgeRendererOptions;
 
 // A point of a model near a place in a picture.
@@ -347,8 +352,8 @@ enum SelvedgeStatus selvedge_vulkan_features(void *core, void *vulkan12, void *v
 enum SelvedgeStatus selvedge_host_new(const struct SelvedgeVulkan *vulkan, struct SelvedgeHost **host);
 
 // Uploads the model that later frames show. Only samples, edges, line_width, ambient and sun of `view` are read,
-// whether its style shows curvature, and with edges its height: line_width counts pixels of a picture so high. The call does not wait for the GPU: objects
-// that frames in flight use are freed with their slots.
+// whether its style shows curvature, and with edges its height: line_width counts pixels of a picture so high. The call
+// does not wait for the GPU: objects that frames in flight use are freed with their slots.
 //
 // # Safety
 // Pointers are null or point to what they say.
@@ -357,8 +362,8 @@ enum SelvedgeStatus selvedge_host_upload(const struct SelvedgeHost *host,
                                          const struct SelvedgeView *view);
 
 // Records a frame into a VkCommandBuffer of the host's. Only size, camera, style, curvature_range (which a host sets:
-// where it is 0, the whole model is sampled), background and tolerance of `view` are read. With a null background the host's picture stays where no model is drawn. The frame that was recorded into
-// the slot before has finished.
+// where it is 0, the whole model is sampled), background and tolerance of `view` are read. With a null background the
+// host's picture stays where no model is drawn. The frame that was recorded into the slot before has finished.
 //
 // # Safety
 // Pointers are null or point to what they say. `commands` is recording, outside rendering, on the host's queue family,

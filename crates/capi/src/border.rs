@@ -37,9 +37,7 @@ pub fn argument(text: impl Into<String>) -> Failure {
 impl From<SessionError> for Failure {
     fn from(error: SessionError) -> Self {
         let status = match &error {
-            SessionError::Import(_) | SessionError::Nothing { .. } | SessionError::TooLong { .. } => {
-                SelvedgeStatus::File
-            }
+            SessionError::Import(_) | SessionError::Nothing { .. } | SessionError::Limit(_) => SelvedgeStatus::File,
             SessionError::Device(_) => SelvedgeStatus::Device,
             SessionError::Draw(_) | SessionError::Validation(_) | SessionError::Closed => SelvedgeStatus::Render,
             SessionError::Camera(_) | SessionError::Pinhole(_) | SessionError::Edges(_) | SessionError::Snap => {

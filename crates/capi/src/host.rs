@@ -294,8 +294,8 @@ impl SelvedgeHost {
 }
 
 /// Uploads the model that later frames show. Only samples, edges, line_width, ambient and sun of `view` are read,
-/// whether its style shows curvature, and with edges its height: line_width counts pixels of a picture so high. The call does not wait for the GPU: objects
-/// that frames in flight use are freed with their slots.
+/// whether its style shows curvature, and with edges its height: line_width counts pixels of a picture so high. The call
+/// does not wait for the GPU: objects that frames in flight use are freed with their slots.
 ///
 /// # Safety
 /// Pointers are null or point to what they say.
@@ -318,8 +318,8 @@ pub unsafe extern "C" fn selvedge_host_upload(
 }
 
 /// Records a frame into a VkCommandBuffer of the host's. Only size, camera, style, curvature_range (which a host sets:
-/// where it is 0, the whole model is sampled), background and tolerance of `view` are read. With a null background the host's picture stays where no model is drawn. The frame that was recorded into
-/// the slot before has finished.
+/// where it is 0, the whole model is sampled), background and tolerance of `view` are read. With a null background the
+/// host's picture stays where no model is drawn. The frame that was recorded into the slot before has finished.
 ///
 /// # Safety
 /// Pointers are null or point to what they say. `commands` is recording, outside rendering, on the host's queue family,

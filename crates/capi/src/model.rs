@@ -8,6 +8,7 @@ use std::ffi::{CString, c_char, c_void};
 use std::path::Path;
 use std::ptr::null;
 use std::sync::OnceLock;
+use std::time::Duration;
 
 /// A model. Free it with selvedge_model_free; renderers and pictures do not need it any more then.
 pub struct SelvedgeModel {
@@ -29,6 +30,8 @@ pub struct SelvedgeReadOptions {
     pub limit_bytes: u64,
     /// If this is not 0, a file fails with SELVEDGE_STATUS_FILE when anything of it is left out.
     pub strict: u32,
+    /// Most seconds for reading a file, beyond which it fails with SELVEDGE_STATUS_FILE; 0: no limit.
+    pub limit_s: f64,
 }
 
 /// Counts and extent of a model.
@@ -130,12 +133,21 @@ pub unsafe extern "C" fn selvedge_open_bytes(
 /// As [`taken`].
 unsafe fn options_of(from: *const SelvedgeReadOptions) -> Result<SelvedgeReadOptions, Failure> {
     // SAFETY: as the caller promises
-    unsafe { taken(from, SelvedgeReadOptions { struct_size: 0, limit_bytes: 0, strict: 0 }) }
+    unsafe { taken(from, SelvedgeReadOptions { struct_size: 0, limit_bytes: 0, strict: 0, limit_s: 0.0 }) }
 }
 
 impl SelvedgeModel {
     fn boxed(source: Source<'_>, options: SelvedgeReadOptions) -> Result<*mut Self, Failure> {
-        let how = ReadOptions { most_bytes: Some(options.limit_bytes).filter(|n| *n > 0), ..ReadOptions::default() };
+        let seconds = options.limit_s;
+        if !(seconds >= 0.0 && seconds.is_finite()) {
+            return Err(argument(format!("limit_s must be a number of seconds, not {seconds}")));
+        }
+        let duration = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+        let how = ReadOptions {
+            most_bytes: Some(options.limit_bytes).filter(|n| *n > 0),
+            most_time: Some(duration).filter(|_| seconds > 0.0),
+            ..ReadOptions::default()
+        };
         let loaded = read(source, &how, &Stop::default(), &|_| ())?;
         if options.strict != 0 && !loaded.summary.is_complete() {
             return Err(Failure(SelvedgeStatus::File, format!("{}: {}", loaded.file, loaded.summary)));

@@ -7,8 +7,8 @@ use glam::{DMat3, DVec3};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Samples, SceneSettings, Style};
 use selvedge_session::{
-    Ambient, Backdrop, DeviceOptions, Directions, FOV_DEG, Image, Job, Lens, Pinhole, Viewpoint, Worker, colour, lines,
-    smooth,
+    Ambient, Backdrop, DeviceOptions, Directions, FOV_DEG, Image, Job, Lens, Limits, Pinhole, Viewpoint, Worker,
+    colour, lines, smooth,
 };
 use std::ffi::c_char;
 use std::str::FromStr;
@@ -30,6 +30,9 @@ pub struct SelvedgeRendererOptions {
     pub device: *const c_char,
     /// Not 0: load Vulkan's validation layer; its messages about a picture give SELVEDGE_STATUS_RENDER.
     pub validation: u32,
+    /// Most bytes of buffers and images on the device, beyond which a picture gives SELVEDGE_STATUS_RENDER; 0: as many
+    /// as the device has left.
+    pub limit_bytes: u64,
 }
 
 /// A picture to be drawn. Zeros and null are the defaults, but for width and height.
@@ -127,12 +130,14 @@ pub unsafe extern "C" fn selvedge_renderer_new(
     renderer: *mut *mut SelvedgeRenderer,
 ) -> SelvedgeStatus {
     border(|| {
-        let usual = SelvedgeRendererOptions { struct_size: 0, device: NO_TEXT, validation: 0 };
+        let usual = SelvedgeRendererOptions { struct_size: 0, device: NO_TEXT, validation: 0, limit_bytes: 0 };
         // SAFETY: as the caller promises
         let (place, options) = unsafe { (place(renderer)?, taken(options, usual)?) };
         // SAFETY: as the caller promises
         let device = unsafe { text("the device's name", options.device) }?.map(str::to_owned);
-        let worker = Worker::new(DeviceOptions { device, validation: options.validation != 0, ..Default::default() })?;
+        let memory_budget = Some(options.limit_bytes).filter(|bytes| *bytes > 0);
+        let validation = options.validation != 0;
+        let worker = Worker::new(DeviceOptions { device, validation, memory_budget, ..Default::default() })?;
         *place = Box::into_raw(Box::new(SelvedgeRenderer { worker }));
         Ok(())
     })
@@ -203,6 +208,7 @@ impl SelvedgeView {
                 outputs: Image::outputs(images),
                 backdrop: word::<Backdrop>("the background", self.background, "gradient")?,
                 model: Arc::clone(&model.loaded.model),
+                limits: Limits::default(),
             })
         }
     }

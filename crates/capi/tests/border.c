@@ -51,6 +51,12 @@ static int files(void)
     WANT(FILE_ERROR, selvedge_open_bytes(BLOCK, sizeof BLOCK - 1, "a.obj", &few, &model), "10 bytes");
     few.struct_size = 0;
     WANT(ARGUMENT, selvedge_open_bytes(BLOCK, sizeof BLOCK - 1, "a.obj", &few, &model), "struct_size is 0");
+    SelvedgeReadOptions late = { .struct_size = sizeof late, .limit_s = 1e-9 };
+    WANT(FILE_ERROR, selvedge_open_bytes(BLOCK, sizeof BLOCK - 1, "a.obj", &late, &model), "longer than the limit");
+    late.limit_s = NAN;
+    WANT(ARGUMENT, selvedge_open_bytes(BLOCK, sizeof BLOCK - 1, "a.obj", &late, &model), "limit_s");
+    late.limit_s = -1.0;
+    WANT(ARGUMENT, selvedge_open_bytes(BLOCK, sizeof BLOCK - 1, "a.obj", &late, &model), "limit_s");
     // one polygon of a vertex that is not there
     char cut[sizeof BLOCK + 16];
     snprintf(cut, sizeof cut, "%sf 1 2 99\n", BLOCK);
@@ -208,6 +214,23 @@ static int calibrated(const SelvedgeRenderer* renderer, const SelvedgeModel* mod
     return 0;
 }
 
+// A picture beyond the device's memory: its colour alone takes 549 MiB.
+static int little(const SelvedgeModel* model)
+{
+    const SelvedgeRendererOptions options = { .struct_size = sizeof options, .limit_bytes = 256u << 20 };
+    SelvedgeRenderer* renderer = NULL;
+    WANT(OK, selvedge_renderer_new(&options, &renderer), "");
+    SelvedgePicture* picture = NULL;
+    SelvedgeView view = { .struct_size = sizeof view, .width = 12000, .height = 12000 };
+    WANT(SELVEDGE_STATUS_RENDER, selvedge_render(renderer, model, &view, &picture), "are left of");
+    assert(picture == NULL);
+    view.width = view.height = 40;
+    WANT(OK, selvedge_render(renderer, model, &view, &picture), "");
+    selvedge_picture_free(picture);
+    selvedge_renderer_free(renderer);
+    return 0;
+}
+
 // The block is a mesh, and edges of meshes have no points to snap to: a STEP file is opened.
 static int snaps(const char* path)
 {
@@ -252,7 +275,8 @@ int main(int count, char** arguments)
     WANT(OK, selvedge_renderer_new(NULL, &renderer), "");
     SelvedgeModel* model = NULL;
     WANT(OK, selvedge_open_bytes(BLOCK, sizeof BLOCK - 1, "block.obj", NULL, &model), "");
-    int bad = snaps(arguments[1]) || views(renderer, model) || images(renderer, model) || calibrated(renderer, model);
+    int bad = snaps(arguments[1]) || views(renderer, model) || images(renderer, model) || calibrated(renderer, model)
+        || little(model);
     selvedge_model_free(model);
     selvedge_renderer_free(renderer);
     selvedge_renderer_free(NULL);

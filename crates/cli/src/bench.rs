@@ -114,7 +114,7 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
         Motion::Turn => path::turned(bounds, size, index),
         Motion::Still => path::turned(bounds, size, 0),
     };
-    let mut session = Session::smooth(session::opened(&args.frame)?, &args.frame, &import, &args.edges)?;
+    let mut session = Session::smooth(session::opened(&args.frame, None)?, &args.frame, &import, &args.edges)?;
     let mut stats = FrameStats::default();
     let mut gathered = Gathered::default();
     session.record_all(args.motion == Motion::Still);

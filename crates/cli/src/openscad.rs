@@ -4,29 +4,36 @@
 //!   x.scad ──openscad -o - --export-format csg──▶ text ──▶ Import; files that it names lie beside x.scad
 //! ```
 
+use crate::session;
 use anyhow::{Context, Result, bail};
 use selvedge_io::import::{self, Facets, Import};
-use std::io::ErrorKind;
+use selvedge_session::{Exceeded, Step};
+use std::io::{self, ErrorKind, Read};
 use std::path::{Path, absolute};
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+/// Between two looks at a program that runs.
+const BETWEEN: Duration = Duration::from_millis(10);
 
 /// Whether the file is a program of OpenSCAD's, by its name.
 pub fn is_program(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("scad"))
 }
 
-/// Runs a program and reads its output; OpenSCAD's warnings are passed on.
-pub fn open(path: &Path, facets: Facets) -> Result<Import> {
+/// Runs a program within the limits of a step and reads its output; OpenSCAD's warnings are passed on.
+pub fn open(path: &Path, facets: Facets, step: &Step) -> Result<Import> {
     let name = path.display().to_string();
     // an absolute path is not taken for an option
     let mut command = Command::new("openscad");
     command.args(["-o", "-", "--export-format", "csg"]).arg(absolute(path)?).stdin(Stdio::null());
-    let run = match command.output() {
+    let run = match ran(&mut command, step) {
         Err(error) if error.kind() == ErrorKind::NotFound => bail!(
             "{name}: openscad runs such programs and is not installed: install it (Debian: apt install openscad), or \
              give the .csg file that `openscad -o x.csg {name}` writes elsewhere"
         ),
-        other => other.with_context(|| format!("{name}: openscad"))?,
+        other => other.with_context(|| format!("{name}: openscad"))?.map_err(session::beyond)?,
     };
     let said = String::from_utf8_lossy(&run.stderr);
     let told = |kinds: &[&str]| {
@@ -40,4 +47,32 @@ pub fn open(path: &Path, facets: Facets) -> Result<Import> {
     }
     told(&["WARNING", "ERROR", "DEPRECATED"]).iter().for_each(|line| tracing::warn!("{name}: openscad: {line}"));
     Ok(import::scad(&run.stdout, &name, facets)?)
+}
+
+/// Runs a command to its end, or kills it when a limit is exceeded.
+fn ran(command: &mut Command, step: &Step) -> io::Result<Result<Output, Exceeded>> {
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
+    let stdout = gathered(child.stdout.take().expect("piped"));
+    let stderr = gathered(child.stderr.take().expect("piped"));
+    let all = |of: JoinHandle<io::Result<Vec<u8>>>| of.join().expect("a read does not panic");
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(Ok(Output { status, stdout: all(stdout)?, stderr: all(stderr)? }));
+        }
+        if let Err(exceeded) = step.test() {
+            child.kill()?;
+            child.wait()?;
+            return Ok(Err(exceeded));
+        }
+        thread::sleep(BETWEEN);
+    }
+}
+
+/// All that comes from a pipe, read beside other work.
+fn gathered(mut pipe: impl Read + Send + 'static) -> JoinHandle<io::Result<Vec<u8>>> {
+    thread::spawn(move || {
+        let mut all = Vec::new();
+        pipe.read_to_end(&mut all)?;
+        Ok(all)
+    })
 }

@@ -17,7 +17,7 @@ use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::Camera;
 use selvedge::picture::{Outputs, Picture};
 use selvedge_io::import::Import;
-use selvedge_session::{Backdrop, Image, MOST_IN_FLIGHT, legend};
+use selvedge_session::{Backdrop, Image, Limits, MOST_IN_FLIGHT, Work, legend};
 use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
@@ -35,9 +35,12 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
 /// Draws one file: its error is the error of the call.
 fn alone(args: &RenderArgs, task: &Task) -> Result<Outcome> {
     target::check(&args.cut.inputs(&task.model), &task.outputs())?;
-    let (import, device) =
-        rayon::join(|| session::open(&task.model, &args.read, &args.subdivide), || session::device(&args.frame));
-    let session = drawn(args, task, import?, || device, &mut |_| Ok(()))?;
+    let limits = args.read.limits(&session::named(&task.model));
+    let (import, device) = rayon::join(
+        || session::open_within(&task.model, &args.read, &args.subdivide, &limits),
+        || session::device(&args.frame, args.read.most_memory()),
+    );
+    let session = drawn(args, task, (import?, &limits), || device, &mut |_| Ok(()))?;
     Ok(if session.close() { Outcome::Broken } else { Outcome::Good })
 }
 
@@ -50,14 +53,28 @@ struct Drawn {
     draw_s: f64,
 }
 
-/// Draws all pictures of a file that has been read, and reports each one when its files are written.
+/// Draws all pictures of a file that has been read, within its limits, and reports each one when its files are written.
 fn drawn(
     args: &RenderArgs,
     task: &Task,
-    mut import: Import,
+    (import, limits): (Import, &Limits),
     device: impl FnOnce() -> Result<HeadlessRenderer>,
     record: &mut dyn FnMut(&Drawn) -> Result<()>,
 ) -> Result<Session> {
+    pictures(args, task, (import, limits), device, record).map_err(|error| match args.read.limit_mib {
+        Some(_) if is_out_of_memory(&error) => error.context("more than --limit-mib allows"),
+        _ => error,
+    })
+}
+
+fn pictures(
+    args: &RenderArgs,
+    task: &Task,
+    (mut import, limits): (Import, &Limits),
+    device: impl FnOnce() -> Result<HeadlessRenderer>,
+    record: &mut dyn FnMut(&Drawn) -> Result<()>,
+) -> Result<Session> {
+    let preparing = limits.begin(Work::Preparing);
     let outputs = task.outputs();
     target::check_read(&import, &outputs)?;
     args.cut.apply(&mut import.model, &args.read)?;
@@ -74,7 +91,7 @@ fn drawn(
     let begun = Instant::now();
     let look = &args.look;
     let looks = (&args.edges, look, args.lines.settings(look.style)?);
-    let mut session = Session::of_one(device()?, &args.frame, &import, &model, looks)?;
+    let mut session = Session::of_one(device()?, &args.frame, &import, (&model, &preparing), looks)?;
     let upload_s = begun.elapsed().as_secs_f64();
     let backdrop = look.backdrop(&import);
     let range = if look.style.is_curvature() { look.range(&model) } else { 1.0 };
@@ -86,13 +103,18 @@ fn drawn(
     let is_small = u64::from(size.0) * u64::from(size.1) <= MOST_IN_FLIGHT;
     // a picture that is measured is drawn again before the next one
     let mut in_flight = is_small && cameras.len() > 1 && task.shots.iter().all(|shot| shot.stats.is_none());
+    drop(preparing);
+    let drawing = Arc::new(limits.begin(Work::Drawing));
+    session.watch(&drawing);
     while next < cameras.len() {
+        drawing.test().map_err(session::beyond)?;
         if in_flight {
             let (first, mut begun) = (next, Instant::now());
             let taken = session.render_sequence(&cameras[first..], images, |nth, picture| {
                 if session::is_of_one_colour(picture.colour) {
                     return Err(Alone.into());
                 }
+                drawing.test().map_err(session::beyond)?;
                 output::clamps(&picture.stats);
                 pictures.take(first + nth, picture.to_picture(), begun.elapsed().as_secs_f64(), None)?;
                 (next, begun) = (first + nth + 1, Instant::now());
@@ -112,6 +134,7 @@ fn drawn(
         if !session.shows(camera, &picture)? {
             session.blank(&task.model, &model, camera.size, &args.read)?;
         }
+        drawing.test().map_err(session::beyond)?;
         let stats = task.shots[next].stats.as_ref().map(|_| session.measured(camera, images, &picture.stats));
         pictures.take(next, picture, draw_s, stats.transpose()?.as_ref())?;
         next += 1;

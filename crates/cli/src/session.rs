@@ -5,11 +5,11 @@ use crate::progress::{advancing, during, importing};
 use crate::{camera, device, openscad, output, target};
 use anyhow::{Error, Result, anyhow, bail};
 use glam::DVec3;
-use selvedge::headless::{HeadlessRenderer, PictureView};
+use selvedge::headless::{HeadlessOptions, HeadlessRenderer, PictureView};
 use selvedge::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use selvedge::picture::{EdgeSettings, FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings, Style};
 use selvedge_io::import::{self, Facets, Folders, Import, ImportError, Options, Stage};
-use selvedge_session::{Ambient, SessionError, guarded};
+use selvedge_session::{Ambient, Bound, Exceeded, Limits, SessionError, Step, Work, guarded};
 use serde::Serialize;
 use std::io;
 use std::path::Path;
@@ -18,20 +18,31 @@ use std::time::Instant;
 
 /// Reads a file with something to draw, its polygons as `subdivide` says, and prints its warnings.
 pub fn open(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs) -> Result<Import> {
-    let import = described(path, read, subdivide)?;
+    open_within(path, read, subdivide, &read.limits(&named(path)))
+}
+
+/// The same as a part of the work on the file.
+pub fn open_within(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs, limits: &Limits) -> Result<Import> {
+    let import = described_within(path, read, subdivide, limits)?;
     judge(path, &import, read)?;
     Ok(import)
 }
 
 /// Reads a file, whether or not there is anything to draw in it.
 pub fn described(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs) -> Result<Import> {
+    described_within(path, read, subdivide, &read.limits(&named(path)))
+}
+
+fn described_within(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs, limits: &Limits) -> Result<Import> {
     let start = Instant::now();
     let name = named(path);
+    let step = limits.begin(Work::Reading);
     let import = if openscad::is_program(path) {
-        during("running openscad", || openscad::open(path, facets(subdivide)))?
+        during("running openscad", || openscad::open(path, facets(subdivide), &step))?
     } else {
-        importing(&name, |tell| imported(path, &name, read, subdivide, tell))?
+        importing(&name, |tell| imported(path, &name, read, subdivide, (&step, tell)))?
     };
+    step.test().map_err(beyond)?;
     tracing::info!("read {name} in {:.1?}", start.elapsed());
     if subdivide.subdivide.is_some() {
         let (faces, off) = (import.report.faces, import.report.made);
@@ -55,12 +66,11 @@ fn imported(
     name: &str,
     read: &ReadArgs,
     subdivide: &SubdivideArgs,
-    tell: &(dyn Fn(Stage) + Sync),
+    (step, tell): (&Step, &(dyn Fn(Stage) + Sync)),
 ) -> Result<Import> {
     let folders = Folders::new(read.search.clone());
-    let stop = read.stop();
     let tell = |stage| {
-        stop.check();
+        step.check();
         tell(stage);
     };
     let options = Options {
@@ -79,14 +89,31 @@ fn imported(
             None => import::open_with(path, &options),
         }?)
     });
-    import.map_err(|error| match error {
+    import.map_err(|error| failure(error, name))
+}
+
+/// Why the work on something failed. An error of the device keeps its type, which has an exit status of its own. A limit is
+/// named by its option.
+fn failure(error: SessionError, what: &str) -> Error {
+    match error {
+        SessionError::Device(error) | SessionError::Draw(error) => error.into(),
         SessionError::Import(error @ (ImportError::TooLarge { .. } | ImportError::Expansion { .. })) => {
             Error::from(error).context("more than --limit-mib allows")
         }
         SessionError::Import(error) => error.into(),
-        SessionError::Stopped => anyhow!("{name}: reading it takes more seconds than --limit-s allows"),
-        error => Error::from(error).context(name.to_owned()),
-    })
+        SessionError::Limit(exceeded) => beyond(exceeded),
+        error => Error::from(error).context(what.to_owned()),
+    }
+}
+
+/// The same of a limit.
+pub fn beyond(Exceeded { file, work, bound }: Exceeded) -> Error {
+    match bound {
+        Bound::Time(_) => anyhow!("{file}: {work} more seconds than --limit-s allows"),
+        Bound::Memory { held, .. } => {
+            anyhow!("{file}: {work} more than --limit-mib allows: the process holds {} MiB", held >> 20)
+        }
+    }
 }
 
 /// Refuses a file without anything to draw. `--strict` refuses a file that lost anything; without it, the losses are printed.
@@ -150,35 +177,37 @@ pub struct Object {
     pub bytes: u64,
 }
 
-/// Opens the device of the arguments.
-pub fn opened(args: &FrameArgs) -> Result<HeadlessRenderer> {
-    during("opening the device", || device(args))
+/// Opens the device of the arguments, whose objects have so many bytes at most.
+pub fn opened(args: &FrameArgs, most_memory: Option<u64>) -> Result<HeadlessRenderer> {
+    during("opening the device", || device(args, most_memory))
 }
 
 /// The same without a progress message, for use beside other work.
-pub fn device(args: &FrameArgs) -> Result<HeadlessRenderer> {
-    Ok(HeadlessRenderer::new(&device::options(args.device.as_deref(), args.validation))?)
+pub fn device(args: &FrameArgs, most_memory: Option<u64>) -> Result<HeadlessRenderer> {
+    let options = device::options(args.device.as_deref(), args.validation);
+    Ok(HeadlessRenderer::new(&HeadlessOptions { memory_budget: most_memory, ..options })?)
 }
 
 impl Session {
     /// Opens the device and uploads the model, with lines along edges if `lines` is set.
     pub fn with_lines(args: &FrameArgs, import: &Import, lines: Option<EdgeSettings>) -> Result<Self> {
         let scene = SceneSettings { edges: lines, ..SceneSettings::default() };
-        Self::with(opened(args)?, args, import, scene, Arc::new(import.model.clone()))
+        Self::with(opened(args, None)?, args, import, scene, (Arc::new(import.model.clone()), &unlimited()))
     }
 
     /// The same with smooth edges, on a device that is open.
     pub fn smooth(on: HeadlessRenderer, args: &FrameArgs, import: &Import, edges: &EdgeArgs) -> Result<Self> {
         let scene = SceneSettings { samples: edges.samples, smooth: edges.smooth(), ..SceneSettings::default() };
-        Self::with(on, args, import, scene, Arc::new(import.model.clone()))
+        Self::with(on, args, import, scene, (Arc::new(import.model.clone()), &unlimited()))
     }
 
-    /// The same for a model that the renderer shares, with lines along edges: the import's own model is not used.
+    /// The same for a model that the renderer shares, with lines along edges, within limits: the import's own model is
+    /// not used.
     pub fn of_one(
         on: HeadlessRenderer,
         args: &FrameArgs,
         import: &Import,
-        model: &Arc<Model>,
+        (model, step): (&Arc<Model>, &Step),
         (edges, look, lines): (&EdgeArgs, &LookArgs, Option<EdgeSettings>),
     ) -> Result<Self> {
         let scene = SceneSettings {
@@ -189,13 +218,13 @@ impl Session {
             edges: lines,
             ..SceneSettings::default()
         };
-        Self::with(on, args, import, scene, Arc::clone(model))
+        Self::with(on, args, import, scene, (Arc::clone(model), step))
     }
 
     /// The same with a model whose loops may be edited.
     pub fn editable(args: &FrameArgs, import: &Import) -> Result<Self> {
         let scene = SceneSettings { editable: true, ..SceneSettings::default() };
-        Self::with(opened(args)?, args, import, scene, Arc::new(import.model.clone()))
+        Self::with(opened(args, None)?, args, import, scene, (Arc::new(import.model.clone()), &unlimited()))
     }
 
     fn with(
@@ -203,7 +232,7 @@ impl Session {
         args: &FrameArgs,
         import: &Import,
         scene: SceneSettings,
-        model: Arc<Model>,
+        (model, step): (Arc<Model>, &Step),
     ) -> Result<Self> {
         let highlight = args.highlight.then(Highlight::default);
         let sun = sun(args, import);
@@ -211,7 +240,14 @@ impl Session {
         let solid_budget = args.solid_budget.map(|mebibytes| (mebibytes * f64::from(1 << 20)) as u64);
         let scene = SceneSettings { trim, solids, highlight, sun, solid_budget, ..scene };
         let faces = model.face_count();
-        advancing("preparing faces", faces, |told| renderer.upload_shared(model, scene, told))?;
+        let uploaded = advancing("preparing faces", faces, |told| {
+            let told = |count: usize| {
+                step.check();
+                told(count);
+            };
+            guarded(|| Ok(renderer.upload_shared(model, scene, &told)?))
+        });
+        uploaded.map_err(|error| failure(error, "preparing the model"))?;
         let mut settings =
             FrameSettings { tolerance_px: args.tolerance, levels: args.factors.0, ..FrameSettings::default() };
         settings.background = import.picture.background.or(settings.background);
@@ -225,10 +261,16 @@ impl Session {
         self.settings.curvature_range = curvature_range;
     }
 
+    /// Ends a picture between two of its frames if a limit of the step is exceeded; until the step ends.
+    pub fn watch(&mut self, step: &Arc<Step>) {
+        let step = Arc::downgrade(step);
+        self.renderer.set_watch(Some(Arc::new(move || step.upgrade().iter().for_each(|step| step.check()))));
+    }
+
     /// One frame.
     pub fn render(&mut self, camera: &Camera, outputs: Outputs) -> Result<Picture> {
         let start = Instant::now();
-        let picture = during("drawing", || self.renderer.render(camera, &self.settings, outputs))?;
+        let picture = during("drawing", || bounded(|| self.renderer.render(camera, &self.settings, outputs)))?;
         self.first_frame.get_or_insert_with(|| FirstFrame {
             pipelines_ms: self.renderer.pipeline_time().as_secs_f64() * 1e3,
             wall_ms: start.elapsed().as_secs_f64() * 1e3,
@@ -244,7 +286,7 @@ impl Session {
         outputs: Outputs,
         mut take: impl FnMut(usize, &PictureView<'_>) -> Result<()>,
     ) -> Result<()> {
-        self.renderer.render_sequence(cameras, &self.settings, outputs, |nth, picture| take(nth, picture))
+        bounded(|| self.renderer.render_sequence(cameras, &self.settings, outputs, |nth, picture| take(nth, picture)))
     }
 
     /// The cost of the first frame, once it is drawn.
@@ -255,7 +297,8 @@ impl Session {
     /// The statistics of a picture, measured again by a frame of all passes for which the driver compiles nothing.
     pub fn measured(&mut self, camera: &Camera, outputs: Outputs, first: &FrameStats) -> Result<Measured> {
         let settings = FrameSettings { all_passes: true, ..self.settings };
-        let again = during("drawing again, to measure", || self.renderer.render(camera, &settings, outputs))?.stats;
+        let draw = || bounded(|| self.renderer.render(camera, &settings, outputs));
+        let again = during("drawing again, to measure", draw)?.stats;
         let mut frame = again;
         frame.retries = first.retries;
         let objects = self.renderer.object_bytes().into_iter().map(|(name, bytes)| Object { name, bytes }).collect();
@@ -268,7 +311,7 @@ impl Session {
             return Ok(true);
         }
         let faces = Outputs { face: true, ..Outputs::default() };
-        Ok(shows(&self.renderer.render(camera, &self.settings, faces)?))
+        Ok(shows(&bounded(|| self.renderer.render(camera, &self.settings, faces))?))
     }
 
     /// Refuses a model that is invisible in a picture of all of it. Otherwise the camera looks past the model, which is
@@ -315,6 +358,16 @@ impl Session {
     pub fn close(self) -> bool {
         close(self.renderer)
     }
+}
+
+/// Draws what a limit may end.
+fn bounded<T, E: Into<Error>>(draw: impl FnOnce() -> Result<T, E>) -> Result<T> {
+    guarded(|| Ok(draw())).map_err(|error| failure(error, "drawing"))?.map_err(Into::into)
+}
+
+/// Work on a model that is bounded where it is read.
+fn unlimited() -> Step {
+    Limits::default().begin(Work::Preparing)
 }
 
 /// The background has one colour: a picture may be of nothing else.

@@ -8,7 +8,8 @@ use crate::{Outcome, device, target};
 use anyhow::{Error, Result};
 use selvedge::picture::{FrameSettings, Outputs, Samples, SceneSettings};
 use selvedge_session::{
-    Backdrop, Drawer, Job, Loaded, NAMED, ReadOptions, SessionError, Source, Stop, Viewpoint, lines, read, write_png,
+    Backdrop, Drawer, Job, Limits, Loaded, NAMED, ReadOptions, SessionError, Source, Stop, Viewpoint, lines, read,
+    write_png,
 };
 use std::sync::Arc;
 
@@ -29,6 +30,7 @@ pub fn run(args: &ThumbnailArgs) -> Result<Outcome> {
         frame: FrameSettings::default(),
         outputs: Outputs::default(),
         backdrop: Backdrop::Nothing,
+        limits: Limits::default(),
     };
     let mut drawer = Drawer::new(&device::options(args.device.as_deref(), false)).map_err(told)?;
     let picture = drawer.draw(&job, &stop).map_err(told)?.picture;

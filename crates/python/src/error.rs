@@ -3,7 +3,7 @@
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use selvedge_io::import::{ImportError, Warning};
-use selvedge_session::SessionError;
+use selvedge_session::{Exceeded, SessionError, Work};
 use std::io::ErrorKind;
 
 /// An instance of one of the package's classes.
@@ -22,7 +22,7 @@ pub fn raised(py: Python<'_>, error: &SessionError) -> PyErr {
             let class = if missing { "MissingFileError" } else { "ReadError" };
             instance(py, class, (text, import.file(), import.line(), nowhere.1))
         }
-        SessionError::Nothing { file, .. } | SessionError::TooLong { file, .. } => {
+        SessionError::Nothing { file, .. } | SessionError::Limit(Exceeded { file, work: Work::Reading, .. }) => {
             instance(py, "ReadError", (text, file, nowhere.0, nowhere.1))
         }
         SessionError::Camera(_) | SessionError::Pinhole(_) | SessionError::Edges(_) | SessionError::Snap => {
@@ -30,7 +30,9 @@ pub fn raised(py: Python<'_>, error: &SessionError) -> PyErr {
         }
         SessionError::Device(_) => instance(py, "DeviceError", (text,)),
         SessionError::Closed => instance(py, "ClosedError", (text,)),
-        SessionError::Draw(_) | SessionError::Validation(_) => instance(py, "RenderError", (text,)),
+        SessionError::Draw(_) | SessionError::Validation(_) | SessionError::Limit(_) => {
+            instance(py, "RenderError", (text,))
+        }
         _ => PyRuntimeError::new_err(text),
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   selvedge/__init__.py   signatures, `open`, shapes of other kernels, jobs in flight, files with a manifest
-//!     └ _native            this: Model, Face, Edge, Camera, Renderer, Picture
+//!     └ _native            this: Model, Face, Edge, Camera, Renderer, Picture, Limits
 //!         └ selvedge-session
 //! ```
 //!
@@ -27,7 +27,7 @@ mod _native {
     #[pymodule_export]
     use super::picture::Picture;
     #[pymodule_export]
-    use super::renderer::{Pending, Renderer, check, validate};
+    use super::renderer::{Limits, Pending, Renderer, check, validate};
     #[pymodule_export]
     use super::shape::{Edge, Face};
 }

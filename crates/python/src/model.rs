@@ -104,8 +104,8 @@ impl Model {
         corners(py, py.detach(|| bounds(&model)))
     }
 
-    /// The assembly: names, bodies (part, name, count) and children, each like it. Occurrences side by side that hold the same
-    /// are one node with all their names.
+    /// The assembly: names, bodies (part, name, count) and children, each like it. Occurrences side by side that
+    /// hold the same are one node with all their names.
     #[getter]
     fn tree<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         plain(py, &Node::new(&self.loaded.model))
@@ -139,8 +139,8 @@ impl Model {
         Ok(self.faces.get_or_try_init(py, made)?.clone_ref(py))
     }
 
-    /// Edges of all parts, one part after another, of each those of faces and then those of meshes. In the image "edge" they
-    /// are counted from 1 in this order. Found when they are first asked for.
+    /// Edges of all parts, one part after another, of each those of faces and then those of meshes. In the image
+    /// "edge" they are counted from 1 in this order. Found when they are first asked for.
     #[getter]
     fn edges(&self, py: Python<'_>) -> PyResult<Py<PyTuple>> {
         let made = || {
@@ -295,7 +295,7 @@ impl Instance {
         self.loaded.model.instances[self.index].part
     }
 
-    /// float64 (4, 4): part to model coordinates, for columns: model = transform @ [x, y, z, 1].
+    /// float64 (4, 4): part to model coordinates, millimetres, for columns: model = transform @ [x, y, z, 1].
     #[getter]
     fn transform<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         let matrix = glam::DMat4::from(self.loaded.model.instances[self.index].transform);

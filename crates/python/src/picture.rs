@@ -11,7 +11,8 @@ use serde::Serialize;
 use std::ffi::CString;
 use std::path::PathBuf;
 
-/// A finished picture: an array for each output, row 0 on top.
+/// A finished picture: an array for each output, row 0 on top, as an attribute of its name. Renderer.render lists
+/// them with dtype, shape and unit.
 #[pyclass(frozen, module = "selvedge")]
 pub struct Picture {
     size: (u32, u32),
@@ -98,20 +99,20 @@ impl Picture {
         self.size
     }
 
-    /// The arrays by name: "colour" and the outputs.
+    /// The arrays by name: "colour" and the outputs of the picture.
     #[getter]
     fn images(&self, py: Python<'_>) -> Py<PyDict> {
         self.images.clone_ref(py)
     }
 
-    /// eye, target, up, fovy in degrees or ortho (half the height), size.
+    /// eye, target, up, fovy in degrees or ortho (half the height), millimetres; size in pixels.
     #[getter]
     fn camera(&self, py: Python<'_>) -> Py<PyAny> {
         self.camera.clone_ref(py)
     }
 
-    /// Device, driver, milliseconds of each pass, counts; "clamps" above 0 are places where the promise is not kept.
-    /// "upload_s": seconds in which the model was prepared, before its first picture. "draw_s": seconds of this
+    /// Device, driver, milliseconds of each pass, counts; "clamps" above 0 are places where the promise is not
+    /// kept. "upload_s": seconds in which the model was prepared, before its first picture. "draw_s": seconds of this
     /// picture; with pictures in flight, since the one before.
     #[getter]
     fn stats(&self, py: Python<'_>) -> Py<PyAny> {
@@ -129,7 +130,7 @@ impl Picture {
         }))
     }
 
-    /// Writes the colour as a PNG file.
+    /// Writes the colour as a PNG file. Raises ValueError for a name that does not end in .png, and OSError.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
             return Err(PyValueError::new_err(format!(

@@ -11,11 +11,12 @@ use pyo3::prelude::*;
 use selvedge::model::Camera as View;
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Outputs, Samples, SceneSettings, Smooth, Style};
 use selvedge_session::{
-    Ambient, Backdrop, CameraFile, DeviceOptions, Drawn, Image, Job, SessionError, Ticket, Verdict, Viewpoint, Worker,
-    lines, smooth,
+    self as session, Ambient, Backdrop, CameraFile, DeviceOptions, Drawn, Image, Job, SessionError, Ticket, Verdict,
+    Viewpoint, Worker, lines, smooth,
 };
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
+use std::time::Duration;
 
 /// Longest side of a picture, pixels.
 const MOST_PIXELS: i64 = 16_384;
@@ -163,7 +164,8 @@ impl Chosen {
             curvature_range,
             ..FrameSettings::default()
         };
-        Ok(Job { model, camera, scene, frame, outputs: self.outputs, backdrop: self.backdrop })
+        let (outputs, backdrop) = (self.outputs, self.backdrop);
+        Ok(Job { model, camera, scene, frame, outputs, backdrop, limits: Default::default() })
     }
 }
 
@@ -180,15 +182,25 @@ impl Renderer {
 #[pymethods]
 impl Renderer {
     #[new]
-    #[pyo3(signature = (device, validation))]
-    fn new(py: Python<'_>, device: Option<String>, validation: bool) -> PyResult<Self> {
-        let worker = apart(py, move |_| Worker::new(DeviceOptions { device, validation, ..Default::default() }))?;
+    #[pyo3(signature = (device, validation, limit_mib))]
+    fn new(py: Python<'_>, device: Option<String>, validation: bool, limit_mib: Option<f64>) -> PyResult<Self> {
+        let memory_budget = limit_mib.map(|mebibytes| (mebibytes * f64::from(1 << 20)) as u64);
+        let options = DeviceOptions { device, validation, memory_budget, ..Default::default() };
+        let worker = apart(py, move |_| Worker::new(options))?;
         Ok(Self { worker: RwLock::new(Some(worker)) })
     }
 
     /// Sends a picture to the device's thread.
-    fn submit(&self, py: Python<'_>, model: &Model, settings: Settings<'_>) -> PyResult<Pending> {
-        let job = settings.job(py, model)?;
+    #[pyo3(signature = (model, settings, limits = None))]
+    fn submit(
+        &self,
+        py: Python<'_>,
+        model: &Model,
+        settings: Settings<'_>,
+        limits: Option<PyRef<'_, Limits>>,
+    ) -> PyResult<Pending> {
+        let limits = limits.map(|limits| limits.inner.clone()).unwrap_or_default();
+        let job = Job { limits, ..settings.job(py, model)? };
         self.order(py, job)
     }
 
@@ -202,6 +214,25 @@ impl Renderer {
     #[getter]
     fn closed(&self) -> bool {
         self.worker.read().unwrap_or_else(PoisonError::into_inner).is_none()
+    }
+}
+
+/// The time of a file's pictures, which share it; see ``selvedge.render_files``.
+#[pyclass(frozen, module = "selvedge._native")]
+pub struct Limits {
+    inner: session::Limits,
+}
+
+#[pymethods]
+impl Limits {
+    /// Of a file, in seconds; reading it has spent some.
+    #[new]
+    #[pyo3(signature = (file, most_s, spent_s))]
+    fn new(file: String, most_s: Option<f64>, spent_s: f64) -> Self {
+        let duration = |seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+        let inner = session::Limits::new(&file, most_s.map(duration), None);
+        inner.spend(duration(spent_s));
+        Self { inner }
     }
 }
 

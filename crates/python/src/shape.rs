@@ -40,7 +40,8 @@ impl Face {
         self.part
     }
 
-    /// What the surface is in the file: plane, cylinder, cone, sphere, torus, revolution, extrusion, offset or bspline.
+    /// What the surface is in the file: plane, cylinder, cone, sphere, torus, revolution, extrusion, offset or
+    /// bspline.
     #[getter]
     fn kind(&self) -> &'static str {
         match self.inner().kind {
@@ -92,7 +93,7 @@ impl Face {
         self.inner().colour
     }
 
-    /// float64 (2, 3): smallest and largest coordinates, in those of the part.
+    /// float64 (2, 3): smallest and largest coordinates, in those of the part, millimetres.
     #[getter]
     fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         corners(py, self.inner().bounds())
@@ -186,7 +187,7 @@ impl Edge {
         }
     }
 
-    /// float64 (2, 3): where it begins and ends, in the part's coordinates.
+    /// float64 (2, 3): where it begins and ends, in the part's coordinates, millimetres.
     #[getter]
     fn ends<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         let vertices = &self.found[self.part].vertices;

@@ -112,6 +112,28 @@ def test_a_picture_that_cannot_be_drawn_or_written_is_told(renderer, files, tmp_
         assert rows[0]["status"] == "failed" and "a.step" in rows[0]["error"]
 
 
+def test_a_file_has_its_time_to_be_drawn(renderer, files, tmp_path, monkeypatch):
+    """The time in which a file was read is taken from that of its pictures."""
+    clock = iter(range(0, 10**6, 1000))
+    with monkeypatch.context() as patched:
+        patched.setattr(selvedge._files.time, "perf_counter", lambda: float(next(clock)))
+        out = tmp_path / "{stem}_{view}.png"
+        rows = selvedge.render_files([files[0], files[2]], out, VIEWS, renderer=renderer, size=SIZE, limit_s=999)
+    assert [row["status"] for row in rows] == ["failed"] * 4
+    for row in rows:
+        assert row["error"] == f"{row['file']}: reading and preparing it take longer than the limit of 999s"
+    # jobs that share a limit are drawn until it is spent
+    model = selvedge.open(files[2])
+    settings = {**selvedge._DEFAULTS, "size": SIZE}
+    plenty = selvedge._native.Limits("c.csg", 3600.0, 0.0)
+    assert [renderer._native.submit(model, settings, plenty).result().size for _ in range(2)] == [SIZE] * 2
+    spent = selvedge._native.Limits("c.csg", 3600.0, 3600.5)
+    with pytest.raises(selvedge.RenderError, match="c.csg: reading, preparing and drawing it take longer"):
+        renderer._native.submit(model, settings, spent).result()
+    endless = selvedge._native.Limits("c.csg", None, 1e300)
+    assert renderer._native.submit(model, settings, endless).result().size == SIZE
+
+
 def test_wrong_arguments_are_refused_before_anything_is_drawn(renderer, files, tmp_path):
     one, both = [files[0]], [files[0], files[2]]
     out = tmp_path / "{stem}_{view}.png"

@@ -215,6 +215,17 @@ def test_the_validation_layer_has_nothing_to_say(block):
     assert np.isfinite(picture.depth).any()
 
 
+def test_a_picture_beyond_the_devices_memory(block):
+    """Its colour alone takes 549 MiB."""
+    with selvedge.Renderer(limit_mib=256) as little:
+        with pytest.raises(selvedge.RenderError, match="are left of"):
+            little.render(block, size=(12000, 12000))
+        assert little.render(block, size=SIZE).size == SIZE
+    for wrong in (0, -1.0, float("nan")):
+        with pytest.raises(ValueError, match="limit_mib must be above 0"):
+            selvedge.Renderer(limit_mib=wrong)
+
+
 def test_no_such_device():
     with pytest.raises(selvedge.DeviceError, match="no such"):
         selvedge.Renderer("no such device")

@@ -8,6 +8,7 @@
 
 use crate::backdrop::Backdrop;
 use crate::error::{SessionError, Stop};
+use crate::limits::{Limits, Step, Work};
 use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
@@ -36,6 +37,9 @@ pub struct Job {
     pub outputs: Outputs,
     /// The background.
     pub backdrop: Backdrop,
+    /// Bounds of the work on the model's file, which its jobs share. They are tested where [`Stop`] is, and after the
+    /// picture.
+    pub limits: Limits,
 }
 
 impl Job {
@@ -99,8 +103,9 @@ impl Drawer {
         Ok(Self { renderer, loaded: None, told: 0, most_in_flight })
     }
 
-    /// Draws one picture. [`Stop`] is tested before it begins and between two faces of an upload. A message of the
-    /// validation layer is an error.
+    /// Draws one picture. [`Stop`] is tested before it begins, between two faces of an upload and between two frames of a
+    /// picture that needs several: it unwinds to [`guarded`](crate::guarded). A message of the validation layer is an
+    /// error.
     ///
     /// # Errors
     /// [`SessionError`]; the next job is drawn all the same.
@@ -110,8 +115,12 @@ impl Drawer {
             return Err(SessionError::Stopped);
         }
         let upload_s = self.load(job, stop)?;
+        let step = Arc::new(job.limits.begin(Work::Drawing));
+        step.test()?;
+        self.watch(stop, &step);
         let begun = Instant::now();
         let mut picture = self.renderer.render(&job.camera, &job.frame_settings(), job.outputs)?;
+        step.test()?;
         job.backdrop.under(picture.size, &mut picture.colour);
         let drawn = Drawn { picture, upload_s, draw_s: begun.elapsed().as_secs_f64() };
         let messages = self.renderer.messages();
@@ -120,19 +129,36 @@ impl Drawer {
         new.map_or(Ok(drawn), |new| Err(SessionError::Validation(new)))
     }
 
+    /// Lets a picture unwind to [`guarded`](crate::guarded) between two of its frames.
+    fn watch(&mut self, stop: &Stop, step: &Arc<Step>) {
+        // the step ends with the picture
+        let (stop, step) = (stop.clone(), Arc::downgrade(step));
+        self.renderer.set_watch(Some(Arc::new(move || {
+            stop.check();
+            step.upgrade().iter().for_each(|step| step.check());
+        })));
+    }
+
     /// Uploads the job's model, if it is not there; returns the seconds that its upload took.
     ///
     /// # Errors
-    /// [`SessionError::Draw`].
+    /// [`SessionError::Draw`], [`SessionError::Limit`].
     pub(crate) fn load(&mut self, job: &Job, stop: &Stop) -> Result<f64, SessionError> {
+        self.renderer.set_watch(None); // that of the picture before
         let scene = job.scene_settings();
         let is_there = |loaded: &&Uploaded| Arc::ptr_eq(&loaded.model, &job.model) && loaded.scene == scene;
         if let Some(loaded) = self.loaded.as_ref().filter(is_there) {
             return Ok(loaded.seconds);
         }
         self.loaded = None;
+        let step = job.limits.begin(Work::Preparing);
+        step.test()?;
         let begun = Instant::now();
-        self.renderer.upload_shared(Arc::clone(&job.model), scene, &|_| stop.check())?;
+        let between_faces = |_: usize| {
+            stop.check();
+            step.check();
+        };
+        self.renderer.upload_shared(Arc::clone(&job.model), scene, &between_faces)?;
         let seconds = begun.elapsed().as_secs_f64();
         self.loaded = Some(Uploaded { model: Arc::clone(&job.model), scene, seconds });
         Ok(seconds)

@@ -1,5 +1,6 @@
 //! Why there is no model or no picture, and how a caller stops work that takes too long.
 
+use crate::limits::Exceeded;
 use selvedge::edges::EdgeError;
 use selvedge::headless::HeadlessError;
 use selvedge::model::CameraError;
@@ -9,7 +10,6 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
 
 /// Why a file gives no model, or a job no picture.
 #[derive(Debug, thiserror::Error)]
@@ -26,14 +26,9 @@ pub enum SessionError {
         /// Its content in place of surfaces.
         summary: Box<Summary>,
     },
-    /// Reading the file took longer than [`ReadOptions::most_time`](crate::ReadOptions::most_time).
-    #[error("{file}: reading it takes longer than the limit of {most:?}")]
-    TooLong {
-        /// The file.
-        file: String,
-        /// The limit.
-        most: Duration,
-    },
+    /// The work on a file exceeds a limit.
+    #[error(transparent)]
+    Limit(#[from] Exceeded),
     /// No device, or none that suffices.
     #[error(transparent)]
     Device(HeadlessError),
@@ -63,7 +58,7 @@ pub enum SessionError {
     /// The validation layer found something while a picture was drawn.
     #[error("validation: {0}")]
     Validation(String),
-    /// The caller said [`Stop::set`], or the time of [`Stop::within`] is over.
+    /// The caller said [`Stop::set`].
     #[error("stopped before it was done")]
     Stopped,
     /// The renderer was closed, or failed for good.
@@ -74,22 +69,16 @@ pub enum SessionError {
     Panicked(String),
 }
 
-/// A flag that ends an import or an upload: set from any thread or by a timer, tested between two faces.
+/// A flag that ends an import or an upload: set from any thread, tested between two faces.
 #[derive(Clone, Debug, Default)]
 pub struct Stop {
     set: Arc<AtomicBool>,
-    until: Option<Instant>,
 }
 
 /// The panic that unwinds through the library to the caller who stopped it.
 struct Stopping;
 
 impl Stop {
-    /// A flag that sets itself once this time is over; an endless time sets nothing.
-    pub fn within(time: Duration) -> Self {
-        Self { until: Instant::now().checked_add(time), ..Self::default() }
-    }
-
     /// From now on.
     pub fn set(&self) {
         self.set.store(true, Ordering::Relaxed);
@@ -97,7 +86,7 @@ impl Stop {
 
     /// Whether it was set.
     pub fn is_set(&self) -> bool {
-        self.set.load(Ordering::Relaxed) || self.until.is_some_and(|until| Instant::now() >= until)
+        self.set.load(Ordering::Relaxed)
     }
 
     /// Unwinds to [`guarded`] if it was set: progress callbacks cannot return an error.
@@ -108,12 +97,13 @@ impl Stop {
     }
 }
 
-/// Runs work whose progress callbacks call [`Stop::check`]; a panic becomes an error.
+/// Runs work whose progress callbacks call [`Stop::check`] or [`Step::check`](crate::Step::check); a panic becomes an
+/// error.
 ///
 /// The objects of the work may be half done: the caller discards them.
 ///
 /// # Errors
-/// Those of the work, [`SessionError::Stopped`], [`SessionError::Panicked`].
+/// Those of the work, [`SessionError::Stopped`], [`SessionError::Limit`], [`SessionError::Panicked`].
 pub fn guarded<T>(work: impl FnOnce() -> Result<T, SessionError>) -> Result<T, SessionError> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|cause| Err(unwound(cause)))
 }
@@ -121,6 +111,9 @@ pub fn guarded<T>(work: impl FnOnce() -> Result<T, SessionError>) -> Result<T, S
 fn unwound(cause: Box<dyn Any + Send>) -> SessionError {
     if cause.is::<Stopping>() {
         return SessionError::Stopped;
+    }
+    if let Some(exceeded) = cause.downcast_ref::<Exceeded>() {
+        return exceeded.clone().into();
     }
     let text = cause.downcast_ref::<String>().cloned();
     let text = text.or_else(|| cause.downcast_ref::<&str>().map(|text| (*text).to_owned()));
@@ -133,20 +126,19 @@ mod tests {
 
     #[test]
     fn panics_are_reported_by_their_cause() {
-        let late = Stop::within(Duration::ZERO);
-        let stopped: Result<(), SessionError> = guarded(|| {
-            late.check();
-            Ok(())
-        });
-        assert!(matches!(stopped, Err(SessionError::Stopped)));
-        let early = Stop::within(Duration::MAX);
+        let stop = Stop::default();
         let done: Result<u8, SessionError> = guarded(|| {
-            early.check();
+            stop.check();
             Ok(7)
         });
         assert!(matches!(done, Ok(7)));
-        early.clone().set();
-        assert!(early.is_set());
+        stop.clone().set();
+        assert!(stop.is_set());
+        let stopped: Result<(), SessionError> = guarded(|| {
+            stop.check();
+            Ok(())
+        });
+        assert!(matches!(stopped, Err(SessionError::Stopped)));
         let number = 3;
         let broken: Result<(), SessionError> = guarded(|| panic!("{number} is no invariant"));
         assert_eq!(broken.expect_err("a panic").to_string(), "internal error: 3 is no invariant");

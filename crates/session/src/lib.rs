@@ -7,7 +7,8 @@
 //! ```
 //!
 //! A [`Worker`] draws the pictures of its jobs in order, and pictures of one model with frames in flight. Its caller
-//! may wait for each, and read the next file meanwhile. A flag ends an import or an upload between two faces.
+//! may wait for each, and read the next file meanwhile. A flag ends an import or an upload between two faces, and so do
+//! [`Limits`] of time and memory.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
@@ -19,6 +20,7 @@ mod drawer;
 mod error;
 mod images;
 mod legend;
+mod limits;
 mod lines;
 mod png;
 mod read;
@@ -36,6 +38,7 @@ pub use drawer::{DeviceOptions, Drawer, Drawn, Job, MOST_IN_FLIGHT};
 pub use error::{SessionError, Stop, guarded};
 pub use images::{Image, Values};
 pub use legend::legend;
+pub use limits::{Bound, Exceeded, Limits, Step, Work, resident};
 pub use lines::lines;
 pub use png::{save as save_png, write as write_png};
 pub use read::{Loaded, ReadOptions, Source, memory, read};

@@ -1,6 +1,7 @@
 //! Files and bytes to models that have something to draw.
 
 use crate::error::{SessionError, Stop, guarded};
+use crate::limits::{Limits, Work};
 use selvedge::model::Model;
 use selvedge_io::import::{
     self, Facets, Folders, Import, ImportReport, NamedCamera, Options, PictureSettings, Stage, Summary, Warning,
@@ -56,17 +57,21 @@ pub struct Loaded {
 /// Reads a model that has something to draw. `progress` as in [`Options::progress`].
 ///
 /// # Errors
-/// [`SessionError::Import`], [`SessionError::Nothing`], [`SessionError::Stopped`], [`SessionError::TooLong`].
+/// [`SessionError::Import`], [`SessionError::Nothing`], [`SessionError::Stopped`], [`SessionError::Limit`].
 pub fn read(
     source: Source<'_>,
     how: &ReadOptions,
     stop: &Stop,
     progress: &(dyn Fn(Stage) + Sync),
 ) -> Result<Loaded, SessionError> {
-    let limit = how.most_time.map_or_else(Stop::default, Stop::within);
+    let file = match source {
+        Source::Path(path) => path.display().to_string(),
+        Source::Bytes { name, .. } => name.to_owned(),
+    };
+    let step = Limits::new(&file, how.most_time, None).begin(Work::Reading);
     let tell = |stage: Stage| {
         stop.check();
-        limit.check();
+        step.check();
         progress(stage);
     };
     let folders = Folders::new(how.search.clone());
@@ -76,18 +81,15 @@ pub fn read(
         files: Some(&folders),
         facets: Facets::Round,
     };
-    let (file, import) = match source {
-        Source::Path(path) => (path.display().to_string(), guarded(|| Ok(import::open_with(path, &options)?))),
-        Source::Bytes { mut bytes, name } => {
-            (name.to_owned(), guarded(|| Ok(import::read_from(&mut bytes, name, &options)?)))
-        }
-    };
-    match import {
-        Err(SessionError::Stopped) if limit.is_set() && !stop.is_set() => {
-            Err(SessionError::TooLong { file, most: how.most_time.unwrap_or_default() })
-        }
-        import => Loaded::new(file, import?),
-    }
+    let import = guarded(|| {
+        Ok(match source {
+            Source::Path(path) => import::open_with(path, &options),
+            Source::Bytes { mut bytes, name } => import::read_from(&mut bytes, name, &options),
+        }?)
+    });
+    let import = import?;
+    step.test()?;
+    Loaded::new(file, import)
 }
 
 impl Loaded {
@@ -116,6 +118,8 @@ pub fn memory() -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use selvedge_io::import::ImportError;
+    use std::io::ErrorKind;
 
     const BRACKET: &[u8] = include_bytes!("../../../samples/bracket.step");
 
@@ -134,6 +138,14 @@ mod tests {
 
     #[test]
     fn what_cannot_be_drawn_is_an_error_that_names_the_file() {
+        let path = Source::Path(Path::new("no/such/file.step"));
+        let missing = read(path, &ReadOptions::default(), &Stop::default(), &|_| ()).expect_err("no file");
+        assert!(missing.to_string().contains("no/such/file.step"), "{missing}");
+        let kind = match &missing {
+            SessionError::Import(ImportError::Read { source, .. }) => Some(source.kind()),
+            _ => None,
+        };
+        assert_eq!(kind, Some(ErrorKind::NotFound));
         let damaged = bytes(b"ISO-10303-21;", "cut.step").expect_err("no data");
         assert!(
             matches!(damaged, SessionError::Import(_)) && damaged.to_string().starts_with("cut.step:"),
@@ -169,7 +181,7 @@ mod tests {
             read(Source::Bytes { bytes: BRACKET, name: "bracket.step" }, &how, &Stop::default(), &|_| ())
         };
         let late = within(Duration::from_nanos(1)).expect_err("too late");
-        assert!(matches!(late, SessionError::TooLong { .. }), "{late}");
+        assert!(matches!(late, SessionError::Limit(_)), "{late}");
         assert_eq!(late.to_string(), "bracket.step: reading it takes longer than the limit of 1ns");
         assert!(within(Duration::MAX).is_ok());
     }

@@ -11,6 +11,7 @@
 
 use crate::drawer::{DeviceOptions, Drawer, Drawn, Job};
 use crate::error::{SessionError, Stop, guarded};
+use crate::limits::Work;
 use selvedge::gpu::GpuError;
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -41,12 +42,24 @@ impl Order {
         self.answer(drawn)
     }
 
+    /// Answers it with a picture that was drawn while others were in flight.
+    fn with_others(self, drawn: Drawn) {
+        self.job.limits.spend(Duration::from_secs_f64(drawn.draw_s));
+        let tested = self.tested().map(|()| drawn);
+        self.answer(tested);
+    }
+
+    /// Whether its file's limits let a picture be drawn.
+    fn tested(&self) -> Result<(), SessionError> {
+        Ok(self.job.limits.begin(Work::Drawing).test()?)
+    }
+
     /// Why it need not be begun.
     fn refused(&self) -> Option<SessionError> {
         if self.stop.is_set() {
             return Some(SessionError::Stopped);
         }
-        self.job.camera.check().err().map(SessionError::from)
+        self.tested().err().or_else(|| self.job.camera.check().err().map(SessionError::from))
     }
 }
 
@@ -103,7 +116,7 @@ fn in_flight(drawer: &mut Drawer, [first, second]: [Order; 2], waiting: &mut Wai
     };
     let take = |drawn| {
         if let Some(order) = begun.borrow_mut().pop_front() {
-            order.answer(Ok(drawn));
+            order.with_others(drawn);
         }
     };
     let ended = guarded(|| drawer.draw_stream((&job, upload_s), next, take));
@@ -164,7 +177,8 @@ impl Ticket {
         }
     }
 
-    /// The job is not begun, or ends between two faces of its upload; a frame that the device draws is drawn to its end.
+    /// The job is not begun, or ends between two faces of its upload or between two of its frames. A frame that the
+    /// device draws is drawn to its end.
     pub fn stop(&self) {
         self.stop.set();
     }

@@ -6,10 +6,12 @@ use selvedge::gpu::GpuError;
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
 use selvedge_session::{
-    Backdrop, DeviceOptions, Drawer, Drawn, Job, ReadOptions, SessionError, Source, Stop, Ticket, Worker, read,
+    Backdrop, Bound, DeviceOptions, Drawer, Drawn, Exceeded, Job, Limits, ReadOptions, SessionError, Source, Stop,
+    Ticket, Work, Worker, read,
 };
 use std::path::Path;
 use std::sync::Arc;
+use std::thread;
 use std::time::Duration;
 
 const SIZE: (u32, u32) = (320, 240);
@@ -31,6 +33,7 @@ fn jobs(count: u32) -> Vec<Job> {
             frame: FrameSettings::default(),
             outputs: Outputs::ALL,
             backdrop: Backdrop::Gradient,
+            limits: Limits::default(),
         }
     };
     (0..count).map(job).collect()
@@ -123,6 +126,71 @@ fn a_job_that_fails_costs_itself_only() {
     for (ticket, expected) in tickets.iter().zip(&expected) {
         assert_same(&answer(ticket).expect("a picture"), expected, "sent before the close");
     }
+}
+
+/// Pictures of a file share its time, whichever job spends it; memory is that of the process.
+#[test]
+fn a_file_beyond_its_limits_costs_itself_only() {
+    let hour = Duration::from_secs(3600);
+    let mut jobs = jobs(6);
+    let expected = alone(&jobs);
+    let none = Limits::new("none.step", Some(Duration::ZERO), None);
+    let shared = Limits::new("shared.step", Some(hour), None);
+    jobs[1].limits = none.clone();
+    jobs[3].limits = Limits::new("large.step", None, Some(1));
+    jobs[4].limits = shared.clone();
+    jobs[5].limits = shared.clone();
+    let worker = Worker::new(DeviceOptions::default()).expect("a device");
+    let exceeded = |answer: Result<Drawn, SessionError>| match answer {
+        Err(SessionError::Limit(Exceeded { file, work, bound })) => (file, work, bound),
+        Err(error) => panic!("{error}"),
+        Ok(_) => panic!("a picture beyond the limits"),
+    };
+    for (nth, (ticket, expected)) in submitted(&worker, &jobs).iter().zip(&expected).enumerate() {
+        match (nth, answer(ticket)) {
+            (1, answer) => {
+                let late = ("none.step".to_owned(), Work::Drawing, Bound::Time(Duration::ZERO));
+                assert_eq!(exceeded(answer), late);
+            }
+            (3, answer) => {
+                let (file, work, bound) = exceeded(answer);
+                let is_memory = matches!(bound, Bound::Memory { most: 1, held: 2.. });
+                assert!(file == "large.step" && work == Work::Drawing && is_memory, "{file}: {work} {bound}");
+            }
+            (_, answer) => assert_same(&answer.expect("a picture"), expected, &format!("picture {nth}")),
+        }
+    }
+    shared.spend(hour);
+    assert_eq!(exceeded(answer(&submitted(&worker, &jobs[4..5])[0])).1, Work::Drawing);
+    // another model, which is to be uploaded first
+    let other = Job { model: bracket(), limits: none, ..jobs[0].clone() };
+    assert_eq!(exceeded(answer(&submitted(&worker, &[other])[0])).1, Work::Preparing);
+    assert_same(&answer(&submitted(&worker, &jobs[..1])[0]).expect("a picture"), &expected[0], "after them");
+}
+
+#[test]
+fn threads_share_a_worker_and_models_outlive_it() {
+    let jobs = jobs(4);
+    let expected = alone(&jobs);
+    let worker = Worker::new(DeviceOptions::default()).expect("a device");
+    thread::scope(|scope| {
+        for (half, expected) in jobs.chunks(2).zip(expected.chunks(2)) {
+            let worker = &worker;
+            scope.spawn(move || {
+                for _ in 0..3 {
+                    for (ticket, expected) in submitted(worker, half).iter().zip(expected) {
+                        assert_same(&answer(ticket).expect("a picture"), expected, "a thread's picture");
+                    }
+                }
+            });
+        }
+    });
+    drop(worker);
+    let mut other = Worker::new(DeviceOptions::default()).expect("a device");
+    let again = answer(&submitted(&other, &jobs[..1])[0]).expect("a picture");
+    assert_same(&again, &expected[0], "the picture of another worker");
+    other.close();
+    assert!(matches!(other.submit(jobs[0].clone()), Err(SessionError::Closed)));
 }
 
 /// A budget for one picture and a quarter of the images of another. One job needs more by itself.

@@ -3,7 +3,7 @@
 use crate::values::{length, mebibytes, seconds};
 use clap::{Args, ValueEnum};
 use selvedge::construct::subdivide::Scheme;
-use selvedge_session::{Stop, memory};
+use selvedge_session::{Limits, memory};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -17,27 +17,29 @@ pub struct ReadArgs {
     /// given several times
     #[arg(long, value_name = "DIR")]
     pub search: Vec<PathBuf>,
-    /// Most MiB of a file that are read, gzip undone; by default three quarters of the machine's memory, and 4096 at
-    /// most
+    /// Most MiB of memory that the process holds while a file is read, and with `render` while it is prepared and drawn,
+    /// too; by default a file, gzip undone, has three quarters of the machine's memory, and 4096 MiB at most
     #[arg(long, value_name = "MIB", value_parser = mebibytes)]
     pub limit_mib: Option<f64>,
-    /// Most seconds that a file is read; no limit by default
+    /// Most seconds for a file: to read it, and with `render` to prepare and draw it, too; no limit by default
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub limit_s: Option<f64>,
 }
 
 impl ReadArgs {
-    /// The flag that stops reading a file, which begins now.
-    pub fn stop(&self) -> Stop {
-        self.limit_s.map_or_else(Stop::default, |seconds| Stop::within(Duration::from_secs_f64(seconds)))
+    /// The limits of the work on a file, by its name in messages.
+    pub fn limits(&self, name: &str) -> Limits {
+        Limits::new(name, self.limit_s.map(Duration::from_secs_f64), self.most_memory())
+    }
+
+    /// Most bytes of memory that the process holds for a file.
+    pub fn most_memory(&self) -> Option<u64> {
+        self.limit_mib.map(|mebibytes| (mebibytes * f64::from(1 << 20)) as u64)
     }
 
     /// Most bytes of a file.
     pub fn most_bytes(&self) -> u64 {
-        match self.limit_mib {
-            Some(mebibytes) => (mebibytes * f64::from(1 << 20)) as u64,
-            None => memory() / 4 * 3,
-        }
+        self.most_memory().unwrap_or_else(|| memory() / 4 * 3)
     }
 }
 

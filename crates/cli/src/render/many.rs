@@ -5,7 +5,8 @@
 //!   main              draw a: iso, top ─▶ draw b: iso, top …     one device for all
 //! ```
 //!
-//! A file that fails is reported, and the others are drawn; a device that fails ends the run.
+//! A file that fails is reported, and the others are drawn; a device that fails ends the run. With a limit of memory no
+//! file is read ahead: what the process holds is one file's then.
 
 use super::manifest::{Known, Manifest};
 use super::task::Task;
@@ -15,8 +16,10 @@ use crate::progress::{Files, files};
 use crate::session::{self, Session};
 use crate::{Outcome, explained, target};
 use anyhow::{Error, Result};
+use selvedge::gpu::GpuError;
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge_io::import::Import;
+use selvedge_session::{Limits, resident};
 use std::path::Path;
 use std::sync::mpsc;
 use std::thread;
@@ -32,7 +35,7 @@ pub fn run(args: &RenderArgs, tasks: &[Task]) -> Result<Outcome> {
     }
     let mut run = Run { args, manifest, device: None, failed: 0, complained: false };
     if !todo.is_empty() {
-        run.device = Some(session::opened(&args.frame)?);
+        run.device = Some(session::opened(&args.frame, args.read.most_memory())?);
         run.all(&todo)?;
     }
     let complained = run.device.take().is_some_and(session::close) | run.complained;
@@ -50,11 +53,21 @@ struct Run<'a> {
     complained: bool,
 }
 
+/// A file that was read, its facts, and its limits.
+type Opened = (Import, Known, Limits);
+
 impl Run<'_> {
     fn all(&mut self, todo: &[&Task]) -> Result<()> {
         let args = self.args;
         let bar = files(todo.len());
         let hashed = self.manifest.is_some();
+        if let Some(most) = args.read.most_memory() {
+            for task in todo {
+                self.one(task, imported(args, task, hashed), &bar)?;
+                self.release(most);
+            }
+            return Ok(());
+        }
         thread::scope(|scope| {
             let (send, read) = mpsc::sync_channel(0);
             scope.spawn(move || {
@@ -71,13 +84,23 @@ impl Run<'_> {
         })
     }
 
+    /// Frees the device, and with it the model that was drawn, if the process holds more than half of the memory that
+    /// the next file may have.
+    fn release(&mut self, most: u64) {
+        if resident().is_some_and(|held| held > most / 2) {
+            self.complained |= self.device.take().is_some_and(session::close);
+        }
+    }
+
     /// Draws one file; an error ends the run.
-    fn one(&mut self, task: &Task, import: Result<(Import, Known)>, bar: &Files) -> Result<()> {
-        let mut count = 0;
-        let result = import.and_then(|(import, known)| self.drawn(task, import, &known, &mut count));
-        bar.one(&session::named(&task.model));
+    fn one(&mut self, task: &Task, opened: Result<Opened>, bar: &Files) -> Result<()> {
+        let (name, mut count) = (session::named(&task.model), 0);
+        let result = opened.and_then(|opened| self.drawn(task, opened, &mut count));
+        bar.one(&name);
         let Err(error) = result else { return Ok(()) };
         self.failed += 1;
+        // errors of the renderer name no file
+        let error = if explained(&error).contains(&name) { error } else { error.context(name) };
         let told = explained(&error);
         let left = &task.shots[count.min(task.shots.len())..];
         self.manifest.iter_mut().try_for_each(|manifest| manifest.others(task, left, Some(&told)))?;
@@ -88,17 +111,17 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn drawn(&mut self, task: &Task, import: Import, known: &Known, count: &mut usize) -> Result<()> {
+    fn drawn(&mut self, task: &Task, (import, known, limits): Opened, count: &mut usize) -> Result<()> {
         let (args, manifest) = (self.args, &mut self.manifest);
         target::check(&args.cut.inputs(&task.model), &task.outputs())?;
         let kept = self.device.take();
-        let device = || kept.map_or_else(|| session::device(&args.frame), Ok);
+        let device = || kept.map_or_else(|| session::device(&args.frame, args.read.most_memory()), Ok);
         let mut record = |drawn: &Drawn| -> Result<()> {
             let shot = &task.shots[*count];
             *count += 1;
-            manifest.iter_mut().try_for_each(|manifest| manifest.drawn(task, shot, known, drawn))
+            manifest.iter_mut().try_for_each(|manifest| manifest.drawn(task, shot, &known, drawn))
         };
-        let session = drawn(args, task, import, device, &mut record)?;
+        let session = drawn(args, task, (import, &limits), device, &mut record)?;
         self.complained |= session.complaints();
         self.device = Some(Session::into_renderer(session));
         Ok(())
@@ -106,17 +129,21 @@ impl Run<'_> {
 }
 
 /// Reads a file, with the facts for a manifest.
-fn imported(args: &RenderArgs, task: &Task, hashed: bool) -> Result<(Import, Known)> {
+fn imported(args: &RenderArgs, task: &Task, hashed: bool) -> Result<Opened> {
     let begun = Instant::now();
-    let import = session::open(&task.model, &args.read, &args.subdivide)?;
+    let limits = args.read.limits(&session::named(&task.model));
+    let import = session::open_within(&task.model, &args.read, &args.subdivide, &limits)?;
     let read_s = begun.elapsed().as_secs_f64();
     let of = || Known::new(&task.model, &import.summary(), import.warnings.len(), import.model.instances.len(), read_s);
     let known = if hashed { of()? } else { Known::default() };
-    Ok((import, known))
+    Ok((import, known, limits))
 }
 
 /// Whether the error is the device's, so that no later file can be drawn.
 fn of_device(error: &Error) -> bool {
-    let own = |error: &HeadlessError| matches!(error, HeadlessError::Render(_) | HeadlessError::NeverComplete);
+    let own = |error: &HeadlessError| {
+        matches!(error, HeadlessError::Render(_) | HeadlessError::NeverComplete)
+            || error.gpu().is_some_and(GpuError::is_out_of_memory)
+    };
     error.downcast_ref::<HeadlessError>().is_some_and(|error| !own(error))
 }

@@ -229,8 +229,8 @@ fn pixel(path: &str, x: u32, y: u32) -> ((u32, u32), [u8; 4]) {
     ((info.width, info.height), bytes[at..at + 4].try_into().unwrap())
 }
 
-/// The `openscad` on the path runs an OpenSCAD program: here a missing one, one that fails, and one that writes a
-/// solid.
+/// The `openscad` on the path runs an OpenSCAD program: here a missing one, one that fails, one that writes a solid, and
+/// one that never ends.
 #[test]
 #[cfg(unix)]
 fn openscad_runs_its_programs() {
@@ -239,21 +239,27 @@ fn openscad_runs_its_programs() {
     std::fs::create_dir_all(&folder).unwrap();
     let model = folder.join("a.scad");
     std::fs::write(&model, "cube(2);").unwrap();
-    let run = |script: Option<&str>| {
+    let run_with = |script: Option<&str>, more: &[&str]| {
         let program = folder.join("openscad");
         if let Some(script) = script {
             std::fs::write(&program, format!("#!/bin/sh\n{script}\n")).unwrap();
             std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
         }
-        let output = Command::new(env!("CARGO_BIN_EXE_selvedge")).arg("info").arg(&model).env("PATH", &folder).output();
-        let output = output.unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_selvedge"));
+        let output = command.arg("info").arg(&model).args(more).env("PATH", &folder).output().unwrap();
         (output.status.code(), text(&output.stdout), text(&output.stderr))
     };
+    let run = |script: Option<&str>| run_with(script, &[]);
     let (status, _, told) = run(None);
     assert!(status == Some(2) && told.contains("apt install openscad"), "{told}");
     let (status, _, told) = run(Some("echo 'ERROR: Parser error' >&2; exit 1"));
     assert!(status == Some(2) && told.contains("openscad failed") && told.contains("Parser error"), "{told}");
     let (status, out, told) = run(Some("echo 'WARNING: odd' >&2; echo 'cube(size = [2, 3, 4], center = false);'"));
     assert!(status == Some(0) && out.contains("box 2.000 x 3.000 x 4.000 mm") && told.contains("odd"), "{out} {told}");
+    let (status, _, told) = run_with(Some("while :; do :; done"), &["--limit-s", "0.5"]);
+    assert!(
+        status == Some(2) && told.contains("a.scad: reading it takes more seconds than --limit-s allows"),
+        "{told}"
+    );
     std::fs::remove_dir_all(&folder).unwrap();
 }

@@ -132,9 +132,9 @@ fn the_first_failure_ends_it_where_that_is_wanted() {
     assert!(!folder.path().join("a_iso.png").exists());
 }
 
-/// A file that takes too long fails; nothing takes less than a nanosecond.
+/// A file that takes too long to read fails; nothing takes less than a nanosecond.
 #[test]
-fn a_file_has_its_time() {
+fn a_file_has_its_time_to_be_read() {
     let (folder, names) = files();
     let names = [names[0].clone(), names[2].clone()];
     let output = render(&names, &folder.path().join("{stem}_{view}.png"), &["--limit-s", "1e-9"]);
@@ -149,6 +149,53 @@ fn a_file_has_its_time() {
     assert_eq!(selvedge(&["info", &names[0], "--limit-s", "1e9"]).status.code(), Some(0));
 }
 
+/// A hundred pictures of four million pixels take longer than a second, whose first part is enough to read a sphere.
+#[test]
+fn a_file_has_its_time_to_be_drawn() {
+    let (folder, names) = files();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (manifest, views) = (path("all.csv"), (0..100).map(|n| format!("{n},20")).collect::<Vec<_>>().join(","));
+    let output = path("{stem}_{view}.png");
+    let limited = ["--limit-s", "1", "--manifest", &manifest];
+    let drawn = ["render", &names[2], "-o", &output, "--size", "2000x2000", "--views", &views];
+    let output = selvedge(&[&drawn[..], &limited].concat());
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(told.contains("preparing") && told.contains("take more seconds than --limit-s allows"), "{told}");
+    let table = rows(Path::new(&manifest));
+    assert_eq!(table.len(), 100);
+    let count = table.iter().take_while(|row| row["status"] == "drawn").count();
+    let late = |row: &std::collections::HashMap<String, String>| {
+        row["status"] == "failed" && row["error"].contains("c.csg: reading") && !Path::new(&row["output"]).exists()
+    };
+    assert!(count < 100 && table[count..].iter().all(late), "{count} were drawn");
+    assert!(table[..count].iter().all(|row| Path::new(&row["output"]).is_file()), "pictures before stay");
+}
+
+/// The colour alone of the large picture takes 549 MiB on the device and as much beside it.
+#[test]
+fn a_file_has_its_memory() {
+    let (folder, names) = files();
+    let names = [names[0].clone(), names[2].clone()];
+    let draw = |size: &str, limit: &str| {
+        let output = folder.path().join(format!("{{stem}}_{size}.png")).display().to_string();
+        selvedge(&["render", &names[0], &names[1], "-o", &output, "--size", size, "--limit-mib", limit])
+    };
+    let output = draw("12000x12000", "1024");
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    for name in &names {
+        let line = told.lines().find(|line| line.contains(name.as_str()));
+        assert!(line.is_some_and(|line| line.contains("more than --limit-mib allows: ")), "{told}");
+    }
+    assert!(told.contains("0 of 2 files drawn, 0 skipped, 2 failed"), "{told}");
+    let output = draw("48x32", "1024");
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let output = draw("48x32", "8");
+    let told = text(&output.stderr);
+    assert!(output.status.code() == Some(1) && told.contains("reading it takes more than --limit-mib"), "{told}");
+}
+
 #[test]
 fn two_files_do_not_go_to_one_place() {
     let (folder, names) = files();
@@ -161,6 +208,43 @@ fn two_files_do_not_go_to_one_place() {
     fs::copy(c, &twin).expect("a copy");
     refused(&["render", a, &twin, "-o", &out("{stem}.png")], "both");
     refused(&["render", a, c, "-o", &out("{stem}.png"), "--aov", &format!("depth={}", out("d.npy"))], "{stem}");
+}
+
+/// The script of docs/many.md, as Slurm runs its tasks. A task that was killed is submitted again.
+#[test]
+fn an_array_of_tasks_draws_every_file_once() {
+    let page = include_str!("../../../../docs/many.md");
+    let begun = page.split("```sh\n").find(|block| block.starts_with("#!/bin/bash")).expect("a script");
+    let script = begun.split("```").next().expect("its end").replace("512x512", "48x32");
+    assert!(script.contains("--size 48x32") && script.contains("#SBATCH --array"), "{script}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    fs::create_dir(path("models")).expect("a folder");
+    for stem in ["a", "b", "c"] {
+        fs::copy(sample("bracket.step"), path(&format!("models/{stem}.step"))).expect("a copy");
+    }
+    fs::write(path("draw.sh"), script).expect("written");
+    let programs = Path::new(env!("CARGO_BIN_EXE_selvedge")).parent().expect("a folder").display();
+    let programs = format!("{programs}:{}", std::env::var("PATH").expect("a path"));
+    let task = |id: &str| {
+        let mut bash = Command::new("bash");
+        bash.arg("draw.sh").current_dir(folder.path()).env("PATH", &programs);
+        let ran = bash.env("SLURM_ARRAY_TASK_ID", id).env("SLURM_ARRAY_TASK_COUNT", "2").output().expect("bash");
+        assert!(ran.status.success(), "task {id}: {}", text(&ran.stderr));
+        let told = |row: &std::collections::HashMap<String, String>| (row["file"].clone(), row["status"].clone());
+        rows(&path(&format!("out/{id}.csv"))).iter().map(told).collect::<Vec<_>>()
+    };
+    let all = |stem: &str, status: &str| vec![(format!("models/{stem}.step"), status.to_owned()); 3];
+    assert_eq!(task("0"), [all("a", "drawn"), all("c", "drawn")].concat());
+    assert_eq!(task("1"), all("b", "drawn"));
+    for stem in ["a", "b", "c"] {
+        for end in ["iso.png", "front.npy", "top.png", "top.npy"] {
+            assert!(path(&format!("out/{stem}_{end}")).is_file(), "{stem} {end}");
+        }
+    }
+    fs::remove_file(path("out/c_top.npy")).expect("it was not written yet");
+    assert_eq!(task("0"), [all("a", "skipped"), all("c", "drawn")].concat());
+    assert!(path("out/c_top.npy").is_file());
 }
 
 /// The call of the file that desktops read, with the specification's replacements for its fields.

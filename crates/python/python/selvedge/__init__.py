@@ -91,12 +91,15 @@ class Renderer:
 
     device: part of the device's name; without it a discrete GPU, else an integrated one, else the CPU.
     validation: load Vulkan's validation layer; what it says of a picture is a RenderError.
+    limit_mib: most MiB of buffers and images on the device; without it as many as it has left. A picture that needs more
+        is a RenderError.
 
     Raises DeviceError. Several threads may use one renderer: it draws their pictures in the order in which they ask.
     """
 
-    def __init__(self, device: str | None = None, *, validation: bool = False):
-        self._native = _native.Renderer(device, validation)
+    def __init__(self, device: str | None = None, *, validation: bool = False, limit_mib: float | None = None):
+        _check_limits(limit_mib=limit_mib)
+        self._native = _native.Renderer(device, validation, limit_mib)
 
     def render(
         self,

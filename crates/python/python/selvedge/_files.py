@@ -70,7 +70,9 @@ def render_files(
     skip_existing: files of which every output is there are left alone.
     fail_fast: the first failure is raised. Without it a file or picture that fails has a row that says why, and the
         others are drawn.
-    strict, search, limit_mib, limit_s: as in open.
+    strict, search, limit_mib: as in open.
+    limit_s: most seconds of work on a file: to read it, to prepare it and to draw its pictures. Beyond, the file is a
+        ReadError or its next pictures are a RenderError. A frame that the device has begun is drawn to its end.
     ahead: as in Renderer.render_many. The next file is read while pictures are drawn, so at most ahead + 2 models are
         in memory.
     renderer: the one that draws; without it one is made and closed.
@@ -140,8 +142,10 @@ class _Opened:
         try:
             begun = time.perf_counter()
             model = selvedge.open(file, **reading)
+            read_s = time.perf_counter() - begun
+            self.limits = _native.Limits(file, reading["limit_s"], read_s)
             self.facts = {
-                "read_s": time.perf_counter() - begun,
+                "read_s": read_s,
                 "sha256": _sha256(file),
                 "faces": len(model.faces),
                 "instances": len(model.instances),
@@ -172,7 +176,7 @@ class _Shot:
             return
         try:
             self._facts = opened.facts
-            self._pending = renderer._native.submit(opened.model, {**asked, "view": self.view})
+            self._pending = renderer._native.submit(opened.model, {**asked, "view": self.view}, opened.limits)
         except ClosedError:
             raise
         except FAILURES as error:  # no camera shows this model

@@ -1,0 +1,233 @@
+//! Bounds of the work on a file: its time, and the memory of the process meanwhile.
+//!
+//! ```text
+//!   Limits ─ begin(Reading)   ─▶ Step: check, check, … ─▶ drop
+//!          ─ begin(Preparing) ─▶ Step: check, check, … ─▶ drop        time between the steps does not count
+//!          ─ begin(Drawing)   ─▶ Step: test, test      ─▶ drop
+//! ```
+//!
+//! The work tests them itself: between two faces, between two frames, and before and after a picture. A frame that the
+//! device has begun is drawn to its end.
+
+use std::fmt;
+use std::panic::resume_unwind;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+use sysinfo::{Process, ProcessRefreshKind, ProcessesToUpdate, System};
+
+/// Nanoseconds between two measurements of memory. One takes some tens of microseconds, and a face often takes less.
+const BETWEEN: u64 = 5_000_000;
+
+/// A part of the work on a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Work {
+    /// The file becomes a model.
+    Reading,
+    /// The model is uploaded.
+    Preparing,
+    /// Pictures are drawn and written.
+    Drawing,
+}
+
+impl fmt::Display for Work {
+    /// The work so far, with its verb.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Reading => "reading it takes",
+            Self::Preparing => "reading and preparing it take",
+            Self::Drawing => "reading, preparing and drawing it take",
+        })
+    }
+}
+
+/// A limit, as it is exceeded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bound {
+    /// Most time.
+    Time(Duration),
+    /// Most memory.
+    Memory {
+        /// The limit, bytes.
+        most: u64,
+        /// Bytes that the process holds.
+        held: u64,
+    },
+}
+
+impl fmt::Display for Bound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Time(most) => write!(f, "longer than the limit of {most:?}"),
+            Self::Memory { most, held } => {
+                write!(f, "more memory than the limit of {most} bytes: the process holds {held}")
+            }
+        }
+    }
+}
+
+/// The work on a file exceeds a limit.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}: {work} {bound}")]
+pub struct Exceeded {
+    /// The file.
+    pub file: String,
+    /// What was being done.
+    pub work: Work,
+    /// The limit.
+    pub bound: Bound,
+}
+
+/// Most time and memory for a file; the default has no limits. Clones share the time that was spent.
+#[derive(Clone, Debug, Default)]
+pub struct Limits {
+    file: String,
+    most_time: Option<Duration>,
+    most_memory: Option<u64>,
+    /// Nanoseconds of the steps that ended.
+    spent: Arc<AtomicU64>,
+}
+
+impl Limits {
+    /// Of a file, by its name in messages. The memory is what the process holds, in bytes; where the system does not
+    /// tell, it is not bounded.
+    pub fn new(file: &str, most_time: Option<Duration>, most_memory: Option<u64>) -> Self {
+        Self { file: file.to_owned(), most_time, most_memory, spent: Arc::default() }
+    }
+
+    /// Work begins, and ends when the step is dropped.
+    pub fn begin(&self, work: Work) -> Step {
+        let limits = self.clone();
+        Step { limits, work, begun: Instant::now(), due: AtomicU64::new(0), held: AtomicU64::new(0) }
+    }
+
+    /// Counts the time of work that had no step.
+    pub fn spend(&self, time: Duration) {
+        self.spent.fetch_add(nanoseconds(time), Ordering::Relaxed);
+    }
+}
+
+/// Work within [`Limits`].
+#[derive(Debug)]
+pub struct Step {
+    limits: Limits,
+    work: Work,
+    begun: Instant,
+    /// When memory is measured next, nanoseconds after the beginning.
+    due: AtomicU64,
+    /// Most bytes that were measured.
+    held: AtomicU64,
+}
+
+impl Step {
+    /// Whether the work may go on.
+    ///
+    /// # Errors
+    /// [`Exceeded`].
+    pub fn test(&self) -> Result<(), Exceeded> {
+        let Limits { file, most_time, most_memory, spent } = &self.limits;
+        let exceeded = |bound| Err(Exceeded { file: file.clone(), work: self.work, bound });
+        let time = self.begun.elapsed() + Duration::from_nanos(spent.load(Ordering::Relaxed));
+        if let Some(most) = most_time.filter(|most| time > *most) {
+            return exceeded(Bound::Time(most));
+        }
+        let Some(most) = *most_memory else { return Ok(()) };
+        let held = self.held();
+        if held > most { exceeded(Bound::Memory { most, held }) } else { Ok(()) }
+    }
+
+    /// Unwinds to [`guarded`](crate::guarded) if a limit is exceeded: progress callbacks cannot return an error.
+    pub fn check(&self) {
+        if let Err(exceeded) = self.test() {
+            resume_unwind(Box::new(exceeded));
+        }
+    }
+
+    /// Most bytes that the process held, measured now and then: every thread sees that a limit was exceeded.
+    fn held(&self) -> u64 {
+        let now = nanoseconds(self.begun.elapsed());
+        let due = self.due.load(Ordering::Relaxed);
+        let next = now.saturating_add(BETWEEN);
+        let is_due = now >= due;
+        if is_due && self.due.compare_exchange(due, next, Ordering::Relaxed, Ordering::Relaxed).is_ok() {
+            self.held.fetch_max(resident().unwrap_or(0), Ordering::Relaxed);
+        }
+        self.held.load(Ordering::Relaxed)
+    }
+}
+
+impl Drop for Step {
+    fn drop(&mut self) {
+        self.limits.spend(self.begun.elapsed());
+    }
+}
+
+fn nanoseconds(time: Duration) -> u64 {
+    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
+}
+
+/// Bytes of memory that the process holds; `None` where the system does not tell.
+pub fn resident() -> Option<u64> {
+    let own = sysinfo::get_current_pid().ok()?;
+    let mut system = System::new();
+    let memory = ProcessRefreshKind::nothing().with_memory().without_tasks();
+    system.refresh_processes_specifics(ProcessesToUpdate::Some(&[own]), false, memory);
+    system.process(own).map(Process::memory)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{SessionError, guarded};
+    use std::hint::black_box;
+    use std::thread;
+
+    const HOUR: Duration = Duration::from_secs(3600);
+
+    #[test]
+    fn all_work_on_a_file_counts_and_no_wait() {
+        let limits = Limits::new("a.step", Some(Duration::from_millis(200)), None);
+        thread::sleep(Duration::from_millis(250)); // it waits for its turn
+        assert_eq!(limits.begin(Work::Reading).test(), Ok(()));
+        let step = limits.clone().begin(Work::Preparing);
+        thread::sleep(Duration::from_millis(250));
+        let late = step.test().expect_err("a quarter of a second");
+        assert_eq!(late.to_string(), "a.step: reading and preparing it take longer than the limit of 200ms");
+        drop(step);
+        let late = limits.begin(Work::Drawing).test().expect_err("it was spent before");
+        assert_eq!((late.work, late.bound), (Work::Drawing, Bound::Time(Duration::from_millis(200))));
+
+        let long = Limits::new("a.step", Some(HOUR), None);
+        long.spend(HOUR / 2);
+        assert_eq!(long.begin(Work::Drawing).test(), Ok(()));
+        long.spend(HOUR);
+        assert!(long.begin(Work::Drawing).test().is_err());
+        assert_eq!(Limits::default().begin(Work::Drawing).test(), Ok(()));
+    }
+
+    #[test]
+    fn memory_is_that_of_the_process() {
+        let before = resident().expect("the system tells");
+        assert!(before > 1 << 20, "{before} bytes");
+        let most = before + (64 << 20);
+        let limits = Limits::new("a.step", None, Some(most));
+        assert_eq!(limits.begin(Work::Reading).test(), Ok(()));
+        let large = black_box(vec![1_u8; 128 << 20]);
+        let step = limits.begin(Work::Reading);
+        let late = step.test().expect_err("twice as much");
+        let Bound::Memory { most: told, held } = late.bound else { panic!("{late}") };
+        assert!(told == most && held > most, "{late}");
+        drop(large);
+        assert!(step.test().is_err(), "other threads see it, too");
+    }
+
+    #[test]
+    fn a_check_unwinds_to_the_guard() {
+        let step = Limits::new("a.step", Some(Duration::ZERO), None).begin(Work::Reading);
+        let ended: Result<(), SessionError> = guarded(|| {
+            step.check();
+            Ok(())
+        });
+        assert!(matches!(ended, Err(SessionError::Limit(Exceeded { work: Work::Reading, .. }))));
+    }
+}
