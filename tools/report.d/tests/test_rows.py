@@ -56,7 +56,7 @@ class Verdicts(unittest.TestCase):
     def test_two_rounds_are_no_verdict(self):
         two = contest([1, 1], [9, 9])
         self.assertEqual((two.verdict(), two.lost()), ("not measured", False))
-        self.assertIn("2 rounds", two.reason())
+        self.assertIn("rounds: 2", two.reason())
 
     def test_exact_quantities_need_no_rounds(self):
         self.assertEqual(contest([5.0], [4.0], exact=True).verdict(), "behind")

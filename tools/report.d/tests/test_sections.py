@@ -130,7 +130,7 @@ class Zoom(unittest.TestCase):
         camera = {"eye": [0, 0, 9], "target": [0, 0, 0], "fovy": 35.0, "size": [4, 3]}
         cameras = {"1": camera, "1000": camera}
         judged = [{"judgement": {"worst_shift_px": 0.1, "folds": {"worst_shift_px": 0.2}}}] * 2
-        ours = [{name: {"passes": [{"gpu_ms": 10.0}]} for name in cameras}] * 3
+        ours = [{name: {"passes": [{"name": "visibility", "gpu_ms": 10.0}]} for name in cameras}] * 3
         drawn = {("fixed", name): {"frame_ms": 2.0} for name in cameras}
         meshed = [drawn | {("remeshed", "1"): {"frame_ms": 2.0, "mesh_s": 0.1}}] * 3
         errors = dict.fromkeys(cameras, "no kernel")

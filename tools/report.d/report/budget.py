@@ -1,0 +1,71 @@
+"""The time of each section: what it is given, and what is left of it.
+
+The shares of a whole run are 75 minutes together, those of a quick one 9. A section orders its cases, the most telling
+ones first, and divides what is left among those to come. A case that has no time left stays in the report as a row
+with that reason, and so does one whose process was ended at the limit.
+"""
+
+import time
+
+from .turns import Unmeasurable
+
+# seconds of a quick run, and of a whole one
+SECONDS = {
+    "surfaces": (200, 1600),
+    "zoom": (85, 300),
+    "trims": (85, 660),
+    "solids": (65, 430),
+    "scale": (20, 380),
+    "stability": (40, 410),
+    "least": (5, 10),
+    "first_use": (5, 490),
+    "frames": (15, 60),
+    "reading": (20, 70),
+    "packages": (0, 90),
+}
+# a process that has begun gets at least so many seconds: it measures what comes after the time for nothing else
+LEAST_S = 20.0
+
+
+class Late(Unmeasurable):
+    """The time was used up, or a process was ended at its limit."""
+
+
+class Budget:
+    """`seconds` from now."""
+
+    def __init__(self, seconds, clock=time.monotonic):
+        self.seconds, self.clock, self.start = seconds, clock, clock()
+
+    def left(self):
+        return max(self.seconds - (self.clock() - self.start), 0.0)
+
+    def needed(self):
+        """Raises the reason for the rows of what there is no time for."""
+        if self.left() <= 0:
+            raise Late(f"the section's {self.seconds:,.0f} s were used up")
+
+    def share(self, weight, rest):
+        """Seconds for a case of this weight; `rest` are the weights of all cases to come, its own among them."""
+        return self.left() * weight / sum(rest)
+
+    def limit(self, most_s):
+        """Seconds after which a process is ended: `most_s`, or what is left."""
+        return min(most_s, max(self.left(), LEAST_S))
+
+
+def of(section, quick):
+    """The time of a section."""
+    return Budget(SECONDS[section][0 if quick else 1])
+
+
+def cases(budget, weights):
+    """Each case with its seconds; a case without time left has the reason in their place."""
+    rest = list(weights.values())
+    for case, weight in weights.items():
+        try:
+            budget.needed()
+            yield case, budget.share(weight, rest)
+        except Late as late:
+            yield case, late
+        rest.pop(0)
