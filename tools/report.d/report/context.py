@@ -43,10 +43,10 @@ class Context:
             else "SELVEDGE_MODELS names no folder"
         )
 
-    def shown(self, *words):
-        """A command of the program as it stands in the document."""
+    def shown(self, *words, program="selvedge"):
+        """A command of the program, or of another one, as it stands in the document."""
         folders = [(self.models, "$SELVEDGE_MODELS")] if self.models else []
-        return shown(["selvedge", *words], [*folders, (f"{ROOT}/", "")])
+        return shown([program, *words], [*folders, (f"{ROOT}/", "")])
 
     def say(self, text):
         print(f"   {text}", file=sys.stderr, flush=True)

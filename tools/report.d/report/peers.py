@@ -83,13 +83,13 @@ class Peers:
         return run(command, self.budget.limit(limit_s) if self.budget else limit_s)
 
 
-def run(command, limit_s, allowed=(0,)):
+def run(command, limit_s, cwd=ROOT):
     """Standard output, the problem (empty if there is none), and seconds; at the limit its group is ended."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "tools/report.d")}
     start = time.perf_counter()
     process = subprocess.Popen(
         [str(word) for word in command],
-        cwd=ROOT,
+        cwd=cwd,
         env=environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -100,7 +100,7 @@ def run(command, limit_s, allowed=(0,)):
         out, told = process.communicate(timeout=limit_s)
         problem = (
             ""
-            if process.returncode in allowed
+            if process.returncode == 0
             else f"status {process.returncode}: {(told.strip().splitlines() or ['no word'])[-1]}"
         )
     except subprocess.TimeoutExpired:

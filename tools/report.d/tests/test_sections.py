@@ -1,6 +1,7 @@
 """Sections with made-up measurements: no process runs."""
 
 import unittest
+from unittest import mock
 
 from report.rows import Missing, Section
 from report.sections import packages, stability, surfaces, trims, zoom
@@ -71,6 +72,26 @@ class Surfaces(unittest.TestCase):
 
     def test_a_peer_without_a_verdict_is_not_behind(self):
         self.assertEqual(self.contest(0.5, {"ours 0.5": 0.2}).verdict(), "not measured")
+
+    def test_a_deflection_that_was_not_drawn_has_its_reason(self):
+        case = object.__new__(surfaces.Case)
+        case.what, case.stopped, case.context = "part.step", {}, mock.Mock()
+        case.why("meshed", [1e-2, 1e-5, 1e-6], [{"mesh_s": 1.0}, {"stopped": "the mesh before took 9 s"}])
+        section, found = Section(1, "", ""), [{1e-2: (1.0, 2.0, 3.0)}] * 3
+        competitors = {"VTK": ("mesh", found)}
+        case.table(section, competitors, {"boundary": 9, "alone": 0}, {})
+        cells = [row[1:3] for row in section.tables[0].rows]
+        self.assertEqual(cells[1], ["1e-05 of the diagonal", Missing("the mesh before took 9 s")])
+        self.assertEqual((cells[2][0], type(cells[2][1])), ("1e-06 of the diagonal", Missing))
+
+    def test_later_rounds_repeat_some_settings(self):
+        case = object.__new__(surfaces.Case)
+        case.first = {}
+        tolerances = [0.1, 0.5, 1.0, 4.0]
+        self.assertEqual(case.settings_of("ours", tolerances), tolerances)
+        self.assertEqual(case.with_first("ours", {0.1: "a", 0.5: "b"}), {0.1: "a", 0.5: "b"})
+        self.assertEqual(case.settings_of("ours", tolerances), [0.5, 1.0])
+        self.assertEqual(case.with_first("ours", {0.5: "c"}), {0.1: "a", 0.5: "c"})
 
     def test_a_plot_shows_the_quickest_of_each_error(self):
         self.assertEqual(surfaces.front([(0.5, 3), (0.1, 9), (0.5, 2)]), [(0.1, 9), (0.5, 2)])

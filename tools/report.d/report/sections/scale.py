@@ -7,7 +7,7 @@ from ..turns import Unmeasurable
 # beyond so many copies or holes one frame is measured: it is long, and its noise small
 ONE_FRAME = 1000
 # seconds of one number
-MOST_S = 150
+MOST_S = 180
 TEXT = """\
 Patches are those of wavy bicubic sheets of 1,024 patches, each with a net of its own. Instances are copies of
 `bracket.step`. Leaves are the primitives of a plate with a grid of holes. All are seen whole, every pass recorded:
@@ -17,7 +17,7 @@ proportion, a smaller one slower growth; *last* is the exponent between the two 
 
 def measure(context):
     section = Section(5, "Scale", TEXT)
-    size = context.pick("480x270", "1280x720")
+    size = context.pick("480x270", "640x360")
     frames = lambda number: context.pick(2, 5) if number < ONE_FRAME else 1
     copies = context.pick("1,10,100", "1,10,100,1000,4000,9000")
     words = ["--size", size]

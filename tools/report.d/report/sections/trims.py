@@ -14,13 +14,13 @@ FILES_QUICK = {"samples/panel.step": 20}
 FILES = {"samples/panel.step": 50, "nist_pmi_2.stp": 0, "m6_countersunk_screw.step": 0}
 # the share of a whole run's time: the generated face has most borders
 WEIGHTS = {"samples/panel.step": 2.2, "nist_pmi_2.stp": 1.0, "m6_countersunk_screw.step": 1.0}
-# pictures of the sweep over zoom
-SIZE = "400x400"
+# pictures of the sweep over zoom, and those that every round draws beside them
+SIZE, SMALL_SIZE = "400x400", "200x200"
 TEXT = """\
 The engine's ways to trim, `table` and `exact`, are measured beside other methods: bisection (the paper's), a texture
 of the trim, and triangles made in advance. *Trims* is what the tests cost in the passes of a frame, *turning* the same
 of a view that turns. Each round takes the least of its frames; the table has medians over the rounds. All rounds have
-the sweep over zoom, at 400x400. The sweep over sizes is measured once: a frame is long there, and its noise small."""
+the sweep over zoom, at 400x400. Larger pictures are measured once: a frame is long there, and its noise small."""
 
 
 def measure(context):
@@ -57,18 +57,21 @@ def measure(context):
 def measured(context, section, name, holes, seconds):
     """The rounds of a file, and of the generated face beside it; the first one has the sizes, too."""
     words = [context.model(name), "--no-knobs", "--holes", holes]
-    words += ["--size", SIZE, "--samples", context.pick(500, 2000)]
-    of_zoom = ["--zooms", context.pick("1,10", "1,10,100,1000"), "--sizes", SIZE, "--frames", 2]
-    of_size = ["--zooms", 1, "--sizes", context.pick("200x200", "800x800,1600x1600,3840x2160"), "--frames", 1]
+    words += ["--samples", context.pick(500, 2000)]
+    zooms = context.pick("1,10", "1,10,100,1000")
+    of_zoom = ["--zooms", zooms, "--size", SIZE, "--sizes", SMALL_SIZE, "--frames", 2]
+    of_size = ["--zooms", 1, "--size", "800x800", "--sizes", "1600x1600,2560x1440", "--frames", 1]
     run = lambda more: unique(context.program.trims(*words, *more))
     of_rounds = {"zoom": lambda: run(of_zoom)}
     found = rounds(of_rounds, 0.6 * seconds, most=3, left=context.budget.left)["zoom"]
     if isinstance(found, Unmeasurable):
         raise found
-    section.commands += [context.shown("trims", *words, *more) for more in (of_zoom, of_size)]
+    section.commands.append(context.shown("trims", *words, *of_zoom))
+    if context.quick:
+        return found
+    section.commands.append(context.shown("trims", *words, *of_size))
     try:
-        # the view of both sweeps has the figures of the rounds
-        found[0] = found[0] | {at: row for at, row in run(of_size).items() if at not in found[0]}
+        found[0] |= run(of_size)
     except Late as late:
         section.contests.append(Contest(f"sizes, {name}", "all", "ms", why=str(late)))
     return found

@@ -53,7 +53,7 @@ def measure(context):
     folder = context.program.folder()
 
     reached = list(cameras)
-    limit_s, stopped = context.pick(15, 40), {}
+    limit_s, stopped = context.pick(12, 40), {}
 
     def meshed():
         """By kind and view; a view whose mesh is not done in time is not tried again."""
@@ -103,7 +103,7 @@ def kernel_errors(context, model, cameras, meshed):
             if (kind, name) in meshed[0]:
                 pictures[kind] = {"path": meshed[0][kind, name]["ids"], "own": False}
         wanted[name] = {"camera": camera, "pictures": pictures}
-    seconds = context.pick(4, 6)
+    seconds = context.pick(3, 6)
     job = {"model": str(model), "views": wanted, "seconds": seconds}
     try:
         found = context.peers.results("kernel", job, limit_s=60 + 4 * seconds * len(wanted))
