@@ -91,7 +91,7 @@ def write(report, out):
                 plots.write(plot, folder / f"{plot.name}.svg")
                 drawn[plot.name] = f"benchmarks/{plot.name}.svg"
             except ImportError:
-                print("no plots: matplotlib is not there", file=sys.stderr)
+                print("no plots: matplotlib is not installed", file=sys.stderr)
     (out / "benchmarks.json").write_text(json.dumps(report.as_json(), indent=1) + "\n")
     (out / "benchmarks.md").write_text(markdown.text(report, drawn))
 

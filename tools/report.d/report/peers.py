@@ -101,7 +101,7 @@ def run(command, limit_s, cwd=ROOT):
         problem = (
             ""
             if process.returncode == 0
-            else f"status {process.returncode}: {(told.strip().splitlines() or ['no word'])[-1]}"
+            else f"status {process.returncode}: {(told.strip().splitlines() or ['it printed nothing'])[-1]}"
         )
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, 15)
@@ -123,5 +123,5 @@ def why_not(package):
     if folder and os.path.exists(path):
         with open(path) as text:
             lines = [line.strip() for line in text if line.strip()]
-        return lines[-1] if lines else "pip failed without a word"
+        return lines[-1] if lines else "pip failed and printed nothing"
     return f"pip install {package}"

@@ -42,7 +42,7 @@ class Program:
             raise Late(f"selvedge {words[0]} was not done in {limit_s:.0f} s") from None
         took = time.perf_counter() - start
         if done.returncode not in allowed:
-            last = (done.stderr.strip().splitlines() or ["no word"])[-1].replace(f"{self.scratch}/", "")
+            last = (done.stderr.strip().splitlines() or ["it printed nothing"])[-1].replace(f"{self.scratch}/", "")
             raise Unmeasurable(f"selvedge {words[0]} ended with status {done.returncode}: {last}")
         return done.stdout, done.stderr, took
 

@@ -100,7 +100,7 @@ class Program:
 
     def sweep(self, *words, limit_s=600):
         copies, frames = int(option(words, "--copies")), int(option(words, "--frames"))
-        each = 5e-3 if "--distinct" in words else 7e-4
+        each = 17e-3 if "--distinct" in words else 7e-4
         self.spend("sweep", 1.0 + copies * each + (frames + 1) * (0.1 + copies * each), limit_s)
         keys = ("patches", "copies", "all_ms", "persistent_bytes", "transient_bytes")
         return [dict.fromkeys(keys, str(copies))]

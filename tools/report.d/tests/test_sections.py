@@ -3,7 +3,7 @@
 import unittest
 from unittest import mock
 
-from report.rows import Missing, Section
+from report.rows import Contest, Missing, Section
 from report.sections import packages, stability, surfaces, trims, zoom
 
 SIZE = "400x400"
@@ -70,6 +70,12 @@ class Surfaces(unittest.TestCase):
         never = self.ERRORS | {"mesh 0.0001": 0.8}
         self.assertEqual(self.contest(0.25, never).verdict(), "unreached")
 
+    def test_the_table_of_ratios_has_the_quickest_peer(self):
+        of = lambda peer, theirs: Contest("", peer, "s", [1.0] * 3, [theirs] * 3)
+        never = Contest("", "F3D", "s", unreached=True, why="none is as right")
+        self.assertEqual(surfaces.least_ratio([of("VTK", 0.25), never, of("Open CASCADE", 0.5)]), "0.25 VTK")
+        self.assertEqual((surfaces.least_ratio([never]), surfaces.least_ratio([])), ("ours alone", ""))
+
     def test_a_peer_without_a_verdict_is_not_behind(self):
         self.assertEqual(self.contest(0.5, {"ours 0.5": 0.2}).verdict(), "not measured")
 
@@ -106,6 +112,14 @@ class Surfaces(unittest.TestCase):
         self.assertEqual([row[1] for row in rows], [4.0, 91.5, 70.0, 20.0, 1.5])
         self.assertEqual(rows[2][2], "77 %")
         self.assertEqual(surfaces.spent_rows(exact, None)[0][0], "exact surfaces")
+
+    def test_frames_have_limits(self):
+        frame = {surfaces.WALL: 99.0, "all passes": 90.0, "pass: visibility": 60.0, "pass: resolve": 30.0}
+        self.assertIn("takes 99 ms (of its passes visibility 67 %, resolve 33 %)", surfaces.frame_limit(frame, None))
+        self.assertIn("facets 7 ms by this engine", surfaces.frame_limit(frame, {surfaces.WALL: 7.0}))
+        stands = frame | {"reused: all passes": 40.0, "reused: pass: resolve": 30.0, "reused: pass: gaps": 10.0}
+        self.assertEqual(surfaces.standing_limit(frame), "")
+        self.assertIn("takes 40 ms of passes, 30 of them resolve", surfaces.standing_limit(stands))
 
     def test_pixels_beyond_the_tolerance_are_counted(self):
         self.assertEqual(surfaces.beyond({"beyond": 0, "worst_px": 0.5}, 0.5), 0)

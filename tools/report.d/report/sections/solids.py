@@ -175,7 +175,7 @@ class Case:
                 continue
             for setting in found[0]:
                 first, turning = zip(*(one[setting] for one in found))
-                turning = Missing("it draws no turn") if turning[0] is None else statistics.median(turning)
+                turning = Missing("it draws single pictures only") if turning[0] is None else statistics.median(turning)
                 error = errors.get(setting)
                 worst = (
                     [
@@ -187,7 +187,7 @@ class Case:
                     else [""] * 3
                 )
                 rows.append([setting, statistics.median(first), turning, *worst])
-        text = f"{judged:,} pixels at the outline judged."
+        text = f"{judged:,} pixels at the outline are judged."
         section.tables.append(
             Table(
                 f"{self.name}, {self.size}",

@@ -61,9 +61,15 @@ a viewer of facets: it draws the mesh within a thousandth of the diagonal, the s
 below are a frame of the exact surfaces, pass by pass; its time beyond the first row is the price of exactness."""
 
 
+RATIOS = """\
+At each error our quickest setting beside that of the quickest peer, theirs to ours: above 1 we are ahead. *Ours alone*:
+no setting of a peer reaches the error. A cell is empty where we do not reach it, or where it was not measured."""
+
+
 def measure(context):
     section = Section(1, "Time against error, surfaces", TEXT)
     section.promises.append(Promise("no boundary pixel beyond the tolerance, by the kernel's rays"))
+    ratios = Table("Ratios to the quickest peer", ["", *(f"within {error:g} px" for error in ERRORS)], [], RATIOS)
     weights = {}
     for name, size in wanted(context):
         model = context.model(name)
@@ -77,14 +83,16 @@ def measure(context):
             if isinstance(seconds, Late):
                 raise seconds
             context.say(f"{what}: {seconds:.0f} s")
-            Case(context, model, size, seconds).into(section)
+            ratios.rows += Case(context, model, size, seconds).into(section)
         except Late as late:
             section.contests += [Contest(f"{name}, {what}", "all", unit, why=str(late)) for name, unit in QUANTITIES]
         except Unmeasurable as error:
             section.failure = section.failure or f"{what}: {error}"
+    if ratios.rows:
+        section.tables.append(ratios)
     promise = section.promises[0]
     if not promise.cases:
-        promise.why = "no kernel to judge by"
+        promise.why = "the kernel did not judge the pictures"
     return section
 
 
@@ -144,11 +152,12 @@ class Case:
         return self.context.program.bench([model or self.model], *words)[0]["of"]
 
     def spent(self, section):
-        """Adds where a turning frame goes, beside one of this engine with the viewers' mesh; returns it as a limit."""
+        """Adds where a turning frame goes, beside one of this engine with the viewers' mesh; the limits of frames."""
         exact, faceted = self.bench(SPENT_PX), self.bench(SPENT_PX, self.stl) if self.stl else None
         columns = ["", "passes, ms", "of the exact frame", "wall clock, ms"]
         section.tables.append(Table(f"{self.what}: where our turning frame goes", columns, spent_rows(exact, faceted)))
-        return frame_limit(exact, faceted)
+        limit, stands = frame_limit(exact, faceted), standing_limit(exact)
+        return {"turning frame": f"{self.what}: {limit}", "standing frame": f"{self.what}: {stands}" if stands else ""}
 
     def job(self, **more):
         return {
@@ -224,7 +233,7 @@ class Case:
         return head, head["pictures"]
 
     def into(self, section):
-        """Measures, and adds the results."""
+        """Measures, and adds the results; rows of ratios by error."""
         pictures = dict(self.pictures())
         competitors = {"ours": self.ours, "meshed": self.meshed, "F3D": self.f3d}
         seconds, most = ROUNDS_SHARE * self.seconds, self.context.pick(3, 5)
@@ -244,18 +253,19 @@ class Case:
         self.table(section, competitors, head, errors)
         limits = {}
         try:
-            limits["turning frame"] = limits["standing frame"] = self.spent(section)
+            limits = self.spent(section)
             limits["first picture"] = floor.limit(self.context, self.size)
         except Late as late:  # the rows stay; they have no limit beside them
             section.contests.append(Contest(f"limits, {self.what}", "all", "ms", why=str(late)))
         self.plots(section, competitors, errors)
-        self.contests(section, competitors, errors, limits)
+        ratios = self.contests(section, competitors, errors, limits)
         for tolerance in self.tolerances:
             error = errors.get(f"ours {tolerance}")
             if error:
                 # a search finds a boundary no nearer than the next of its distances
                 section.promises[0].violations += beyond(error, tolerance)
                 section.promises[0].cases += head["boundary"]
+        return ratios
 
     def settings(self, found):
         """Settings that every round has."""
@@ -287,8 +297,8 @@ class Case:
                 if of == who and deflection not in self.settings(found):
                     rows.append([name, f"{deflection:g} of the diagonal", *[Missing(why)] * 3, *[""] * 4])
         text = (
-            f"{head['boundary']:,} pixels at changes of face judged, {head['alone']} left out at which both our finest "
-            "picture and the finest mesh are off the rays."
+            f"{head['boundary']:,} pixels at changes of face are judged. {head['alone']} are left out: there our "
+            "finest picture and the finest mesh both differ from the rays."
         )
         columns = [
             "",
@@ -327,14 +337,15 @@ class Case:
                 )
 
     def contests(self, section, competitors, errors, limits):
-        """At each error, our quickest tolerance beside the peer's quickest deflection, round by round."""
-        ours = competitors["selvedge"][1]
+        """At each error, our quickest tolerance beside the peer's quickest deflection, round by round; rows of the
+        least ratio of all peers."""
+        ours, least = competitors["selvedge"][1], {}
         for name, (kind, found) in competitors.items():
             if name == "selvedge":
                 continue
             for k, (quantity, unit) in enumerate(QUANTITIES):
                 if isinstance(found, Unmeasurable) or not errors:
-                    why = str(found) if isinstance(found, Unmeasurable) else "no kernel to judge by"
+                    why = str(found) if isinstance(found, Unmeasurable) else "the kernel did not judge the pictures"
                     section.contests.append(Contest(f"{quantity}, {self.what}", name, unit, why=why))
                     continue
                 before = None
@@ -342,12 +353,18 @@ class Case:
                     contest = self.contest(
                         f"{quantity}, {self.what}, within {error:g} px", name, unit, kind, ours, found, errors, k, error
                     )
+                    if contest and (contest.unreached or contest.ratio()):
+                        least.setdefault((k, error), []).append(contest)
                     # a larger error that changes neither side's setting is the same contest
                     sides = contest and (contest.ours, contest.theirs, contest.why)
                     if contest and sides != before:
                         contest.limit = limits.get(quantity, "")
                         section.contests.append(contest)
                     before = sides
+        return [
+            [f"{quantity}, {self.what}", *(least_ratio(least.get((k, error), [])) for error in ERRORS)]
+            for k, (quantity, _) in enumerate(QUANTITIES)
+        ]
 
     def contest(self, what, name, unit, kind, ours, found, errors, k, error):
         """None if our own settings do not reach the error."""
@@ -356,21 +373,38 @@ class Case:
         if None in mine:
             return None
         if not any(self.curve(kind, [one], errors, k) for one in found):
-            return Contest(what, name, unit, why="no setting of its was both timed and judged")
+            return Contest(what, name, unit, why="none of its settings was both timed and judged")
         claim = "ahead" if k == 0 and error <= CLAIMED_PX and large(self.model) else "open"
         if None in theirs:
-            return Contest(what, name, unit, claim=claim, unreached=True, why="none of its settings is as right")
+            why = "none of its settings has so small an error"
+            return Contest(what, name, unit, claim=claim, unreached=True, why=why)
         many = min(len(mine), len(theirs))
         return Contest(what, name, unit, mine[:many], theirs[:many], claim)
 
 
+def least_ratio(contests):
+    """The least ratio, with its peer, as a cell; peers that reach no such error are behind."""
+    measured = [(contest.ratio().median, contest.peer) for contest in contests if not contest.unreached]
+    if measured:
+        ratio, peer = min(measured)
+        return f"{ratio:.2f} {peer}"
+    return "ours alone" if contests else ""
+
+
 def frame_limit(exact, faceted):
-    """What of a frame is the price of exactness, as a sentence of medians by name."""
+    """The price of exactness in a turning frame, as a sentence; of medians by name."""
     shares = ", ".join(f"{name} {share}" for name, _, share, _ in spent_rows(exact, None)[1:4] if share)
-    told = f"a frame of the exact surfaces takes {exact[WALL]:.0f} ms ({shares} of its passes)"
-    if not faceted:
-        return told
-    return f"this engine draws the same facets in {faceted[WALL]:.0f} ms a frame, {told}: the rest is exactness"
+    surfaces = f"a turning frame of the exact surfaces takes {exact[WALL]:.0f} ms (of its passes {shares})"
+    return f"{surfaces}, one of the viewers' facets {faceted[WALL]:.0f} ms by this engine" if faceted else surfaces
+
+
+def standing_limit(exact):
+    """What a standing frame computes again, as a sentence; empty without such frames."""
+    passes = [(ms, name.removeprefix("reused: pass: ")) for name, ms in exact.items() if "reused: pass: " in name]
+    if not passes:
+        return ""
+    whole, (longest, name) = exact["reused: all passes"], max(passes)
+    return f"a standing frame takes {whole:.0f} ms of passes, {longest:.0f} of them {name}"
 
 
 def spent_rows(exact, faceted):
