@@ -47,9 +47,9 @@ class Surfaces(unittest.TestCase):
 
     ERRORS = {"ours 0.5": 0.2, "mesh 0.01": 0.9, "mesh 0.0001": 0.1}
 
-    def contest(self, error, errors=None, bytes_=2_000_000):
+    def contest(self, error, errors=None, bytes_=2_000_000, stopped=None):
         case = object.__new__(surfaces.Case)
-        case.model, case.what = Sized(bytes_), "part.step"
+        case.model, case.what, case.stopped = Sized(bytes_), "part.step", stopped or {}
         errors = {name: {"p999_px": off} for name, off in (errors or self.ERRORS).items()}
         ours = [{0.5: (1.0 + k / 10, 20.0, 9.0)} for k in range(3)]
         theirs = [{0.01: (0.1, 5.0, 5.0), 0.0001: (3.0 + k / 10, 9.0, 9.0)} for k in range(3)]
@@ -75,6 +75,15 @@ class Surfaces(unittest.TestCase):
         never = Contest("", "F3D", "s", unreached=True, why="none is as right")
         self.assertEqual(surfaces.least_ratio([of("VTK", 0.25), never, of("Open CASCADE", 0.5)]), "0.25 VTK")
         self.assertEqual((surfaces.least_ratio([never]), surfaces.least_ratio([])), ("ours alone", ""))
+
+    def test_a_peer_that_lacked_time_is_no_win(self):
+        never = self.ERRORS | {"mesh 0.0001": 0.8}
+        stopped = self.contest(0.25, never, stopped={("meshed", 1e-6): "the mesh before took 9 s"})
+        self.assertEqual((stopped.verdict(), stopped.why[-24:]), ("unreached", "the mesh before took 9 s"))
+        cut = self.contest(0.25, never, stopped={("meshed", 1e-6): f"{surfaces.PROCESS}not done in 30 s"})
+        self.assertEqual((cut.verdict(), cut.why), ("not measured", "its process was not done in 30 s"))
+        other = self.contest(0.25, never, stopped={("F3D", 1e-6): f"{surfaces.PROCESS}not done in 30 s"})
+        self.assertEqual(other.verdict(), "unreached")
 
     def test_a_peer_without_a_verdict_is_not_behind(self):
         self.assertEqual(self.contest(0.5, {"ours 0.5": 0.2}).verdict(), "not measured")

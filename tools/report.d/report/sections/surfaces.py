@@ -23,8 +23,8 @@ DEFLECTIONS_QUICK, DEFLECTIONS = [1e-2, 1e-3, 1e-4, 1e-5], [1e-2, 1e-3, 1e-4, 1e
 REPEATED = {"ours": [0.5, 1.0], "meshed": [1e-2, 1e-3, 1e-4], "F3D": [1e-3, 1e-4]}
 # share of a case's time for its rounds; the rest is for the pictures and the judge
 ROUNDS_SHARE = 0.65
-# seconds of a process of a peer
-PEER_S = 150
+# seconds of a process of a peer, and the reason where it took longer
+PEER_S, PROCESS = 150, "its process was "
 # bounds on the error, pixels
 ERRORS = [0.125, 0.25, 0.5, 1.0, 2.0]
 # what the project claims: a picture within half a pixel sooner from the file, where the file is large
@@ -209,7 +209,7 @@ class Case:
         """Keeps the reasons of the deflections that were not drawn: the mesher's limit, or that of the process."""
         for k, deflection in enumerate(deflections):
             if k >= len(results):
-                self.stopped[who, deflection] = f"its process: {self.context.peers.problem}"
+                self.stopped[who, deflection] = f"{PROCESS}{self.context.peers.problem}"
             elif "stopped" in results[k]:
                 self.stopped[who, deflection] = results[k]["stopped"]
 
@@ -376,7 +376,12 @@ class Case:
             return Contest(what, name, unit, why="none of its settings was both timed and judged")
         claim = "ahead" if k == 0 and error <= CLAIMED_PX and large(self.model) else "open"
         if None in theirs:
+            stopped = [why for (who, _), why in self.stopped.items() if who == ("F3D" if name == "F3D" else "meshed")]
+            cut = next((why for why in stopped if why.startswith(PROCESS)), None)
+            if cut:
+                return Contest(what, name, unit, claim=claim, why=cut)
             why = "none of its settings has so small an error"
+            why += f"; a finer one is beyond the limit: {stopped[0]}" if stopped else ""
             return Contest(what, name, unit, claim=claim, unreached=True, why=why)
         many = min(len(mine), len(theirs))
         return Contest(what, name, unit, mine[:many], theirs[:many], claim)

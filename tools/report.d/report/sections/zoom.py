@@ -3,6 +3,7 @@
 import statistics
 
 from .. import program, views
+from ..budget import Late
 from ..rows import Contest, Line, Missing, Plot, Promise, Section, Table
 from ..turns import Unmeasurable, rounds
 
@@ -63,11 +64,12 @@ def measure(context):
             for name, camera in cameras.items()
         }
         job = {"model": str(model), "views": wanted, "meshes": reached, "fixed": FIXED, "ids": str(folder)}
-        found = {
-            (one["kind"], one["view"]): one
-            for one in context.peers.results("zoomed", job, windowed=True, limit_s=limit_s)
-        }
+        given_s = context.budget.limit(limit_s)
+        results = context.peers.results("zoomed", job, windowed=True, limit_s=limit_s)
+        found = {(one["kind"], one["view"]): one for one in results}
         late = [name for name in reached if ("remeshed", name) not in found]
+        if late and given_s < limit_s:
+            raise Late(f"a mesh a zoom: {context.peers.problem}")  # the section's time, not the mesher's limit
         if late and not context.peers.late:
             raise Unmeasurable(f"a mesh a zoom: {context.peers.problem}")  # a failure is not a loss
         reached[:] = [name for name in reached if name not in late]
