@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import subprocess
 import tempfile
 import unittest
 from pathlib import Path
@@ -10,6 +11,8 @@ from unittest import mock
 from report import __main__ as report
 from report import budget
 from report.context import Context
+from report.peers import NOT_DONE, Peers
+from report.program import Program
 from report.sections import first_use, surfaces
 
 from . import pretend
@@ -71,6 +74,33 @@ class Shares(unittest.TestCase):
         self.assertEqual(of.limit(30), 30)
         clock.now = 80
         self.assertEqual(of.limit(30), budget.LEAST_S)
+
+
+class Processes(unittest.TestCase):
+    """The real program and peers, without a process."""
+
+    def setUp(self):
+        clock = pretend.Clock()
+        self.budget = budget.Budget(100, clock)
+        clock.now = 55
+
+    def test_the_program_gets_no_more_than_is_left(self):
+        program = Program(Path("selvedge"), None, Path("."))
+        program.budget = self.budget
+        late = subprocess.TimeoutExpired("selvedge", 45)
+        with mock.patch("report.program.subprocess.run", side_effect=late) as ran:
+            with self.assertRaisesRegex(budget.Late, "selvedge info was not done in 45 s"):
+                program.run("info", "part.step")
+        self.assertEqual(ran.call_args.kwargs["timeout"], 45)
+
+    def test_a_peer_gets_no_more_than_is_left(self):
+        with tempfile.TemporaryDirectory() as folder:
+            peers = Peers(Path(folder))
+            peers.budget = self.budget
+            with mock.patch("report.peers.run", return_value=("", f"{NOT_DONE} 45 s", 45.0)) as ran:
+                with self.assertRaises(budget.Late), contextlib.redirect_stderr(io.StringIO()):
+                    peers.results("kernel", {}, limit_s=300)
+            self.assertEqual(ran.call_args.args[1], 45)
 
 
 class Runs(unittest.TestCase):
