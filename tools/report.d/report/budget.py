@@ -23,8 +23,9 @@ SECONDS = {
     "reading": (20, 60),
     "packages": (0, 80),
 }
-# a process gets at least so many seconds: the judge of a case comes last, and its rows are nothing without it
-LEAST_S = 30.0
+# a process that begins late gets so many seconds: the judge of a case comes last, and its rows are nothing without it;
+# an eighth of its section's time, and no more than this
+LEAST_S, LEAST_SHARE = 30.0, 1 / 8
 
 
 class Late(Unmeasurable):
@@ -51,7 +52,7 @@ class Budget:
 
     def limit(self, most_s):
         """Seconds after which a process is ended: `most_s`, or what is left."""
-        return min(most_s, max(self.left(), LEAST_S))
+        return min(most_s, max(self.left(), min(LEAST_S, LEAST_SHARE * self.seconds)))
 
 
 def of(section, quick):

@@ -155,6 +155,10 @@ class Peers:
             raise Late(f"{program} printed no result: {self.problem}")
         return found
 
+    def given(self, job):
+        """A job's own time, which is the same on every machine."""
+        return job["seconds"] * self.clock.speed
+
     def drawn(self, job, viewers):
         """Seconds of one deflection's frames."""
         return viewers * (3 + 2 * (2 + len(job["turn"]))) * 0.02 * (1 + pixels(job["camera"]["size"]))
@@ -188,7 +192,7 @@ class Peers:
         seconds, found = READ_S, []
         for name, view in job["views"].items():
             pictures = view["pictures"]
-            seconds += job["seconds"] + 0.35 * job["seconds"] * len(pictures)
+            seconds += self.given(job) * (1 + 0.35 * len(pictures))
             found.append({"view": name, "boundary": 900, "sampled": 9000, "alone": 0})
             found[-1]["pictures"] = dict.fromkeys(pictures, KERNEL)
         return seconds, found
@@ -208,7 +212,7 @@ class Peers:
 
     def csg(self, job):
         pictures = dict.fromkeys(job["pictures"], KERNEL)
-        return job["seconds"] * (1 + 0.1 * len(pictures)), [{"boundary": 900, "sampled": 9000, "pictures": pictures}]
+        return self.given(job) * (1 + 0.1 * len(pictures)), [{"boundary": 900, "sampled": 9000, "pictures": pictures}]
 
     def reading(self, job):
         return 1.2 * len(job["models"]), [{"model": model, "read_s": 2.0} for model in job["models"]]

@@ -73,7 +73,9 @@ class Shares(unittest.TestCase):
         of = budget.Budget(100, clock)
         self.assertEqual(of.limit(30), 30)
         clock.now = 80
-        self.assertEqual(of.limit(30), budget.LEAST_S)
+        self.assertEqual(of.limit(30), 20)
+        clock.now = 99
+        self.assertEqual(of.limit(30), budget.LEAST_SHARE * 100)
 
 
 class Processes(unittest.TestCase):
@@ -114,7 +116,7 @@ class Runs(unittest.TestCase):
     def test_a_quick_run_takes_less_than_its_time(self):
         self.assertLess(self.quick[1].now, 9 * 60)
 
-    def test_a_slow_machine_gets_reasons_and_no_longer_run(self):
+    def test_a_slow_machine_gets_reasons_and_hardly_a_longer_run(self):
         sections, clock = self.slow
         # what has begun at the end of a section has the least time
         self.assertLess(clock.now, 75 * 60 + 3 * len(sections) * budget.LEAST_S)
