@@ -7,6 +7,7 @@ mod images;
 mod lines;
 mod many;
 mod read;
+mod report;
 mod thumbnail;
 #[cfg(feature = "view")]
 mod view;
@@ -19,6 +20,7 @@ pub use images::Aov;
 pub use lines::LineArgs;
 pub use many::ManyArgs;
 pub use read::{ReadArgs, SubdivideArgs};
+pub use report::ReportArgs;
 pub use thumbnail::ThumbnailArgs;
 #[cfg(feature = "view")]
 pub use view::ViewArgs;
@@ -78,6 +80,9 @@ pub enum Command {
     /// Compare the ways to trim: time, memory and error over zoom, picture size and each way's accuracy
     #[command(after_help = STATUSES)]
     Trims(TrimsArgs),
+    /// Measure models over tolerances, zooms, ways to trim and numbers, all in one document
+    #[command(after_help = STATUSES)]
+    Report(ReportArgs),
     /// Draw a small square picture for file managers, on a transparent background
     #[command(after_help = STATUSES)]
     Thumbnail(ThumbnailArgs),

@@ -4,6 +4,7 @@
 //!   render   model ─▶ picture and images      info    content of a file      
 //!   check    picture against exact rays       bench   time and memory beside the error
 //!   trims    ways to trim, side by side       sweep   time against error, over many settings
+//!   report   all of these as one document
 //!   convert  model ─▶ the engine's own form
 //!   export   model ─▶ STEP file                draw    lines of a view ─▶ SVG
 //!   view     models in a window
@@ -32,6 +33,7 @@ mod path;
 mod progress;
 mod remains;
 mod render;
+mod report;
 mod series;
 mod session;
 mod sheet;
@@ -78,7 +80,19 @@ fn main() -> ExitCode {
         .without_time()
         .with_target(false)
         .init();
-    let result = match &cli.command {
+    match dispatch(&cli.command) {
+        Ok(Outcome::Good) => ExitCode::SUCCESS,
+        Ok(Outcome::Broken) => ExitCode::from(BROKEN),
+        Err(error) => {
+            eprintln!("selvedge: {}", explained(&error));
+            ExitCode::from(if is_of_device(&error) { DEVICE } else { USAGE })
+        }
+    }
+}
+
+/// Runs a command.
+fn dispatch(command: &Command) -> anyhow::Result<Outcome> {
+    match command {
         Command::Render(args) => render::run(args),
         Command::Draw(args) => draw::run(args),
         Command::Info(args) => info::run(args),
@@ -87,19 +101,12 @@ fn main() -> ExitCode {
         Command::Bench(args) => bench::run(args),
         Command::Sweep(args) => sweep::run(args),
         Command::Trims(args) => trims::run(args),
+        Command::Report(args) => report::run(args),
         Command::Thumbnail(args) => thumbnail::run(args),
         Command::Convert(args) => convert::run(args),
         Command::Devices(args) => device::run(args),
         #[cfg(feature = "view")]
         Command::View(args) => view::run(args),
-    };
-    match result {
-        Ok(Outcome::Good) => ExitCode::SUCCESS,
-        Ok(Outcome::Broken) => ExitCode::from(BROKEN),
-        Err(error) => {
-            eprintln!("selvedge: {}", explained(&error));
-            ExitCode::from(if is_of_device(&error) { DEVICE } else { USAGE })
-        }
     }
 }
 

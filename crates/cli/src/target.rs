@@ -28,6 +28,7 @@ pub const PNG: Form = Form { name: "a PNG picture", endings: &["png"] };
 pub const NPY: Form = Form { name: "a NumPy array", endings: &["npy"] };
 pub const JSON: Form = Form { name: "JSON", endings: &["json"] };
 pub const CSV: Form = Form { name: "CSV", endings: &["csv"] };
+pub const MARKDOWN: Form = Form { name: "Markdown", endings: &["md"] };
 pub const SVG: Form = Form { name: "an SVG drawing", endings: &["svg"] };
 pub const STEP: Form = Form { name: "a STEP file", endings: &["step", "stp", "p21"] };
 pub const NATIVE: Form = Form { name: "a .selvedge file", endings: &["selvedge"] };

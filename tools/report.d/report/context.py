@@ -1,10 +1,11 @@
-"""The context of all sections: options, the program, the peers, files, and a scratch folder."""
+"""The context of all sections: options, the program, the peers, files, a scratch folder, and the time."""
 
 import os
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
+from .budget import Budget
 from .machine import ROOT, shown
 from .peers import Peers
 from .program import Program
@@ -18,6 +19,14 @@ class Context:
     peers: Peers
     scratch: Path
     models: Path | None
+    # of the section that is measured
+    budget: Budget | None = None
+    # seconds of `floor.floor_s` by size
+    floors: dict = field(default_factory=dict)
+
+    def give(self, budget):
+        """Time for the next section: its processes end with it."""
+        self.budget = self.program.budget = self.peers.budget = budget
 
     def pick(self, quick, whole):
         return quick if self.quick else whole
@@ -34,10 +43,10 @@ class Context:
             else "SELVEDGE_MODELS names no folder"
         )
 
-    def shown(self, *words):
-        """A command of the program as it stands in the document."""
+    def shown(self, *words, program="selvedge"):
+        """A command of the program, or of another one, as it stands in the document."""
         folders = [(self.models, "$SELVEDGE_MODELS")] if self.models else []
-        return shown(["selvedge", *words], [*folders, (f"{ROOT}/", "")])
+        return shown([program, *words], [*folders, (f"{ROOT}/", "")])
 
     def say(self, text):
         print(f"   {text}", file=sys.stderr, flush=True)

@@ -32,12 +32,13 @@ def text(report, plots):
 
 def heading(report):
     peers = ", ".join(f"{name} {value}" for name, value in report.peers.items() if not isinstance(value, Missing))
+    given = sum(section.given for section in report.sections)
     rows = [
         ("machine", f"{report.machine}; load {report.load}"),
         ("device", report.device),
         ("date, commit", f"{report.date}, {report.commit}"),
         ("peers", peers or "none"),
-        ("seconds", f"{sum(section.seconds for section in report.sections):,.0f}"),
+        ("seconds", f"{sum(section.seconds for section in report.sections):,.0f} of {given:,.0f}"),
     ]
     count = lambda verdict: sum(c.verdict() == verdict for _, c in report.contests())
     ahead = count("ahead") + count("unreached")
@@ -48,25 +49,38 @@ def heading(report):
         )
     )
     return table(["", ""], rows) + (
-        "\n\nCompetitors take turns; a ratio is theirs to ours, the median over the rounds with its 95 % bootstrap "
-        "interval: above 1 "
-        "we are ahead, and an interval that holds 1 is even. A **claim** that is behind makes the run fail."
+        "\n\nCompetitors take turns. A ratio is theirs to ours: the median over the rounds, with its 95 % bootstrap "
+        "interval. Above 1 we are ahead; an interval that contains 1 is even. A **claim** that is behind makes the run "
+        "fail. Each section has a budget of time; what it had no time for is listed below, with the limit."
     )
 
 
 def losses(report):
+    """What is broken, failed or lost; then what we are behind in, under the measurements that explain it."""
     told = lambda s, p: f"{s.number}. {p.what}: {p.violations:,} of {p.cases:,}"
     lines = [f"* **broken**: {told(s, p)}" for s, p in report.broken()]
     lines += [f"* **failed**: {s.number}. {s.title}: {s.failure}" for s in report.sections if s.failure]
     behind = [(s, c) for s, c in report.contests() if c.verdict() == "behind"]
-    for section, contest in sorted(behind, key=lambda row: (not row[1].lost(), row[1].ratio().median)):
-        mark = "**lost**: " if contest.lost() else ""
-        times = 1 / contest.ratio().median
-        lines.append(
-            f"* {mark}{section.number}. {contest.what}: {times:.2g} times {contest.peer}'s {interval(contest)}"
-        )
+    behind.sort(key=lambda row: (not row[1].lost(), row[1].ratio().median))
+    limit = lambda c: f". Its limit: {c.limit}" if c.limit else ""
+    lines += [f"* **lost**: {loss(s, c)}{limit(c)}" for s, c in behind if c.lost()]
     lines += [f"* known: {told(s, p)}; {p.known}" for s, p in report.promises() if p.excepted()]
-    return "\n".join(lines) or "Nowhere in this run."
+    parts = ["\n".join(lines)]
+    grouped = {}
+    for section, contest in behind:
+        if not contest.lost():
+            grouped.setdefault(contest.limit, []).append(f"* {loss(section, contest)}")
+    unexplained = grouped.pop("", [])
+    if unexplained:
+        parts += ["No measurement of this run explains these:", "\n".join(unexplained)]
+    for limit, rows in grouped.items():
+        parts += [f"{limit[0].upper()}{limit[1:]}:", "\n".join(rows)]
+    return "\n\n".join(part for part in parts if part) or "Nowhere in this run."
+
+
+def loss(section, contest):
+    times = 1 / contest.ratio().median
+    return f"{section.number}. {contest.what}: {times:.2g} times {contest.peer}'s {interval(contest)}"
 
 
 def absences(report):
@@ -91,6 +105,8 @@ def absences(report):
 
 def section_text(section, plots):
     parts = [section.text]
+    if section.given:
+        parts.append(f"This section took {section.seconds:,.0f} s of the {section.given:,.0f} s that it is given.")
     if section.failure:
         parts.append(f"**This section failed**: {section.failure}")
     for one in section.tables:

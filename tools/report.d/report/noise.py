@@ -5,6 +5,7 @@ them and mostly cancels in the ratio of a round. The rest is the noise; the spre
 Source: B. Efron, R. Tibshirani, An Introduction to the Bootstrap, 1993, chapter 13 (percentile intervals).
 """
 
+import functools
 import math
 import random
 import statistics
@@ -32,8 +33,12 @@ def median(values):
 
 def ratio_interval(ours, theirs):
     """Interval of the ratio theirs to ours; None for fewer than `FEWEST_ROUNDS`. Equal rounds give equal intervals."""
-    if len(ours) < FEWEST_ROUNDS:
-        return None
+    return None if len(ours) < FEWEST_ROUNDS else resampled(tuple(ours), tuple(theirs))
+
+
+@functools.cache
+def resampled(ours, theirs):
+    """The interval of tuples; the same rounds are resampled once."""
     logs = [math.log(b / a) for a, b in zip(ours, theirs, strict=True)]
     draw = random.Random(1)
     medians = sorted(median(draw.choices(logs, k=len(logs))) for _ in range(RESAMPLES))

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import time
 
+from .budget import Late
 from .machine import ROOT
 from .rows import Missing
 from .turns import Unmeasurable
@@ -36,6 +37,8 @@ class Peers:
         self.scratch, self.count = scratch, 0
         # problem of the last process, empty if there was none; and whether the limit of time stopped it
         self.problem, self.late = "", False
+        # of the section that is measured
+        self.budget = None
         self.versions = {}
         for name, (package, module) in PACKAGES.items():
             if importlib.util.find_spec(module):
@@ -65,24 +68,28 @@ class Peers:
         command = [sys.executable, "-m", f"report.peer.{program}", str(path)]
         if windowed:
             command = ["xvfb-run", "-a", "-s", SCREEN, *command]
-        out, problem, _ = run(command, limit_s)
+        out, problem, _ = self.run(command, limit_s)
         self.late = problem.startswith(NOT_DONE)
         if problem:
             print(f"   {program}: {problem}", file=sys.stderr, flush=True)
         self.problem = problem
         found = [json.loads(line[len("RESULT ") :]) for line in out.splitlines() if line.startswith("RESULT ")]
         if not found:
-            raise Unmeasurable(f"{program} told nothing: {problem}")
+            raise (Late if self.late else Unmeasurable)(f"{program} printed no result: {problem}")
         return found
 
+    def run(self, command, limit_s):
+        """As the function below, with no more time than the section has."""
+        return run(command, self.budget.limit(limit_s) if self.budget else limit_s)
 
-def run(command, limit_s, allowed=(0,)):
+
+def run(command, limit_s, cwd=ROOT):
     """Standard output, the problem (empty if there is none), and seconds; at the limit its group is ended."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "tools/report.d")}
     start = time.perf_counter()
     process = subprocess.Popen(
         [str(word) for word in command],
-        cwd=ROOT,
+        cwd=cwd,
         env=environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -93,8 +100,8 @@ def run(command, limit_s, allowed=(0,)):
         out, told = process.communicate(timeout=limit_s)
         problem = (
             ""
-            if process.returncode in allowed
-            else f"status {process.returncode}: {(told.strip().splitlines() or ['no word'])[-1]}"
+            if process.returncode == 0
+            else f"status {process.returncode}: {(told.strip().splitlines() or ['it printed nothing'])[-1]}"
         )
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, 15)
@@ -116,5 +123,5 @@ def why_not(package):
     if folder and os.path.exists(path):
         with open(path) as text:
             lines = [line.strip() for line in text if line.strip()]
-        return lines[-1] if lines else "pip failed without a word"
+        return lines[-1] if lines else "pip failed and printed nothing"
     return f"pip install {package}"

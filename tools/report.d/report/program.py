@@ -6,6 +6,7 @@ import re
 import subprocess
 import time
 
+from .budget import Late
 from .machine import ROOT
 from .turns import Unmeasurable
 
@@ -21,6 +22,8 @@ class Program:
         self.path, self.scratch, self.count = path, scratch, 0
         self.on = ["--device", device] if device else []
         self.device = ""
+        # of the section that is measured
+        self.budget = None
 
     def folder(self):
         self.count += 1
@@ -31,14 +34,15 @@ class Program:
     def run(self, *words, limit_s=600, allowed=FINE):
         """Standard output and standard error; the wall clock of the whole process, seconds."""
         command = [str(self.path), *map(str, words)]
+        limit_s = self.budget.limit(limit_s) if self.budget else limit_s
         start = time.perf_counter()
         try:
             done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=limit_s)
         except subprocess.TimeoutExpired:
-            raise Unmeasurable(f"selvedge {words[0]} was not done in {limit_s} s") from None
+            raise Late(f"selvedge {words[0]} was not done in {limit_s:.0f} s") from None
         took = time.perf_counter() - start
         if done.returncode not in allowed:
-            last = (done.stderr.strip().splitlines() or ["no word"])[-1].replace(f"{self.scratch}/", "")
+            last = (done.stderr.strip().splitlines() or ["it printed nothing"])[-1].replace(f"{self.scratch}/", "")
             raise Unmeasurable(f"selvedge {words[0]} ended with status {done.returncode}: {last}")
         return done.stdout, done.stderr, took
 
@@ -60,10 +64,10 @@ class Program:
             self.seen(found["stats"])
         return found
 
-    def bench(self, models, *options):
+    def bench(self, models, *options, limit_s=600):
         """The reports of `bench`, each with its medians by name as `of`."""
         folder = self.folder()
-        self.run("bench", *models, "--out", folder, *options, *self.on)
+        self.run("bench", *models, "--out", folder, *options, *self.on, limit_s=limit_s)
         reports = json.loads((folder / "bench.json").read_text())
         for report in reports:
             report["of"] = {row["name"]: row["median"] for row in report["rows"]}
@@ -80,10 +84,10 @@ class Program:
             self.seen(view["stats"])
         return found
 
-    def sweep(self, *words):
+    def sweep(self, *words, limit_s=600):
         """Rows of `sweep`'s table, numbers as text."""
         path = self.folder() / "sweep.csv"
-        self.run("sweep", *words, "--out", path, *self.on)
+        self.run("sweep", *words, "--out", path, *self.on, limit_s=limit_s)
         return list(csv.DictReader(path.open()))
 
     def trims(self, *words):

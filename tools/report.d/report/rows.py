@@ -33,7 +33,8 @@ class Missing:
 
 @dataclass
 class Contest:
-    """`ours` and `theirs` have one figure a round. `exact` quantities (bytes, counts, errors) have no noise."""
+    """`ours` and `theirs` have one figure a round. `exact` quantities (bytes, counts, errors) have no noise. `limit`
+    is a measurement that explains a loss."""
 
     what: str
     peer: str
@@ -44,6 +45,8 @@ class Contest:
     exact: bool = False
     unreached: bool = False
     why: str = ""
+    # what of our figure a measurement explains
+    limit: str = ""
 
     def __post_init__(self):
         if self.claim not in CLAIMS:
@@ -80,7 +83,7 @@ class Contest:
         """The reason why there is no ratio; empty if there is one."""
         if self.why:
             return self.why
-        return "" if self.ratio() else f"{len(self.ours)} rounds are too few to know the noise"
+        return "" if self.ratio() else f"rounds: {len(self.ours)}, too few to know the noise"
 
     def lost(self):
         """A claim that did not hold, by more than the noise."""
@@ -157,6 +160,8 @@ class Section:
     plots: list[Plot] = field(default_factory=list)
     commands: list[str] = field(default_factory=list)
     seconds: float = 0.0
+    # the time that it was given
+    given: float = 0.0
     failure: str = ""
 
 

@@ -3,7 +3,7 @@
     round 1   A B C      round 2   B C A      round 3   C A B      ...
 
 Each round begins with another competitor, so that the order varies. Rounds go on until their time is used up,
-but there are `least` of them in any case, for without them the noise is unknown.
+but there are `least` of them, for without them the noise is unknown, unless nothing is `left` of the section's time.
 """
 
 import time
@@ -11,7 +11,7 @@ import time
 from .noise import FEWEST_ROUNDS
 
 
-def rounds(competitors, seconds, least=FEWEST_ROUNDS, most=9, clock=time.monotonic):
+def rounds(competitors, seconds, least=FEWEST_ROUNDS, most=9, clock=time.monotonic, left=None):
     """Runs `competitors`, a dictionary of functions that return a measurement; for each a list, one entry a round.
 
     A competitor that raises `Unmeasurable` is left out from then on: its list is what it raised.
@@ -21,6 +21,8 @@ def rounds(competitors, seconds, least=FEWEST_ROUNDS, most=9, clock=time.monoton
     for number in range(most):
         begun = clock()
         if number >= least and begun - start + longest > seconds:
+            break
+        if number and left and left() <= 0:
             break
         names = list(competitors)
         turn = number % len(names)

@@ -1,6 +1,7 @@
 """Scenes of hard and random cases can be read, and are the same for the same number."""
 
 import random
+import re
 import tomllib
 import unittest
 
@@ -22,7 +23,7 @@ class Scenes(unittest.TestCase):
                         self.assertLessEqual({of} if isinstance(of, str) else set(of), named)
 
     def test_random_cases_follow_from_their_number(self):
-        for made in (lambda draw: hard.random_sheets(draw, 9)[0], lambda draw: hard.random_tree(draw, 9)):
+        for made in (lambda draw: hard.random_sheets(draw, 9)[0], lambda draw: hard.random_trees(draw, 9, (3, 9))[0]):
             texts = [made(random.Random(number)) for number in (1, 1, 2)]
             self.assertEqual(texts[0], texts[1])
             self.assertNotEqual(texts[0], texts[2])
@@ -33,6 +34,14 @@ class Scenes(unittest.TestCase):
         scene = tomllib.loads(text)
         self.assertEqual(len(scene["surface"]), 12)
         self.assertEqual(sum(len(one.get("loops", [])) for one in scene["surface"].values()), loops)
+
+
+    def test_random_trees_share_no_leaf(self):
+        text, leaves = hard.random_trees(random.Random(4), 6, (3, 8))
+        made = tomllib.loads(text)["solid"]
+        trees = [made.pop(f"tree{k}")["of"] for k in range(6)]
+        named = [name for tree in trees for name in re.findall(r"A[0-9]+", tree)]
+        self.assertEqual((sorted(named), len(named)), (sorted(made), leaves))
 
 
 class Least(unittest.TestCase):

@@ -56,7 +56,7 @@ class Verdicts(unittest.TestCase):
     def test_two_rounds_are_no_verdict(self):
         two = contest([1, 1], [9, 9])
         self.assertEqual((two.verdict(), two.lost()), ("not measured", False))
-        self.assertIn("2 rounds", two.reason())
+        self.assertIn("rounds: 2", two.reason())
 
     def test_exact_quantities_need_no_rounds(self):
         self.assertEqual(contest([5.0], [4.0], exact=True).verdict(), "behind")
@@ -77,6 +77,22 @@ class Written(unittest.TestCase):
         first = text.index("## Where we lose")
         self.assertLess(first, text.index("## 1. Made up"))
         self.assertIn("**lost**", text[first : text.index("## 1. Made up")])
+
+    def test_a_loss_stands_under_the_measurement_that_explains_it(self):
+        limited = contest(LOST.ours, LOST.theirs, "open", limit="a process takes 0.4 s")
+        text = markdown.losses(report(contest(LOST.ours, LOST.theirs, "open"), limited))
+        unexplained, explained = text.split("A process takes 0.4 s:")
+        self.assertIn("No measurement of this run explains these:\n\n* 1. first picture", unexplained)
+        self.assertIn("* 1. first picture", explained)
+
+    def test_a_lost_claim_has_its_limit(self):
+        lost = contest(LOST.ours, LOST.theirs, limit="a process takes 0.4 s")
+        self.assertRegex(markdown.losses(report(lost)), r"\*\*lost\*\*: .*Its limit: a process takes 0.4 s")
+
+    def test_each_section_has_its_time(self):
+        whole = report(WON)
+        whole.sections[0].seconds, whole.sections[0].given = 61.0, 80.0
+        self.assertIn("This section took 61 s of the 80 s that it is given.", markdown.text(whole, {}))
 
     def test_a_run_without_losses_states_it(self):
         self.assertIn("Nowhere in this run.", markdown.text(report(WON), {}))

@@ -1,8 +1,9 @@
 """Sections with made-up measurements: no process runs."""
 
 import unittest
+from unittest import mock
 
-from report.rows import Missing, Section
+from report.rows import Contest, Missing, Section
 from report.sections import packages, stability, surfaces, trims, zoom
 
 SIZE = "400x400"
@@ -46,9 +47,9 @@ class Surfaces(unittest.TestCase):
 
     ERRORS = {"ours 0.5": 0.2, "mesh 0.01": 0.9, "mesh 0.0001": 0.1}
 
-    def contest(self, error, errors=None, bytes_=2_000_000):
+    def contest(self, error, errors=None, bytes_=2_000_000, stopped=None):
         case = object.__new__(surfaces.Case)
-        case.model, case.what = Sized(bytes_), "part.step"
+        case.model, case.what, case.stopped = Sized(bytes_), "part.step", stopped or {}
         errors = {name: {"p999_px": off} for name, off in (errors or self.ERRORS).items()}
         ours = [{0.5: (1.0 + k / 10, 20.0, 9.0)} for k in range(3)]
         theirs = [{0.01: (0.1, 5.0, 5.0), 0.0001: (3.0 + k / 10, 9.0, 9.0)} for k in range(3)]
@@ -69,8 +70,43 @@ class Surfaces(unittest.TestCase):
         never = self.ERRORS | {"mesh 0.0001": 0.8}
         self.assertEqual(self.contest(0.25, never).verdict(), "unreached")
 
+    def test_the_table_of_ratios_has_the_quickest_peer(self):
+        of = lambda peer, theirs: Contest("", peer, "s", [1.0] * 3, [theirs] * 3)
+        never = Contest("", "F3D", "s", unreached=True, why="none is as right")
+        self.assertEqual(surfaces.least_ratio([of("VTK", 0.25), never, of("Open CASCADE", 0.5)]), "0.25 VTK")
+        self.assertEqual((surfaces.least_ratio([never]), surfaces.least_ratio([])), ("ours alone", ""))
+
+    def test_a_peer_that_lacked_time_is_no_win(self):
+        never = self.ERRORS | {"mesh 0.0001": 0.8}
+        stopped = self.contest(0.25, never, stopped={("meshed", 1e-6): "the mesh before took 9 s"})
+        self.assertEqual((stopped.verdict(), stopped.why[-24:]), ("unreached", "the mesh before took 9 s"))
+        cut = self.contest(0.25, never, stopped={("meshed", 1e-6): f"{surfaces.PROCESS}not done in 30 s"})
+        self.assertEqual((cut.verdict(), cut.why), ("not measured", "its process was not done in 30 s"))
+        other = self.contest(0.25, never, stopped={("F3D", 1e-6): f"{surfaces.PROCESS}not done in 30 s"})
+        self.assertEqual(other.verdict(), "unreached")
+
     def test_a_peer_without_a_verdict_is_not_behind(self):
         self.assertEqual(self.contest(0.5, {"ours 0.5": 0.2}).verdict(), "not measured")
+
+    def test_a_deflection_that_was_not_drawn_has_its_reason(self):
+        case = object.__new__(surfaces.Case)
+        case.what, case.stopped, case.context = "part.step", {}, mock.Mock()
+        case.why("meshed", [1e-2, 1e-5, 1e-6], [{"mesh_s": 1.0}, {"stopped": "the mesh before took 9 s"}])
+        section, found = Section(1, "", ""), [{1e-2: (1.0, 2.0, 3.0)}] * 3
+        competitors = {"VTK": ("mesh", found)}
+        case.table(section, competitors, {"boundary": 9, "alone": 0}, {})
+        cells = [row[1:3] for row in section.tables[0].rows]
+        self.assertEqual(cells[1], ["1e-05 of the diagonal", Missing("the mesh before took 9 s")])
+        self.assertEqual((cells[2][0], type(cells[2][1])), ("1e-06 of the diagonal", Missing))
+
+    def test_later_rounds_repeat_some_settings(self):
+        case = object.__new__(surfaces.Case)
+        case.first = {}
+        tolerances = [0.1, 0.5, 1.0, 4.0]
+        self.assertEqual(case.settings_of("ours", tolerances), tolerances)
+        self.assertEqual(case.with_first("ours", {0.1: "a", 0.5: "b"}), {0.1: "a", 0.5: "b"})
+        self.assertEqual(case.settings_of("ours", tolerances), [0.5, 1.0])
+        self.assertEqual(case.with_first("ours", {0.5: "c"}), {0.1: "a", 0.5: "c"})
 
     def test_a_plot_shows_the_quickest_of_each_error(self):
         self.assertEqual(surfaces.front([(0.5, 3), (0.1, 9), (0.5, 2)]), [(0.1, 9), (0.5, 2)])
@@ -85,6 +121,14 @@ class Surfaces(unittest.TestCase):
         self.assertEqual([row[1] for row in rows], [4.0, 91.5, 70.0, 20.0, 1.5])
         self.assertEqual(rows[2][2], "77 %")
         self.assertEqual(surfaces.spent_rows(exact, None)[0][0], "exact surfaces")
+
+    def test_frames_have_limits(self):
+        frame = {surfaces.WALL: 99.0, "all passes": 90.0, "pass: visibility": 60.0, "pass: resolve": 30.0}
+        self.assertIn("takes 99 ms (of its passes visibility 67 %, resolve 33 %)", surfaces.frame_limit(frame, None))
+        self.assertIn("facets 7 ms by this engine", surfaces.frame_limit(frame, {surfaces.WALL: 7.0}))
+        stands = frame | {"reused: all passes": 40.0, "reused: pass: resolve": 30.0, "reused: pass: gaps": 10.0}
+        self.assertEqual(surfaces.standing_limit(frame), "")
+        self.assertIn("takes 40 ms of passes, 30 of them resolve", surfaces.standing_limit(stands))
 
     def test_pixels_beyond_the_tolerance_are_counted(self):
         self.assertEqual(surfaces.beyond({"beyond": 0, "worst_px": 0.5}, 0.5), 0)
@@ -130,7 +174,7 @@ class Zoom(unittest.TestCase):
         camera = {"eye": [0, 0, 9], "target": [0, 0, 0], "fovy": 35.0, "size": [4, 3]}
         cameras = {"1": camera, "1000": camera}
         judged = [{"judgement": {"worst_shift_px": 0.1, "folds": {"worst_shift_px": 0.2}}}] * 2
-        ours = [{name: {"passes": [{"gpu_ms": 10.0}]} for name in cameras}] * 3
+        ours = [{name: {"passes": [{"name": "visibility", "gpu_ms": 10.0}]} for name in cameras}] * 3
         drawn = {("fixed", name): {"frame_ms": 2.0} for name in cameras}
         meshed = [drawn | {("remeshed", "1"): {"frame_ms": 2.0, "mesh_s": 0.1}}] * 3
         errors = dict.fromkeys(cameras, "no kernel")

@@ -34,7 +34,7 @@ fn help_names_every_command_and_the_exit_statuses() {
     let help = selvedge(&["--help"]);
     assert_eq!(help.status.code(), Some(0));
     let help = text(&help.stdout);
-    let commands = ["render", "draw", "info", "check", "bench", "trims", "sweep", "convert", "devices"];
+    let commands = ["render", "draw", "info", "check", "bench", "trims", "sweep", "report", "convert", "devices"];
     for word in commands.into_iter().chain(["Exit status: 0 done; 1 a picture breaks"]) {
         assert!(help.contains(word), "{word} in {help}");
     }
@@ -50,6 +50,7 @@ fn wrong_arguments_are_usage_errors() {
     refused(&[], "Usage");
     refused(&["paint", "m.step"], "unrecognized subcommand");
     refused(&["render", "m.step"], "--output");
+    refused(&["report", "m.step"], "--out <DIR>");
     let render = |more: &[&'static str], message: &str| {
         refused(&[&["render", "m.step", "-o", "a.png"], more].concat(), message);
     };

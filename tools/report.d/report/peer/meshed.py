@@ -24,11 +24,9 @@ from OCP.V3d import V3d_Viewer
 from OCP.Xw import Xw_Window
 
 from . import job, shapes, tell
+from .meshing import stopped
 from .turn import turned
 from .vtk_viewer import VtkViewer
-
-# a mesh ten times as fine takes up to so many times as long
-GROWTH = 8.0
 
 
 class OccViewer:
@@ -85,13 +83,9 @@ def main():
     vtk = VtkViewer(size) if "vtk" in wanted["wants"] or wanted["ids"] else None
     last = 0.0
     for deflection in wanted["deflections"]:
-        if last * GROWTH > wanted["most_mesh_s"]:
-            tell(
-                {
-                    "deflection": deflection,
-                    "stopped": f"the mesh before took {last:.1f} s, {wanted['most_mesh_s']} s are given",
-                }
-            )
+        why = stopped(last, wanted["most_mesh_s"])
+        if why:
+            tell({"deflection": deflection, "stopped": why})
             continue
         last = shapes.mesh(shape, deflection * diagonal)
         result = {"deflection": deflection, "mesh_s": last, "ids": None}

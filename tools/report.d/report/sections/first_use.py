@@ -3,16 +3,17 @@
 import os
 import subprocess
 import tempfile
-import time
 from pathlib import Path
 
 from ..machine import ROOT
+from ..peers import NOT_DONE, run
 from ..rows import Missing, Section, Table
 from ..turns import Unmeasurable
 
 TEXT = """\
-A clone has the history of one commit; the build is the release program with its window, on all cores, with crates that
-are downloaded already."""
+The clone has the history of one commit. The build makes the release program with its window, on all cores, from crates
+that were downloaded before. The library for hosts is built by `tools/report` in a whole run."""
+NO_LIBRARY = Missing("not built: a whole run of tools/report builds it, and tools/install_c")
 LONG = Missing("takes many minutes: only without --quick")
 
 
@@ -20,14 +21,8 @@ def measure(context):
     section = Section(8, "First use", TEXT)
     rows = [["the program", megabytes(context.program.path), "", ""]]
     library = ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "release/libselvedge_c.so"
-    rows.append(
-        [
-            "the library for hosts in C",
-            megabytes(library) if library.exists() else Missing("not built: tools/install_c"),
-            "",
-            "",
-        ]
-    )
+    size = megabytes(library) if library.exists() else NO_LIBRARY
+    rows.append(["the library for hosts in C", size, "", ""])
     camera = {
         "eye": [100.0, -160.0, 110.0],
         "target": [0.0, 0.0, 0.0],
@@ -39,9 +34,10 @@ def measure(context):
     cold, warm = (context.program.render(sample, camera, stats=False)["seconds"] for _ in range(2))
     rows.append(["the first picture, samples/panel.step", "", cold, ""])
     rows.append(["the second", "", warm, ""])
-    rows += context.pick(
-        lambda: [["a clone", source_megabytes(), "", ""], ["a cold build", LONG, LONG, LONG]], lambda: built(section)
-    )()
+    if context.quick:
+        rows += [["a clone", source_megabytes(), "", ""], ["a cold build", LONG, LONG, LONG]]
+    else:
+        rows += built(context, section)
     section.tables.append(Table("", ["", "MB", "seconds", "CPU seconds"], rows))
     section.commands.append(context.shown("render", sample, "--size", "640x480", "-o", "picture.png"))
     return section
@@ -59,8 +55,8 @@ def source_megabytes():
     return len(done.stdout) / 1e6 if done.returncode == 0 else Missing("not a git repository")
 
 
-def built(section):
-    """Rows of a clone, a cold build in it, and the first picture from it."""
+def built(context, section):
+    """Rows of a clone, a cold build in it, and the first picture from it; of what was not done in time the limit."""
     with tempfile.TemporaryDirectory() as folder:
         clone, target = Path(folder) / "clone", Path(folder) / "target"
         rows = []
@@ -80,11 +76,14 @@ def built(section):
             ),
         ]
         for name, command, within, made in words:
-            before, start = os.times(), time.monotonic()
-            done = subprocess.run([str(word) for word in command], cwd=within, capture_output=True, text=True)
-            took, after = time.monotonic() - start, os.times()
-            if done.returncode != 0:
-                raise Unmeasurable(f"{name}: {(done.stderr.strip().splitlines() or ['no word'])[-1]}")
+            before = os.times()
+            _, problem, took = run(command, context.budget.limit(context.budget.seconds), cwd=within)
+            if problem.startswith(NOT_DONE):
+                late = Missing(f"{name} was {problem}")
+                return [*rows, [name, late, late, late]]
+            after = os.times()
+            if problem:
+                raise Unmeasurable(f"{name}: {problem}")
             cpu = after.children_user + after.children_system - before.children_user - before.children_system
             rows.append([name, megabytes(made), took, cpu])
         section.commands += ["git clone --depth 1", "cargo build --release -p selvedge-cli"]

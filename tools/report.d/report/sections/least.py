@@ -3,6 +3,7 @@
 import re
 
 from .. import hard
+from ..floor import CAMERA, PLANE
 from ..rows import Promise, Section, Table
 from ..turns import Unmeasurable
 
@@ -15,7 +16,6 @@ FEATURES = {
     "a sun": ("sun",),
 }
 SIZE = "320x240"
-PLANE = '[surface.plane]\nshape = "plane"\nu = [-20, 20]\nv = [-15, 15]\n'
 SHEET = hard.wavy("sheet")
 TRIMMED = hard.wavy("sheet", 'border = true\nloops = [{ curves = "disc", at = [0.5, 0.5], scale = 0.2 }]\n') + hard.DISC
 MESH = '[file.tetra]\npath = "tetra.obj"\n'
@@ -35,8 +35,8 @@ SCENES = {
     "a solid in the sun": (SUN, ["solids", "a sun"]),
 }
 TEXT = """\
-What exists after two frames of 320 x 240 pixels, by name. What belongs to trims, meshes, solids, layers or a sun
-exists in scenes with them alone; the last column counts what a scene has that the plane has not."""
+What exists after two frames of 320 x 240 pixels, by name. Objects for trims, meshes, solids, layers or a sun exist
+only in scenes that have these. The last column counts the objects of a scene that the plane's scene lacks."""
 
 
 def measure(context):
@@ -47,14 +47,7 @@ def measure(context):
     for name, (scene, _) in SCENES.items():
         path = folder / f"{name.replace(' ', '-')}.toml"
         path.write_text(f"selvedge = 1\n{scene}")
-        camera = {
-            "eye": [50.0, -80.0, 55.0],
-            "target": [0.0, 0.0, 0.0],
-            "up": [0.0, 0.0, 1.0],
-            "fovy": 35.0,
-            "size": [320, 240],
-        }
-        stats = context.program.render(path, camera)["stats"]
+        stats = context.program.render(path, {**CAMERA, "size": [320, 240]})["stats"]
         if "objects" not in stats:
             raise Unmeasurable(f"{context.program.path.name} is an older build, which lists no objects")
         found[name] = stats["objects"]
@@ -68,8 +61,8 @@ def measure(context):
         cases += len(objects)
         others += [(name, one["name"]) for one in objects for of in foreign(one["name"], SCENES[name][1])]
     section.tables.append(Table("", ["scene", "pipelines", "buffers and images", "MiB", "beyond the plane's"], rows))
-    told = "" if not others else ": " + "; ".join(f"{what} of {scene}" for scene, what in others[:5])
-    section.promises.append(Promise(f"an object is of what the scene has{told}", len(others), cases))
+    named = "" if not others else ": " + "; ".join(f"{what} of {scene}" for scene, what in others[:5])
+    section.promises.append(Promise(f"every object serves something that the scene has{named}", len(others), cases))
     section.commands.append(
         context.shown("render", "SCENE.toml", "--size", SIZE, "-o", "picture.png", "--stats", "stats.json")
     )

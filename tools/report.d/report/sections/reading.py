@@ -12,8 +12,8 @@ FILES = [
     "nist_827-9999-904.stp",
 ]
 TEXT = """\
-From bytes on disk to a valid model, on all cores, in a fresh process each time; of Open CASCADE the reader's two
-steps, read and transfer, all files in one process."""
+*Ours* is from bytes on disk to a valid model, on all cores, in a fresh process for each file. *Theirs* is the two
+steps of Open CASCADE's reader, read and transfer, with all files in one process."""
 
 
 def measure(context):
@@ -29,14 +29,15 @@ def measure(context):
     def theirs():
         context.peers.needed("Open CASCADE")
         found = context.peers.results(
-            "reading", {"models": [str(path) for path in there.values()]}, limit_s=context.pick(60, 300)
+            "reading", {"models": [str(path) for path in there.values()]}, limit_s=60
         )
         if len(found) < len(there):
             raise Unmeasurable(f"it read {len(found)} of {len(there)} files")
         return [1e3 * one["read_s"] for one in found]
 
     ours = lambda: [context.program.read_ms(path) for path in there.values()]
-    results = rounds({"ours": ours, "theirs": theirs}, context.pick(30, 150), most=context.pick(5, 9))
+    seconds = context.budget.seconds * 0.8
+    results = rounds({"ours": ours, "theirs": theirs}, seconds, most=5, left=context.budget.left)
     if isinstance(results["ours"], Unmeasurable):
         raise results["ours"]
     for k, name in enumerate(there):

@@ -4,19 +4,33 @@ from .. import noise, scenes
 from ..rows import Line, Missing, Plot, Section, Table
 from ..turns import Unmeasurable
 
+# beyond so many copies or holes one frame is measured: it is long, and its noise small
+ONE_FRAME = 1000
+# patches that the engine stores of a sheet
+STORED = 4096
+# seconds of one number
+MOST_S = 180
 TEXT = """\
-Patches are those of wavy bicubic sheets of 1,024 patches, each with a net of its own; instances are copies of
-`bracket.step`; leaves are the primitives of a plate with a grid of holes. All are seen whole, every pass recorded:
-the median of the frames. An exponent of 1 is growth in proportion, below 1 the cost of what does not grow; the last
-is that between the two largest."""
+Patches are those of wavy bicubic sheets of 32 x 32 spans, each sheet with a net of its own; the table counts the
+patches that the engine stores. Instances are copies of `bracket.step`. Leaves are the primitives of a plate with a grid
+of holes. All are seen whole, and every pass is recorded: the median of the frames. From a thousand copies or holes on,
+one frame is measured. An exponent of 1 is growth in proportion, a smaller one slower growth; *last* is the exponent
+between the two largest."""
 
 
 def measure(context):
     section = Section(5, "Scale", TEXT)
-    size, frames = context.pick("480x270", "1280x720"), context.pick(2, 5)
-    copies = context.pick("1,10,100", "1,10,100,1000,4000,9000")
+    size = context.pick("480x270", "640x360")
+    frames = lambda number: context.pick(2, 5) if number < ONE_FRAME else 1
+    copies = context.pick("1,10,100", "1,10,100,1000,2442")
     words = ["--size", size]
+    # the quickest first, so that the largest numbers come last within the section's time
     series = [
+        (
+            "leaves",
+            "leaves of a solid",
+            lambda: leaves(context, section, context.pick([9, 100, 1024], [9, 100, 1024, 10000, 99856]), words, frames),
+        ),
         (
             "patches",
             "patches",
@@ -34,11 +48,6 @@ def measure(context):
                 frames,
                 "copies",
             ),
-        ),
-        (
-            "leaves",
-            "leaves of a solid",
-            lambda: leaves(context, section, context.pick([9, 100, 1024], [9, 100, 1024, 10000, 99856]), words, frames),
         ),
     ]
     exponents = []
@@ -73,17 +82,18 @@ def swept(context, section, what, copies, size, frames, column):
     """`(number, [ms, MiB, MiB])` of each number of copies, or why not."""
     points = []
     for number in copies.split(","):
-        words = [*what, "--copies", number, "--sizes", size, "--frames", frames, "--samples", 0]
+        words = [*what, "--copies", number, "--sizes", size, "--frames", frames(int(number)), "--samples", 0]
         try:
-            (row,) = context.program.sweep(*words)
+            context.budget.needed()
+            (row,) = context.program.sweep(*words, limit_s=MOST_S)
         except Unmeasurable as error:
-            each = 1024 if column == "patches" else 1
+            each = STORED if column == "patches" else 1
             points.append((int(number) * each, str(error)))
             continue
         mebibytes = [float(row[key]) / 2**20 for key in ("persistent_bytes", "transient_bytes")]
         points.append((int(row[column]), [float(row["all_ms"]), *mebibytes]))
     section.commands.append(
-        context.shown("sweep", *what, "--copies", copies, "--sizes", size, "--frames", frames, "--samples", 0)
+        context.shown("sweep", *what, "--copies", copies, "--sizes", size, "--frames", frames(1), "--samples", 0)
     )
     return points
 
@@ -94,14 +104,17 @@ def leaves(context, section, holes, words, frames):
         scene = scenes.plate(number)
         path = context.program.folder() / f"{scene.name}.toml"
         path.write_text(scenes.toml(scene))
+        # the first frame of a turn stands
+        options = ["--motion", "turn", "--judged", 0, "--frames", max(frames(number), 2), *words]
         try:
-            (report,) = context.program.bench([path], "--motion", "turn", "--judged", 0, "--frames", frames, *words)
+            context.budget.needed()
+            (report,) = context.program.bench([path], *options, limit_s=MOST_S)
         except Unmeasurable as error:
             points.append((number + 1, str(error)))
             continue
         bytes_ = lambda pool: report["largest"].get(f"pool: {pool}", 0.0) / 2**20
         points.append((number + 1, [report["of"]["all passes"], bytes_("persistent"), bytes_("transient")]))
     section.commands.append(
-        context.shown("bench", "plate.toml", "--motion", "turn", "--judged", 0, "--frames", frames, *words)
+        context.shown("bench", "plate.toml", "--motion", "turn", "--judged", 0, "--frames", frames(1), *words)
     )
     return points

@@ -2,14 +2,18 @@
 
 import statistics
 
-from .. import bumpy, scenes, views
-from ..peers import run
+from .. import bumpy, floor, scenes, views
+from ..budget import Late, cases
 from ..rows import Contest, Missing, Promise, Section, Table
 from ..turns import Unmeasurable, rounds
 
 WAYS = ["events", "cst", "blister"]
 SCENES_QUICK = ["widget", "complex", "gear"]
 SCENES = [*SCENES_QUICK, "plate100", "plate1000"]
+# share of a whole run's time for the two meshes, beside a scene's 1; share of a scene's time for its rounds
+MESHES_WEIGHT, ROUNDS_SHARE = 1.6, 0.75
+# seconds of one way on a mesh
+MESH_S = 120
 # facets around a round primitive
 SEGMENTS_QUICK, SEGMENTS = [64], [32, 128]
 # degrees from top to bottom: OpenSCAD's fixed field of view
@@ -18,23 +22,34 @@ FOV_DEG = 22.5
 AWAY = 1.02
 TEXT = """\
 The scenes have the numbers of primitives of the models of J. Hable and J. Rossignac, *Blister*, SIGGRAPH 2005, which
-are not public. *First picture* is the whole process of ours, OpenSCAD and POV-Ray, from the file to a PNG; of
-Manifold it is evaluation and VTK's window and first frame, without the start of its process. *Turning* is a frame of
-a turn by three degrees each; OpenSCAD and POV-Ray draw no turn. Errors are those of the outline, by rays through the
-primitives' own equations; OpenSCAD and Manifold draw as many facets around a round primitive as stands beside their
-names."""
+are not public. *First picture* is the whole process of ours, OpenSCAD and POV-Ray, from the file to a PNG. Of Manifold
+it is evaluation and VTK's window and first frame, without the start of its process. *Turning* is a frame of a turn by
+three degrees each; OpenSCAD and POV-Ray draw no turn. Errors are those of the outline, by rays through the primitives'
+own equations. The number beside OpenSCAD and Manifold is that of facets around a round primitive. A blank OpenSCAD
+preview (a cube) and our plane show what the start of each process takes."""
 
 
 def measure(context):
     section = Section(4, "Boolean solids", TEXT)
     section.promises.append(Promise("an outline within half a pixel, by the primitives' equations"))
     section.promises.append(Promise("a pixel of a solid right within half a pixel, by the project's reference"))
+    blank(context, section)
     ways = []
-    for name in context.pick(SCENES_QUICK, SCENES):
-        context.say(name)
-        case = Case(context, name)
-        case.into(section)
-        ways += way_rows(name, len(case.scene.primitives), case.benches)
+    weights = dict.fromkeys(context.pick(SCENES_QUICK, SCENES), 1.0)
+    for name, seconds in cases(context.budget, weights | context.pick({}, {"meshes": MESHES_WEIGHT})):
+        try:
+            if name == "meshes":
+                continue
+            if isinstance(seconds, Late):
+                raise seconds
+            context.say(f"{name}: {seconds:.0f} s")
+            case = Case(context, name, seconds)
+            case.into(section)
+            ways += way_rows(name, len(case.scene.primitives), case.benches)
+        except Late as late:
+            section.contests.append(Contest(f"first picture, {name}", "all", "s", why=str(late)))
+        except Unmeasurable as error:
+            section.failure = section.failure or f"{name}: {error}"
     ways += bunnies(context)
     head = [
         "scene",
@@ -58,15 +73,15 @@ def measure(context):
 class Case:
     """One scene."""
 
-    def __init__(self, context, name):
-        self.context, self.name = context, name
+    def __init__(self, context, name, seconds):
+        self.context, self.name, self.seconds = context, name, seconds
         self.scene = scenes.of_name(name)
         self.folder = context.program.folder()
         self.file = self.folder / f"{name}.toml"
         self.file.write_text(scenes.toml(self.scene))
         bounds = context.program.info(self.file)["bounds"]
-        size = context.pick((640, 480), (1024, 768))
-        self.frames = context.pick(4, 12)
+        size = context.pick((640, 480), (800, 600))
+        self.frames = 4
         self.camera = self.view(bounds, size, 0)
         self.turn = [self.view(bounds, size, step) for step in range(self.frames)]
         self.size = "{}x{}".format(*size)
@@ -102,20 +117,7 @@ class Case:
             file.write_text(scenes.scad(self.scene, segments))
             at = ",".join(f"{x:.9f}" for x in [*self.camera["eye"], *self.camera["target"]])
             size = "{},{}".format(*self.camera["size"])
-            command = [
-                "xvfb-run",
-                "-a",
-                "openscad",
-                "--preview",
-                f"--camera={at}",
-                f"--imgsize={size}",
-                "-o",
-                picture,
-                file,
-            ]
-            _, problem, took = run(command, self.context.pick(30, 300))
-            if problem or not picture.exists():
-                raise Unmeasurable(f"OpenSCAD drew nothing: {problem or 'no picture'}")
+            took = previewed(self.context, file, picture, [f"--camera={at}", f"--imgsize={size}"])
             name = f"OpenSCAD, {segments}"
             self.pictures[name] = str(picture)
             found[name] = (took, None)
@@ -133,7 +135,7 @@ class Case:
         }
         found = {}
         for one in self.context.peers.results(
-            "manifold_viewer", job, windowed=True, limit_s=self.context.pick(60, 300)
+            "manifold_viewer", job, windowed=True, limit_s=60
         ):
             name = f"Manifold, {one['segments']}"
             self.pictures[name] = one["picture"]
@@ -145,9 +147,9 @@ class Case:
         file, picture = self.folder / "scene.pov", self.folder / "pov.png"
         file.write_text(scenes.pov(self.scene, self.camera))
         width, height = self.camera["size"]
-        _, problem, took = run(
+        _, problem, took = self.context.peers.run(
             ["povray", f"+I{file}", f"+O{picture}", f"+W{width}", f"+H{height}", "-D", "-A", "+FN8"],
-            self.context.pick(60, 300),
+            60,
         )
         if problem or not picture.exists():
             raise Unmeasurable(f"POV-Ray drew nothing: {problem or 'no picture'}")
@@ -161,7 +163,8 @@ class Case:
             "Manifold": self.manifold,
             "POV-Ray": self.povray,
         }
-        results = rounds(competitors, self.context.pick(25, 90), most=self.context.pick(3, 5))
+        seconds, most = ROUNDS_SHARE * self.seconds, self.context.pick(3, 5)
+        results = rounds(competitors, seconds, most=most, left=self.context.budget.left)
         if isinstance(results["selvedge"], Unmeasurable):
             raise results["selvedge"]
         errors, judged = self.errors(section)
@@ -172,7 +175,7 @@ class Case:
                 continue
             for setting in found[0]:
                 first, turning = zip(*(one[setting] for one in found))
-                turning = Missing("it draws no turn") if turning[0] is None else statistics.median(turning)
+                turning = Missing("it draws single pictures only") if turning[0] is None else statistics.median(turning)
                 error = errors.get(setting)
                 worst = (
                     [
@@ -184,7 +187,7 @@ class Case:
                     else [""] * 3
                 )
                 rows.append([setting, statistics.median(first), turning, *worst])
-        text = f"{judged:,} pixels at the outline judged."
+        text = f"{judged:,} pixels at the outline are judged."
         section.tables.append(
             Table(
                 f"{self.name}, {self.size}",
@@ -193,6 +196,7 @@ class Case:
                 text,
             )
         )
+        self.limits = [floor.limit(self.context, self.camera["size"]), self.frame_limit()]
         self.contests(section, results)
         for way in WAYS:
             error = errors.get(f"selvedge, {way}")
@@ -203,13 +207,19 @@ class Case:
                 section.promises[1].cases += report[way]["error"]["judged_pixels"]
                 section.promises[1].violations += report[way]["error"]["wrong_pixels"]
 
+    def frame_limit(self):
+        """What of a turning frame the rays through the solid take."""
+        median = lambda name: statistics.median(one["events"]["of"].get(name, 0.0) for one in self.benches)
+        rays, whole = median("pass: solids"), median("wall clock, with read-back")
+        return f"{self.name}: rays through the primitives' own equations take {rays:.1f} ms of our {whole:.1f} ms"
+
     def errors(self, section):
         try:
             job = {
                 "scene": self.scene.data(),
                 "camera": self.camera,
                 "pictures": self.pictures,
-                "seconds": self.context.pick(4, 60),
+                "seconds": self.context.pick(4, 8),
             }
             (found,) = self.context.peers.results("csg", job, limit_s=120 + 4 * job["seconds"])
         except Unmeasurable as error:
@@ -239,14 +249,15 @@ class Case:
                     if found[0][setting][k] is not None:
                         many = min(len(ours), len(found))
                         mine, theirs = [best(one, k) for one in ours[:many]], [one[setting][k] for one in found[:many]]
-                        section.contests.append(Contest(f"{quantity}, {self.name}", setting, unit, mine, theirs))
+                        what, limit = f"{quantity}, {self.name}", self.limits[k]
+                        section.contests.append(Contest(what, setting, unit, mine, theirs, limit=limit))
 
 
 def way_rows(name, primitives, benches):
     """Rows of the table beside the paper's figures, of rounds of reports by way."""
     rows = []
     paper = scenes.PAPER.get(name)
-    for way in WAYS:
+    for way in benches[0]:
         of = lambda quantity: statistics.median(one[way]["of"].get(quantity, 0.0) for one in benches)
         largest = benches[0][way]["largest"]
         mebibytes = lambda begins: sum(v for quantity, v in largest.items() if quantity.startswith(begins)) / 2**20
@@ -261,6 +272,39 @@ def way_rows(name, primitives, benches):
     return rows
 
 
+def previewed(context, file, picture, options):
+    """Seconds of OpenSCAD's preview of a file, the whole process."""
+    command = ["xvfb-run", "-a", "openscad", "--preview", *options, "-o", picture, file]
+    _, problem, took = context.peers.run(command, context.pick(30, 60))
+    if problem or not picture.exists():
+        raise Unmeasurable(f"OpenSCAD drew nothing: {problem or 'no picture'}")
+    return took
+
+
+def blank(context, section):
+    """The least that a process takes: OpenSCAD's preview of a cube beside our picture of one."""
+    what, folder = "first picture, a cube", context.program.folder()
+    ours, theirs = folder / "cube.toml", folder / "cube.scad"
+    ours.write_text('selvedge = 1\n[solid.A]\nshape = "block"\nsize = [20, 20, 20]\n')
+    theirs.write_text("cube([20, 20, 20]);\n")
+    size = context.pick((640, 480), (800, 600))
+    camera = {**floor.CAMERA, "size": list(size)}
+
+    def preview():
+        context.peers.needed("OpenSCAD")
+        return previewed(context, theirs, folder / "cube.png", ["--imgsize={},{}".format(*size)])
+
+    draw = lambda: context.program.render(ours, camera, stats=False)["seconds"]
+    results = rounds({"ours": draw, "theirs": preview}, 0, left=context.budget.left)
+    for found in results.values():
+        if isinstance(found, Unmeasurable):
+            section.contests.append(Contest(what, "OpenSCAD", "s", why=str(found)))
+            return
+    section.contests.append(
+        Contest(what, "OpenSCAD", "s", results["ours"], results["theirs"], limit=floor.limit(context, size))
+    )
+
+
 def bunnies(context):
     """The same with meshes as operands, without peers: the paper's numbers of triangles, and one round."""
     if context.quick:
@@ -269,8 +313,13 @@ def bunnies(context):
     for name in bumpy.TRIANGLES:
         context.say(name)
         path = bumpy.scene(context.program.folder(), name)
-        bench = lambda way: context.program.bench(
-            [path], "--motion", "turn", "--solids", way, "--frames", 2, "--judged", 0, "--size", "640x480"
-        )[0]
-        rows += way_rows(name, 4, [{way: bench(way) for way in WAYS}])
+        for way in WAYS:
+            options = ["--motion", "turn", "--solids", way, "--frames", 2, "--judged", 0, "--size", "640x480"]
+            try:
+                context.budget.needed()
+                (report,) = context.program.bench([path], *options, limit_s=MESH_S)
+            except Late as late:
+                rows.append([name, 4, way, *[Missing(str(late))] * 2, *[""] * 5])
+            else:
+                rows += way_rows(name, 4, [{way: report}])
     return rows

@@ -3,100 +3,161 @@ in turn."""
 
 import statistics
 
-from .. import noise, views
+from .. import floor, noise, views
+from ..budget import Late, cases
 from ..rows import Contest, Line, Missing, Plot, Promise, Section, Table
 from ..turns import Unmeasurable, rounds
 
-FILES_QUICK = ["samples/bracket.step", "first/occt_screw.step", "nist_pmi_2.stp"]
-FILES = [*FILES_QUICK, "framework_printable_case_full.stp", "impeller.igs"]
+# what is claimed comes first
+FILES_QUICK = ["nist_pmi_2.stp", "samples/bracket.step", "first/occt_screw.step"]
+FILES = ["nist_pmi_2.stp", "framework_printable_case_full.stp", "impeller.igs", *FILES_QUICK[1:]]
 # all sizes for these, the middle one for the others
-ALL_SIZES = ["samples/bracket.step", "nist_pmi_2.stp"]
-SIZES_QUICK, SIZES = [(960, 540)], [(960, 540), (1920, 1080), (3840, 2160)]
+ALL_SIZES = ["nist_pmi_2.stp", "samples/bracket.step"]
+SMALL, MIDDLE, LARGE = (960, 540), (1920, 1080), (3840, 2160)
+# shares of the time: what a case of this size costs beside one of the middle size, and a large file beside a small one
+WEIGHTS, LARGE_FILE = {SMALL: 0.6, MIDDLE: 1.0, LARGE: 1.9}, 1.5
+# tolerances, pixels, and deflections, shares of the diagonal; the whole run has all of ours at the middle size alone
+TOLERANCES_QUICK, TOLERANCES, TOLERANCES_OTHER = [0.5, 1.0], [0.1, 0.25, 0.5, 1.0, 4.0], [0.25, 0.5, 1.0]
+DEFLECTIONS_QUICK, DEFLECTIONS = [1e-2, 1e-3, 1e-4, 1e-5], [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
+# settings that every round repeats; the others are timed in the first one
+REPEATED = {"ours": [0.5, 1.0], "meshed": [1e-2, 1e-3, 1e-4], "F3D": [1e-3, 1e-4]}
+# share of a case's time for its rounds; the rest is for the pictures and the judge
+ROUNDS_SHARE = 0.65
+# seconds of a process of a peer, and the reason where it took longer
+PEER_S, PROCESS = 150, "its process was "
 # bounds on the error, pixels
 ERRORS = [0.125, 0.25, 0.5, 1.0, 2.0]
 # what the project claims: a picture within half a pixel sooner from the file, where the file is large
 CLAIMED_PX, CLAIMED_BYTES = 0.5, 1_000_000
 # smallest error that a plot shows, pixels: the searches do not separate smaller ones
 LEAST_PX = 1 / 16
-# the measurements of each setting, in this order
+# the measurements of each setting, in this order; the view of a turn's first frame has been drawn before: it stands
 QUANTITIES = [("first picture", "s"), ("turning frame", "ms"), ("standing frame", "ms")]
-# the tolerance at which standing frames are drawn
-STANDING_PX = 0.5
+# the tolerance of the frame that is shown pass by pass
+SPENT_PX = 0.5
 # passes below this share of all are one row
 SMALL_SHARE = 0.02
 # the mesh that the engine draws as a viewer of facets
 FACETED = 1e-3
+# the bench's name of a frame from its recording to the picture in host memory
+WALL = "wall clock, with read-back"
 VIEWERS = {"occ": "Open CASCADE", "vtk": "VTK"}
 TEXT = """\
 *First picture* is from the file: of ours the whole process, with the device, the driver's pipelines and the PNG; of
 the others from the first byte read to the first frame, without the start of their process, with the window. *Turning*
 is a frame of a turn by three degrees each: of ours with the picture read back to host memory, of the others until it
-is shown; *standing* is one of a view that stands, as a viewer draws it. Errors are judged by the kernel's rays
-against surfaces and trims, at pixels where the face changes; *99.9 %* is exceeded by one in a thousand of them. One
-picture of the triangles is judged for all viewers that draw them. Claimed is the first picture within half a pixel of
-files of a megabyte and more.
+is shown. *Standing* is a frame of a view that stands, as a viewer draws it; of ours it is one frame a round. Errors
+are judged by the kernel's rays against surfaces and trims, at pixels where the face changes; one in a thousand of them
+exceeds *99.9 %*. One picture of the triangles is judged for all viewers that draw them. We claim the first picture
+within half a pixel, of files of a megabyte and more.
+
+The first round times every setting. Later rounds repeat our tolerances of 0.5 and 1 px, and deflections of 0.01 to
+0.0001 (of F3D 0.001 and 0.0001). A setting that is timed once has the same figure in every round; column *rounds* has
+the number. All our tolerances are drawn at 1920x1080; the other sizes have 0.25, 0.5 and 1 px. Meshes become finer
+until the next one may take longer than the limit: its row names the limit.
 
 *Where our turning frame goes* is the limit of such a frame on a processor that draws. Its first row is this engine as
 a viewer of facets: it draws the mesh within a thousandth of the diagonal, the same that the viewers draw. The rows
-below are a frame of the exact surfaces, pass by pass; what it takes beyond the first row is the price of exactness."""
+below are a frame of the exact surfaces, pass by pass; its time beyond the first row is the price of exactness."""
+
+
+RATIOS = """\
+At each error our quickest setting beside that of the quickest peer, theirs to ours: above 1 we are ahead. *Ours alone*:
+no setting of a peer reaches the error. A cell is empty where we do not reach it, or where it was not measured."""
 
 
 def measure(context):
     section = Section(1, "Time against error, surfaces", TEXT)
     section.promises.append(Promise("no boundary pixel beyond the tolerance, by the kernel's rays"))
-    files = context.pick(FILES_QUICK, FILES)
-    for name in files:
+    ratios = Table("Ratios to the quickest peer", ["", *(f"within {error:g} px" for error in ERRORS)], [], RATIOS)
+    weights = {}
+    for name, size in wanted(context):
         model = context.model(name)
         if model is None:
             section.contests.append(Contest(f"first picture, {name}", "all", "s", why=context.absent(name).why))
-            continue
-        for size in context.pick(SIZES_QUICK, SIZES if name in ALL_SIZES else SIZES[1:2]):
-            context.say(f"{name}, {size[0]}x{size[1]}")
-            Case(context, model, size).into(section)
+        else:
+            weights[model, size] = WEIGHTS[size] * (LARGE_FILE if large(model) else 1.0)
+    for (model, size), seconds in cases(context.budget, weights):
+        what = f"{model.name}, {size[0]}x{size[1]}"
+        try:
+            if isinstance(seconds, Late):
+                raise seconds
+            context.say(f"{what}: {seconds:.0f} s")
+            ratios.rows += Case(context, model, size, seconds).into(section)
+        except Late as late:
+            section.contests += [Contest(f"{name}, {what}", "all", unit, why=str(late)) for name, unit in QUANTITIES]
+        except Unmeasurable as error:
+            section.failure = section.failure or f"{what}: {error}"
+    if ratios.rows:
+        section.tables.append(ratios)
     promise = section.promises[0]
     if not promise.cases:
-        promise.why = "no kernel to judge by"
+        promise.why = "the kernel did not judge the pictures"
     return section
 
 
-class Case:
-    """One file at one size."""
+def large(model):
+    return model.stat().st_size >= CLAIMED_BYTES
 
-    def __init__(self, context, model, size):
-        self.context, self.model, self.size = context, model, size
+
+def wanted(context):
+    """Files and sizes, those that tell most first."""
+    if context.quick:
+        return [(name, SMALL) for name in FILES_QUICK]
+    return [(name, MIDDLE) for name in FILES] + [(name, size) for size in (SMALL, LARGE) for name in ALL_SIZES]
+
+
+class Case:
+    """One file at one size, within so many seconds."""
+
+    def __init__(self, context, model, size, seconds):
+        self.context, self.model, self.size, self.seconds = context, model, size, seconds
         self.bounds = context.program.info(model)["bounds"]
-        self.frames = 6
+        # the first frame of a turn stands
+        self.frames = context.pick(6, 3 if size == LARGE else 5)
         self.camera = views.turned(self.bounds, size, 0)
         self.turn = views.turn(self.bounds, size, self.frames)
-        self.tolerances = context.pick([0.5, 1.0], [0.1, 0.25, 0.5, 1.0, 4.0])
-        self.deflections = context.pick([1e-2, 1e-3, 1e-4, 1e-5], [1e-2, 1e-3, 1e-4, 1e-5, 1e-6])
-        self.f3d_deflections = context.pick([1e-3, 1e-4], self.deflections)
-        self.most_mesh_s = context.pick(10, 30)
+        self.tolerances = context.pick(TOLERANCES_QUICK, TOLERANCES if size == MIDDLE else TOLERANCES_OTHER)
+        self.deflections = context.pick(DEFLECTIONS_QUICK, DEFLECTIONS)
+        self.f3d_deflections = context.pick([1e-3, 1e-4], DEFLECTIONS)
+        self.most_mesh_s = context.pick(10, 12)
         self.what = f"{model.name}, {size[0]}x{size[1]}"
+        # the first round of each competitor, by setting; then the reasons of those that were not timed
+        self.first, self.stopped = {}, {}
+        # images of faces and a mesh, which the first round of the viewers writes
+        self.images, self.stl = {}, None
+
+    def settings_of(self, who, all_settings):
+        """All settings in the first round, then those that are repeated."""
+        return [s for s in all_settings if who not in self.first or s in REPEATED[who]]
 
     def ours(self):
-        """By tolerance: seconds to the first picture, milliseconds of a frame that turns, and that stands or None."""
+        """By tolerance: seconds to the first picture, milliseconds of a frame that turns, and of one that stands."""
         found = {}
-        for tolerance in self.tolerances:
+        for tolerance in self.settings_of("ours", self.tolerances):
             first = self.context.program.render(self.model, self.camera, "--tolerance", tolerance, stats=False)
-            turning = self.bench("turn", tolerance)["wall clock, with read-back"]
-            standing = None
-            if tolerance == STANDING_PX:
-                standing = self.bench("still", tolerance)["reused: wall clock, with read-back"]
-            found[tolerance] = (first["seconds"], turning, standing)
-        return found
+            of = self.bench(tolerance)
+            found[tolerance] = (first["seconds"], of[WALL], of.get(f"reused: {WALL}"))
+        return self.with_first("ours", found)
 
-    def bench(self, motion, tolerance, model=None):
-        """Medians by name; of the file, unless another is named."""
-        words = ["--motion", motion, "--judged", 0, "--frames", self.frames, "--tolerance", tolerance]
+    def with_first(self, who, found):
+        """A round with the settings that only the first one timed."""
+        first = self.first.setdefault(who, found)
+        return {**first, **found}
+
+    def bench(self, tolerance, model=None):
+        """Medians of a turn by name; of the file, unless another is named."""
+        words = ["--motion", "turn", "--judged", 0, "--frames", self.frames, "--tolerance", tolerance]
         words += ["--size", "{}x{}".format(*self.size)]
         return self.context.program.bench([model or self.model], *words)[0]["of"]
 
-    def spent(self, section, stl):
-        """Where a turning frame goes, beside one of the same engine that draws the mesh `stl`."""
-        exact, faceted = self.bench("turn", STANDING_PX), self.bench("turn", STANDING_PX, stl) if stl else None
+    def spent(self, section):
+        """Adds where a turning frame goes, beside one of this engine with the viewers' mesh; the limits of frames."""
+        exact, faceted = self.bench(SPENT_PX), self.bench(SPENT_PX, self.stl) if self.stl else None
         columns = ["", "passes, ms", "of the exact frame", "wall clock, ms"]
         section.tables.append(Table(f"{self.what}: where our turning frame goes", columns, spent_rows(exact, faceted)))
+        limit, stands = frame_limit(exact, faceted), standing_limit(exact)
+        return {"turning frame": f"{self.what}: {limit}", "standing frame": f"{self.what}: {stands}" if stands else ""}
 
     def job(self, **more):
         return {
@@ -108,11 +169,14 @@ class Case:
         }
 
     def meshed(self):
-        """The same by viewer and deflection; the reason if the mesher was stopped."""
+        """The same by viewer and deflection."""
         self.context.peers.needed("Open CASCADE")
         self.context.peers.needed("VTK")
-        job = self.job(deflections=self.deflections, ids=None, wants=list(VIEWERS))
-        head, *results = self.context.peers.results("meshed", job, windowed=True, limit_s=self.most_mesh_s * 20)
+        # the first round writes the images that are judged
+        folder = None if "meshed" in self.first else str(self.context.program.folder())
+        deflections = self.settings_of("meshed", self.deflections)
+        job = self.job(deflections=deflections, ids=folder, wants=list(VIEWERS))
+        head, *results = self.context.peers.results("meshed", job, windowed=True, limit_s=PEER_S)
         found = {name: {} for name in VIEWERS.values()}
         for result in results:
             for key, name in VIEWERS.items():
@@ -120,50 +184,66 @@ class Case:
                 if timed:
                     first = head["read_s"] + result["mesh_s"] + timed["first_s"]
                     found[name][result["deflection"]] = (first, timed["turning_ms"], timed["standing_ms"])
-        return found
+            if result.get("ids"):
+                self.images[result["deflection"]] = result["ids"]
+                self.stl = result["stl"] if result["deflection"] == FACETED else self.stl
+        self.why("meshed", deflections, results)
+        first = self.first.setdefault("meshed", found)
+        return {name: {**first[name], **found[name]} for name in found}
 
     def f3d(self):
         self.context.peers.needed("F3D")
         diagonal = sum((b - a) ** 2 for a, b in zip(*self.bounds)) ** 0.5
-        job = self.job(deflections=[d * diagonal for d in self.f3d_deflections])
-        results = self.context.peers.results("f3d_viewer", job, windowed=True, limit_s=self.most_mesh_s * 20)
-        return {
+        deflections = self.settings_of("F3D", self.f3d_deflections)
+        job = self.job(deflections=[d * diagonal for d in deflections])
+        results = self.context.peers.results("f3d_viewer", job, windowed=True, limit_s=PEER_S)
+        found = {
             d: (r["first_s"], r["turning_ms"], r["standing_ms"])
-            for d, r in zip(self.f3d_deflections, results)
+            for d, r in zip(deflections, results)
             if "first_s" in r
         }
+        self.why("F3D", deflections, results)
+        return self.with_first("F3D", found)
 
-    def judged(self):
-        """Errors by the kernel: of our tolerances, of deflections; the counts of the boundary."""
-        self.context.peers.needed("Open CASCADE")
-        folder = self.context.program.folder()
-        job = self.job(deflections=self.deflections, ids=str(folder), wants=[]) | {"turn": []}
-        results = self.context.peers.results("meshed", job, windowed=True, limit_s=self.most_mesh_s * 20)
-        pictures = {f"mesh {r['deflection']}": {"path": r["ids"], "own": False} for r in results if r.get("ids")}
-        stl = next((r["stl"] for r in results if r.get("ids") and r["deflection"] == FACETED), None)
+    def why(self, who, deflections, results):
+        """Keeps the reasons of the deflections that were not drawn: the mesher's limit, or that of the process."""
+        for k, deflection in enumerate(deflections):
+            if k >= len(results):
+                self.stopped[who, deflection] = f"{PROCESS}{self.context.peers.problem}"
+            elif "stopped" in results[k]:
+                self.stopped[who, deflection] = results[k]["stopped"]
+
+    def pictures(self):
+        """Our images of faces, the coarsest first; they also warm the caches of files."""
         for tolerance in sorted(self.tolerances, reverse=True):
             drawn = self.context.program.render(
                 self.model, self.camera, "--tolerance", tolerance, images=["face"], stats=False
             )
-            pictures[f"ours {tolerance}"] = {"path": str(drawn["face"]), "own": True}
-        seconds = self.context.pick(6, 8)
+            yield f"ours {tolerance}", {"path": str(drawn["face"]), "own": True}
+
+    def judged(self, ours):
+        """Errors by the kernel, of our tolerances and of deflections, and the counts of the boundary."""
+        self.context.peers.needed("Open CASCADE")
+        meshes = {f"mesh {d}": {"path": path, "own": False} for d, path in self.images.items()}
+        pictures = {**meshes, **ours}
+        seconds = self.context.pick(5, 6)
         whole = {"whole": {"camera": self.camera, "pictures": pictures}}
         job = {"model": str(self.model), "views": whole, "seconds": seconds}
         (head,) = self.context.peers.results("kernel", job, limit_s=60 + seconds * (1 + len(pictures)))
-        return head, head["pictures"], stl
+        return head, head["pictures"]
 
     def into(self, section):
-        """Measures, and adds the results."""
-        seconds = self.context.pick(45, 110)
-        results = rounds(
-            {"ours": self.ours, "meshed": self.meshed, "F3D": self.f3d}, seconds, most=self.context.pick(3, 5)
-        )
+        """Measures, and adds the results; rows of ratios by error."""
+        pictures = dict(self.pictures())
+        competitors = {"ours": self.ours, "meshed": self.meshed, "F3D": self.f3d}
+        seconds, most = ROUNDS_SHARE * self.seconds, self.context.pick(3, 5)
+        results = rounds(competitors, seconds, most=most, left=self.context.budget.left)
         if isinstance(results["ours"], Unmeasurable):
             raise results["ours"]
         try:
-            head, errors, stl = self.judged()
+            head, errors = self.judged(pictures)
         except Unmeasurable as error:
-            head, errors, stl = {"boundary": 0, "sampled": 0, "alone": 0}, {}, None
+            head, errors = {"boundary": 0, "sampled": 0, "alone": 0}, {}
             section.contests.append(Contest(f"errors, {self.what}", "the kernel", "px", why=str(error)))
         competitors = {"selvedge": ("ours", results["ours"])}
         for name in VIEWERS.values():
@@ -171,15 +251,21 @@ class Case:
             competitors[name] = ("mesh", found if isinstance(found, Unmeasurable) else [one[name] for one in found])
         competitors["F3D"] = ("mesh", results["F3D"])
         self.table(section, competitors, head, errors)
-        self.spent(section, stl)
+        limits = {}
+        try:
+            limits = self.spent(section)
+            limits["first picture"] = floor.limit(self.context, self.size)
+        except Late as late:  # the rows stay; they have no limit beside them
+            section.contests.append(Contest(f"limits, {self.what}", "all", "ms", why=str(late)))
         self.plots(section, competitors, errors)
-        self.contests(section, competitors, errors)
+        ratios = self.contests(section, competitors, errors, limits)
         for tolerance in self.tolerances:
             error = errors.get(f"ours {tolerance}")
             if error:
                 # a search finds a boundary no nearer than the next of its distances
                 section.promises[0].violations += beyond(error, tolerance)
                 section.promises[0].cases += head["boundary"]
+        return ratios
 
     def settings(self, found):
         """Settings that every round has."""
@@ -189,8 +275,9 @@ class Case:
         rows = []
         for name, (kind, found) in competitors.items():
             if isinstance(found, Unmeasurable):
-                rows.append([name, "", *[Missing(str(found))] * 3, "", "", ""])
+                rows.append([name, "", *[Missing(str(found))] * 3, *[""] * 4])
                 continue
+            who = {"selvedge": "ours", "F3D": "F3D"}.get(name, "meshed")
             for setting in self.settings(found):
                 times = [None if None in of else statistics.median(of) for of in zip(*(one[setting] for one in found))]
                 error = errors.get(f"{kind} {setting}")
@@ -204,10 +291,14 @@ class Case:
                     else [""] * 3
                 )
                 unit = f"{setting:g} px" if kind == "ours" else f"{setting:g} of the diagonal"
-                rows.append([name, unit, *times, *worst])
+                times = ["" if time is None else time for time in times]
+                rows.append([name, unit, *times, len(found) if setting in REPEATED[who] else 1, *worst])
+            for (of, deflection), why in self.stopped.items():
+                if of == who and deflection not in self.settings(found):
+                    rows.append([name, f"{deflection:g} of the diagonal", *[Missing(why)] * 3, *[""] * 4])
         text = (
-            f"{head['boundary']:,} pixels at changes of face judged, {head['alone']} left out at which both our finest "
-            "picture and the finest mesh are off the rays."
+            f"{head['boundary']:,} pixels at changes of face are judged. {head['alone']} are left out: there our "
+            "finest picture and the finest mesh both differ from the rays."
         )
         columns = [
             "",
@@ -215,6 +306,7 @@ class Case:
             "first picture, s",
             "turning, ms",
             "standing, ms",
+            "rounds",
             "worst, px",
             "99.9 %, px",
             "pixels off",
@@ -244,15 +336,16 @@ class Case:
                     Plot(key, f"{quantity}: {self.what}", "99.9 % boundary error, px", f"{quantity}, {unit}", lines)
                 )
 
-    def contests(self, section, competitors, errors):
-        """At each error, our quickest tolerance beside the peer's quickest deflection, round by round."""
-        ours = competitors["selvedge"][1]
+    def contests(self, section, competitors, errors, limits):
+        """At each error, our quickest tolerance beside the peer's quickest deflection, round by round; rows of the
+        least ratio of all peers."""
+        ours, least = competitors["selvedge"][1], {}
         for name, (kind, found) in competitors.items():
             if name == "selvedge":
                 continue
             for k, (quantity, unit) in enumerate(QUANTITIES):
                 if isinstance(found, Unmeasurable) or not errors:
-                    why = str(found) if isinstance(found, Unmeasurable) else "no kernel to judge by"
+                    why = str(found) if isinstance(found, Unmeasurable) else "the kernel did not judge the pictures"
                     section.contests.append(Contest(f"{quantity}, {self.what}", name, unit, why=why))
                     continue
                 before = None
@@ -260,11 +353,18 @@ class Case:
                     contest = self.contest(
                         f"{quantity}, {self.what}, within {error:g} px", name, unit, kind, ours, found, errors, k, error
                     )
+                    if contest and (contest.unreached or contest.ratio()):
+                        least.setdefault((k, error), []).append(contest)
                     # a larger error that changes neither side's setting is the same contest
                     sides = contest and (contest.ours, contest.theirs, contest.why)
                     if contest and sides != before:
+                        contest.limit = limits.get(quantity, "")
                         section.contests.append(contest)
                     before = sides
+        return [
+            [f"{quantity}, {self.what}", *(least_ratio(least.get((k, error), [])) for error in ERRORS)]
+            for k, (quantity, _) in enumerate(QUANTITIES)
+        ]
 
     def contest(self, what, name, unit, kind, ours, found, errors, k, error):
         """None if our own settings do not reach the error."""
@@ -273,18 +373,48 @@ class Case:
         if None in mine:
             return None
         if not any(self.curve(kind, [one], errors, k) for one in found):
-            return Contest(what, name, unit, why="no setting of its was both timed and judged")
-        large = self.model.stat().st_size >= CLAIMED_BYTES
-        claim = "ahead" if k == 0 and error <= CLAIMED_PX and large else "open"
+            return Contest(what, name, unit, why="none of its settings was both timed and judged")
+        claim = "ahead" if k == 0 and error <= CLAIMED_PX and large(self.model) else "open"
         if None in theirs:
-            return Contest(what, name, unit, claim=claim, unreached=True, why="none of its settings is as right")
+            stopped = [why for (who, _), why in self.stopped.items() if who == ("F3D" if name == "F3D" else "meshed")]
+            cut = next((why for why in stopped if why.startswith(PROCESS)), None)
+            if cut:
+                return Contest(what, name, unit, claim=claim, why=cut)
+            why = "none of its settings has so small an error"
+            why += f"; a finer one is beyond the limit: {stopped[0]}" if stopped else ""
+            return Contest(what, name, unit, claim=claim, unreached=True, why=why)
         many = min(len(mine), len(theirs))
         return Contest(what, name, unit, mine[:many], theirs[:many], claim)
 
 
+def least_ratio(contests):
+    """The least ratio, with its peer, as a cell; peers that reach no such error are behind."""
+    measured = [(contest.ratio().median, contest.peer) for contest in contests if not contest.unreached]
+    if measured:
+        ratio, peer = min(measured)
+        return f"{ratio:.2f} {peer}"
+    return "ours alone" if contests else ""
+
+
+def frame_limit(exact, faceted):
+    """The price of exactness in a turning frame, as a sentence; of medians by name."""
+    shares = ", ".join(f"{name} {share}" for name, _, share, _ in spent_rows(exact, None)[1:4] if share)
+    surfaces = f"a turning frame of the exact surfaces takes {exact[WALL]:.0f} ms (of its passes {shares})"
+    return f"{surfaces}, one of the viewers' facets {faceted[WALL]:.0f} ms by this engine" if faceted else surfaces
+
+
+def standing_limit(exact):
+    """What a standing frame computes again, as a sentence; empty without such frames."""
+    passes = [(ms, name.removeprefix("reused: pass: ")) for name, ms in exact.items() if "reused: pass: " in name]
+    if not passes:
+        return ""
+    whole, (longest, name) = exact["reused: all passes"], max(passes)
+    return f"a standing frame takes {whole:.0f} ms of passes, {longest:.0f} of them {name}"
+
+
 def spent_rows(exact, faceted):
     """Rows of a frame of the exact surfaces by pass, the longest first, after one of facets; of medians by name."""
-    wall, whole = "wall clock, with read-back", exact["all passes"]
+    wall, whole = WALL, exact["all passes"]
     passes = {name.removeprefix("pass: "): ms for name, ms in exact.items() if name.startswith("pass: ")}
     large = sorted(((ms, name) for name, ms in passes.items() if ms >= SMALL_SHARE * whole), reverse=True)
     rows = [["facets, by this engine", faceted["all passes"], "", faceted[wall]] if faceted else None]

@@ -3,42 +3,78 @@ all ways to trim."""
 
 import statistics
 
+from ..budget import Late, cases
 from ..rows import Contest, Line, Missing, Plot, Promise, Section, Table
+from ..turns import Unmeasurable, rounds
 
 # the engine's own; the others are baselines
 OURS = ("table", "exact")
-FILES_QUICK = ["samples/panel.step"]
-FILES = [*FILES_QUICK, "nist_pmi_2.stp", "m6_countersunk_screw.step"]
+# files with the holes along each side of the generated face that is measured beside them; 0: no such face
+FILES_QUICK = {"samples/panel.step": 20}
+FILES = {"samples/panel.step": 50, "nist_pmi_2.stp": 0, "m6_countersunk_screw.step": 0}
+# the share of a whole run's time: the generated face has most borders
+WEIGHTS = {"samples/panel.step": 2.2, "nist_pmi_2.stp": 1.0, "m6_countersunk_screw.step": 1.0}
+# pictures of the sweep over zoom, and those that every round draws beside them
+SIZE, SMALL_SIZE = "400x400", "200x200"
 TEXT = """\
-The engine's ways to trim, `table` and `exact`, beside other methods: bisection (the paper's), a texture of the trim,
-and triangles made in advance. *Trims* is what the tests cost in the passes of a frame, *turning* the same of a view
-that turns. The least of the frames of each round counts, and the table has medians over the rounds."""
+The engine's ways to trim, `table` and `exact`, are measured beside other methods: bisection (the paper's), a texture
+of the trim, and triangles made in advance. *Trims* is what the tests cost in the passes of a frame, *turning* the same
+of a view that turns. Each round takes the least of its frames; the table has medians over the rounds. All rounds have
+the sweep over zoom, at 400x400. Larger pictures are measured once: a frame is long there, and its noise small."""
 
 
 def measure(context):
     section = Section(3, "Trimming", TEXT)
-    names = context.pick(FILES_QUICK, FILES)
-    zooms = context.pick("1,10", "1,10,100,1000")
-    sizes = context.pick("200x200,400x400", "400x400,800x800,1600x1600,3840x2160")
-    size, holes = context.pick("400x400", "800x800"), context.pick(20, 100)
-    models = [model for model in map(context.model, names) if model]
-    absent = [name for name in names if not context.model(name)]
+    files = context.pick(FILES_QUICK, FILES)
+    absent = [name for name in files if not context.model(name)]
     section.contests += [Contest(f"trims, {name}", "all", "ms", why=context.absent(name).why) for name in absent]
-    words = [*models, "--no-knobs", "--holes", holes, "--zooms", zooms, "--sizes", sizes, "--size", size]
-    words += ["--frames", context.pick(2, 5), "--samples", context.pick(500, 2000)]
-    found = []
-    for number in range(context.pick(3, 5)):
-        context.say(f"round {number + 1}")
-        found.append(unique(context.program.trims(*words)))
-    section.commands.append(context.shown("trims", *words))
-    wrong = sum(int(row["wrong"] or 0) for row in found[0].values() if row["way"] in OURS)
-    judged = sum(int(row["judged"] or 0) for row in found[0].values() if row["way"] in OURS)
-    section.promises.append(Promise("a pixel trimmed by `table` or `exact` right within half a pixel", wrong, judged))
-    for model in dict.fromkeys(model for model, *_ in found[0]):
-        table(section, model, found)
-        plots(section, model, found, size)
-        contests(section, model, found, size)
+    there = {name: WEIGHTS[name] for name in files if context.model(name)}
+    wrong = judged = 0
+    for name, seconds in cases(context.budget, there):
+        try:
+            if isinstance(seconds, Late):
+                raise seconds
+            context.say(f"{name}: {seconds:.0f} s")
+            found = measured(context, section, name, files[name], seconds)
+        except Late as late:
+            section.contests.append(Contest(f"trims, {name}", "all", "ms", why=str(late)))
+            continue
+        except Unmeasurable as error:
+            section.failure = section.failure or f"{name}: {error}"
+            continue
+        wrong += sum(int(row["wrong"] or 0) for row in found[0].values() if row["way"] in OURS)
+        judged += sum(int(row["judged"] or 0) for row in found[0].values() if row["way"] in OURS)
+        for model in dict.fromkeys(model for model, *_ in found[0]):
+            table(section, model, found)
+            plots(section, model, found, SIZE)
+            contests(section, model, found, SIZE)
+    why = "" if judged else "nothing was drawn"
+    what = "a pixel trimmed by `table` or `exact` right within half a pixel"
+    section.promises.append(Promise(what, wrong, judged, why))
     return section
+
+
+def measured(context, section, name, holes, seconds):
+    """The rounds of a file, and of the generated face beside it; the first one has the sizes, too."""
+    words = [context.model(name), "--no-knobs", "--holes", holes]
+    words += ["--samples", context.pick(500, 2000)]
+    zooms = context.pick("1,10", "1,10,100,1000")
+    of_zoom = ["--zooms", zooms, "--size", SIZE, "--sizes", SMALL_SIZE, "--frames", 2]
+    of_size = ["--zooms", 1, "--size", "800x800", "--sizes", "1600x1600,2560x1440", "--frames", 1]
+    run = lambda more: unique(context.program.trims(*words, *more))
+    of_rounds = {"zoom": lambda: run(of_zoom)}
+    found = rounds(of_rounds, 0.6 * seconds, most=3, left=context.budget.left)["zoom"]
+    if isinstance(found, Unmeasurable):
+        raise found
+    section.commands.append(context.shown("trims", *words, *of_zoom))
+    if context.quick:
+        return found
+    section.commands.append(context.shown("trims", *words, *of_size))
+    try:
+        found[0] |= run(of_size)
+    except Late as late:
+        section.contests.append(Contest(f"sizes, {name}", "all", "ms", why=str(late)))
+    return found
 
 
 def key(row):
@@ -138,9 +174,19 @@ def contests(section, model, found, size):
         claim = "ahead" if at[2] >= 10 else "open"
         least = min(filter(None, (values(found[:1], other(way), "trim_bytes") for way in OURS)), default=[])
         texture = values(found[:1], other("texture"), "trim_bytes")
-        section.contests.append(
-            contest(f"memory, {what}", "a trim texture", "bytes", least, texture, claim, exact=True)
-        )
+        memory = contest(f"memory, {what}", "a trim texture", "bytes", least, texture, claim, exact=True)
+        memory.limit = texture_limit(model, found[0], size)
+        section.contests.append(memory)
+
+
+def texture_limit(model, first, size):
+    """The bytes of a texture at the closest view: ours serve all views."""
+    rows = [(at[2], row) for at, row in first.items() if at[:2] == (model, "texture") and at[3] == size]
+    closest, bytes_ = max(((zoom, float(row["trim_bytes"])) for zoom, row in rows if row["trim_bytes"]), default=(1, 0))
+    if closest <= 1:
+        return ""
+    megabytes = bytes_ / 1e6
+    return f"{model}: our trims serve views at every distance; a texture for {closest:g} times takes {megabytes:.1f} MB"
 
 
 def contest(what, peer, unit, ours, theirs, claim, exact=False):

@@ -1,0 +1,72 @@
+"""The time of each section: what it is given, and what is left of it.
+
+The shares of a whole run are 75 minutes together, those of a quick one 9. A section orders its cases, the most telling
+ones first, and divides what is left among those to come. A case that has no time left stays in the report as a row
+with that reason, and so does one whose process was ended at the limit.
+"""
+
+import time
+
+from .turns import Unmeasurable
+
+# seconds of a quick run, and of a whole one
+SECONDS = {
+    "surfaces": (205, 1760),
+    "zoom": (80, 300),
+    "trims": (75, 470),
+    "solids": (80, 450),
+    "scale": (20, 430),
+    "stability": (37, 390),
+    "least": (4, 5),
+    "first_use": (4, 500),
+    "frames": (13, 50),
+    "reading": (20, 60),
+    "packages": (0, 80),
+}
+# a process that begins late gets so many seconds: the judge of a case comes last, and its rows are nothing without it;
+# an eighth of its section's time, and no more than this
+LEAST_S, LEAST_SHARE = 30.0, 1 / 8
+
+
+class Late(Unmeasurable):
+    """The time was used up, or a process was ended at its limit."""
+
+
+class Budget:
+    """`seconds` from now."""
+
+    def __init__(self, seconds, clock=time.monotonic):
+        self.seconds, self.clock, self.start = seconds, clock, clock()
+
+    def left(self):
+        return max(self.seconds - (self.clock() - self.start), 0.0)
+
+    def needed(self):
+        """Raises the reason for the rows of what there is no time for."""
+        if self.left() <= 0:
+            raise Late(f"the section's {self.seconds:,.0f} s were used up")
+
+    def share(self, weight, rest):
+        """Seconds for a case of this weight; `rest` are the weights of all cases to come, its own among them."""
+        return self.left() * weight / sum(rest)
+
+    def limit(self, most_s):
+        """Seconds after which a process is ended: `most_s`, or what is left."""
+        return min(most_s, max(self.left(), min(LEAST_S, LEAST_SHARE * self.seconds)))
+
+
+def of(section, quick):
+    """The time of a section."""
+    return Budget(SECONDS[section][0 if quick else 1])
+
+
+def cases(budget, weights):
+    """Each case with its seconds; a case without time left has the reason in their place."""
+    rest = list(weights.values())
+    for case, weight in weights.items():
+        try:
+            budget.needed()
+            yield case, budget.share(weight, rest)
+        except Late as late:
+            yield case, late
+        rest.pop(0)

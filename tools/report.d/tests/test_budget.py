@@ -1,0 +1,142 @@
+"""The report keeps to its time, on a machine that does nothing but let a clock run."""
+
+import contextlib
+import io
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+from report import __main__ as report
+from report import budget
+from report.context import Context
+from report.peers import NOT_DONE, Peers
+from report.program import Program
+from report.sections import first_use, surfaces
+
+from . import pretend
+
+FILES = ["first/occt_screw.step", "nist_pmi_2.stp", "framework_printable_case_full.stp", "impeller.igs"]
+FILES += ["m6_countersunk_screw.step", "nist_827-9999-904.stp"]
+# of a clone, a build, a picture
+FIRST_USE_S = {"git": 2.0, "cargo": 400.0, "selvedge": 1.0}
+
+
+def run(quick, speed=1.0):
+    """The sections of a run, and its clock."""
+    clock = pretend.Clock(speed)
+
+    def built(command, limit_s, cwd=None):
+        what = Path(command[0]).name
+        done = clock.spend(what, FIRST_USE_S[what], limit_s)
+        return "", "" if done else f"not done in {limit_s:.0f} s", FIRST_USE_S[what]
+
+    with contextlib.ExitStack() as on:
+        scratch = Path(on.enter_context(tempfile.TemporaryDirectory()))
+        for name in FILES:
+            (scratch / name).parent.mkdir(exist_ok=True)
+            (scratch / name).write_bytes(bytes(surfaces.CLAIMED_BYTES if Path(name).name not in pretend.LIGHT else 9))
+        on.enter_context(mock.patch("time.monotonic", clock))
+        on.enter_context(mock.patch.object(first_use, "run", built))
+        on.enter_context(mock.patch.object(budget.Budget.__init__, "__defaults__", (clock,)))
+        on.enter_context(mock.patch("report.turns.rounds.__defaults__", (3, 9, clock, None)))
+        # scenes that nobody reads
+        on.enter_context(mock.patch("report.bumpy.scene", lambda folder, name: folder / f"{name}.toml"))
+        on.enter_context(mock.patch("report.hard.random_sheets", lambda draw, count: ("", 2 * count)))
+        on.enter_context(mock.patch("report.hard.random_trees", lambda draw, count, leaves: ("", 5 * count)))
+        on.enter_context(mock.patch("report.scenes.toml", lambda scene: ""))
+        on.enter_context(contextlib.redirect_stderr(io.StringIO()))
+        context = Context(quick, pretend.Program(clock, scratch / "runs"), pretend.Peers(clock), scratch, scratch)
+        return {name: report.measured(name, context) for name in report.SECTIONS}, clock
+
+
+class Shares(unittest.TestCase):
+    def test_every_section_has_a_share_and_they_fit(self):
+        self.assertEqual(set(budget.SECONDS), set(report.SECTIONS))
+        quick, whole = (sum(of[k] for of in budget.SECONDS.values()) for k in (0, 1))
+        self.assertLessEqual(quick, 9 * 60)
+        self.assertLessEqual(whole, 75 * 60)
+
+    def test_a_case_gets_its_share_of_what_is_left(self):
+        clock = pretend.Clock()
+        of = budget.Budget(100, clock)
+        given = []
+        for case, seconds in budget.cases(of, {"a": 1, "b": 3, "c": 1}):
+            given.append((case, str(seconds)))
+            clock.now += {"a": 40, "b": 60, "c": 0}[case]
+        why = "the section's 100 s were used up"
+        self.assertEqual(given, [("a", "20.0"), ("b", "45.0"), ("c", why)])
+
+    def test_a_process_is_ended_with_its_section(self):
+        clock = pretend.Clock()
+        of = budget.Budget(100, clock)
+        self.assertEqual(of.limit(30), 30)
+        clock.now = 80
+        self.assertEqual(of.limit(30), 20)
+        clock.now = 99
+        self.assertEqual(of.limit(30), budget.LEAST_SHARE * 100)
+
+
+class Processes(unittest.TestCase):
+    """The real program and peers, without a process."""
+
+    def setUp(self):
+        clock = pretend.Clock()
+        self.budget = budget.Budget(100, clock)
+        clock.now = 55
+
+    def test_the_program_gets_no_more_than_is_left(self):
+        program = Program(Path("selvedge"), None, Path("."))
+        program.budget = self.budget
+        late = subprocess.TimeoutExpired("selvedge", 45)
+        with mock.patch("report.program.subprocess.run", side_effect=late) as ran:
+            with self.assertRaisesRegex(budget.Late, "selvedge info was not done in 45 s"):
+                program.run("info", "part.step")
+        self.assertEqual(ran.call_args.kwargs["timeout"], 45)
+
+    def test_a_peer_gets_no_more_than_is_left(self):
+        with tempfile.TemporaryDirectory() as folder:
+            peers = Peers(Path(folder))
+            peers.budget = self.budget
+            with mock.patch("report.peers.run", return_value=("", f"{NOT_DONE} 45 s", 45.0)) as ran:
+                with self.assertRaises(budget.Late), contextlib.redirect_stderr(io.StringIO()):
+                    peers.results("kernel", {}, limit_s=300)
+            self.assertEqual(ran.call_args.args[1], 45)
+
+
+class Runs(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.whole, cls.quick, cls.slow = run(quick=False), run(quick=True), run(quick=False, speed=0.25)
+
+    def test_a_whole_run_takes_less_than_its_time(self):
+        self.assertLess(self.whole[1].now, 75 * 60)
+
+    def test_a_quick_run_takes_less_than_its_time(self):
+        self.assertLess(self.quick[1].now, 9 * 60)
+
+    def test_a_slow_machine_gets_reasons_and_hardly_a_longer_run(self):
+        sections, clock = self.slow
+        # what has begun at the end of a section has the least time
+        self.assertLess(clock.now, 75 * 60 + 3 * len(sections) * budget.LEAST_S)
+        late = [contest for contest in sections["surfaces"].contests if "used up" in contest.why]
+        self.assertTrue(late)
+
+    def test_too_little_time_is_no_failure(self):
+        for sections, _ in (self.whole, self.quick, self.slow):
+            self.assertEqual([s.failure for s in sections.values() if s.failure], [])
+
+    def test_no_file_and_size_is_left_out(self):
+        for sections, _ in (self.whole, self.slow):
+            found = sections["surfaces"]
+            named = [table.title for table in found.tables] + [contest.what for contest in found.contests]
+            for name, (width, height) in surfaces.wanted(mock.Mock(quick=False)):
+                what = f"{Path(name).name}, {width}x{height}"
+                self.assertTrue(any(what in one for one in named), what)
+
+
+if __name__ == "__main__":
+    for of_quick in (True, False):
+        for of_name, of_section in run(of_quick)[0].items():
+            print(of_name, round(of_section.seconds), "of", round(of_section.given), of_section.failure)
