@@ -1,7 +1,7 @@
 //! All open files as one model.
 
 use super::Loaded;
-use selvedge::model::{Bounds, Edges, Instance, Model};
+use selvedge::model::{Bounds, Edges, Instance, Model, Part};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
@@ -40,6 +40,7 @@ pub struct World {
     pub notices: Vec<String>,
     edges: OnceLock<PartEdges>,
     curvature_range: OnceLock<f64>,
+    part_bounds: OnceLock<Vec<Bounds>>,
 }
 
 impl Default for World {
@@ -51,6 +52,7 @@ impl Default for World {
             notices: Vec::new(),
             edges: OnceLock::new(),
             curvature_range: OnceLock::new(),
+            part_bounds: OnceLock::new(),
         }
     }
 }
@@ -67,6 +69,12 @@ impl World {
     /// The end of the scale of curvature, found once.
     pub fn curvature_range(&self) -> f64 {
         *self.curvature_range.get_or_init(|| self.model.curvature_range())
+    }
+
+    /// The box of a part's control points, in its own coordinates. The boxes of all parts are found once.
+    pub fn part_bounds(&self, part: usize) -> Bounds {
+        let all = || self.model.parts.iter().map(Part::control_bounds).collect();
+        self.part_bounds.get_or_init(all).get(part).copied().unwrap_or(Bounds::EMPTY)
     }
 
     /// Puts files together.

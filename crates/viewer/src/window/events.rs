@@ -93,12 +93,14 @@ impl ApplicationHandler<Event> for App {
 
     fn user_event(&mut self, events: &ActiveEventLoop, event: Event) {
         match event {
-            Event::FrameDone(result) => {
+            // of a device that was lost
+            Event::FrameDone(device, _) if device != self.devices => {}
+            Event::FrameDone(_, result) => {
                 if let Err(error) = self.frame_done(result) {
                     self.recover(error, events);
                 }
             }
-            Event::Uploaded(uploaded) => self.uploaded(*uploaded),
+            Event::Uploaded => self.uploaded(),
             Event::Loader(event) => self.loader(event),
             Event::Chosen(paths) => paths.into_iter().for_each(|path| self.load(path)),
             Event::Changed(path) => drop(self.ui.changed.insert(path, Instant::now())),
@@ -250,7 +252,8 @@ impl App {
         self.ui.opened();
         let world = Arc::clone(&self.session.world);
         world.notices.iter().for_each(|notice| self.ui.tell(notice.clone()));
-        self.view.set_bounds(world.bounds);
+        self.view.set_bounds(self.session.scene.now().bounds(&world));
+        self.explosion = self.session.scene.now().explosion;
         self.view.hover = None;
         if first {
             self.view.reset(Instant::now());

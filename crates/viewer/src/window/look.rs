@@ -34,8 +34,9 @@ impl App {
 
     /// Hovered and selected items, by the numbers of the shown picture.
     pub fn marks(&self) -> (Option<Mark>, Vec<Mark>) {
-        let Some(shown) = self.opened.as_ref().and_then(|o| o.engine.shown()) else { return (None, Vec::new()) };
-        let number = |instance: usize| shown.instances.iter().position(|i| *i == instance).map(|i| i as u32 + 1);
+        let numbers = self.opened.as_ref().and_then(|o| o.engine.instances_of(&self.session.world));
+        let Some(numbers) = numbers else { return (None, Vec::new()) };
+        let number = |instance: usize| numbers.binary_search(&instance).ok().map(|i| i as u32 + 1);
         let mark = |picked: &Picked| match *picked {
             Picked::Face { instance, face, .. } => {
                 let part = self.session.world.model.instances.get(instance)?.part;
