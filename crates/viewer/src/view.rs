@@ -102,7 +102,7 @@ impl View {
 
     /// Sets the box of the drawn model.
     pub fn set_bounds(&mut self, bounds: Bounds) {
-        if !bounds.is_empty() {
+        if !bounds.is_empty() && bounds != self.bounds {
             self.bounds = bounds;
             self.camera = navigation::settle(&self.camera, bounds);
         }
@@ -205,6 +205,22 @@ impl View {
         let to = navigation::orbit(&self.goal(), self.bounds.centre(), pixels, style);
         self.transition = None;
         self.set(to, now);
+    }
+
+    /// Moves the picture by pixels, as keys do.
+    pub fn shift(&mut self, pixels: DVec2, now: Instant) {
+        let from = self.goal();
+        let Some((at, _)) = from.project(from.target) else { return };
+        self.remember();
+        (self.anchor, self.transition) = (None, None);
+        self.set(navigation::pan(&from, from.target, at + pixels), now);
+    }
+
+    /// Zooms by notches to what is in the middle of the picture, as keys do.
+    pub fn zoom(&mut self, notches: f64, now: Instant) {
+        self.remember();
+        let (width, height) = self.camera.size;
+        self.wheel(DVec2::new(f64::from(width), f64::from(height)) * 0.5, notches, now);
     }
 
     /// A button went down at `cursor`. The view needs the point under it, unless it is known: [`hold`](Self::hold).
@@ -388,6 +404,22 @@ mod tests {
             view.wheel(cursor, 1.0, now);
             assert!(view.camera.project(point).expect("in front").0.distance(cursor) < 1e-5);
         }
+    }
+
+    #[test]
+    fn keys_move_and_zoom_and_lead_back() {
+        let now = Instant::now();
+        let mut view = view(now);
+        let (first, point) = (view.camera, view.camera.target);
+        let (start, _) = first.project(point).expect("in front");
+        view.shift(DVec2::new(50.0, -20.0), now);
+        let (at, depth) = view.camera.project(point).expect("in front");
+        assert!(at.distance(start + DVec2::new(50.0, -20.0)) < 1e-6, "{at}");
+        view.zoom(3.0, now);
+        let (_, closer) = view.camera.project(point).expect("in front");
+        assert!(closer < depth);
+        assert!(view.previous(false, now) && view.previous(false, now));
+        assert_eq!((view.camera.eye, view.camera.target), (first.eye, first.target));
     }
 
     #[test]

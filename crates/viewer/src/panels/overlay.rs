@@ -90,8 +90,7 @@ fn mark(painter: &egui::Painter, place: &Place<'_>, session: &Session, picked: &
             let Some(edge) = edges.edges.get(edge) else { return };
             for span in &edge.curve {
                 let points = (0..=CHORDS).map(|i| span.piece.point(i as f64 / CHORDS as f64));
-                let points: Vec<Option<Pos2>> =
-                    points.map(|p| place.of(transform.transform_point3(p))).collect();
+                let points: Vec<Option<Pos2>> = points.map(|p| place.of(transform.transform_point3(p))).collect();
                 for pair in points.windows(2) {
                     if let [Some(a), Some(b)] = *pair {
                         painter.line_segment([a, b], Stroke::new(3.0, colour));

@@ -9,13 +9,15 @@
 
 pub mod file;
 pub mod picked;
+pub mod section;
 pub mod shown;
 pub mod undo;
 pub mod world;
 
 pub use file::{Loaded, Loader, LoaderEvent};
 pub use picked::Picked;
-pub use shown::{SceneState, Section, Shown};
+pub use section::Section;
+pub use shown::{SceneState, Shown};
 pub use undo::History;
 pub use world::{FilePart, World};
 

@@ -309,6 +309,8 @@ impl App {
                 Command::Projection => self.view.toggle_projection(now),
                 Command::Previous => drop(self.view.previous(smooth, now)),
                 Command::Turn(x, y) => self.view.turn(DVec2::new(x, y), self.settings.orbit, now),
+                Command::Shift(x, y) => self.view.shift(DVec2::new(x, y), now),
+                Command::Zoom(notches) => self.view.zoom(notches, now),
                 Command::CopyCommand => {
                     let text =
                         crate::describe::command(&self.session, self.view.camera(), &self.settings, self.ui.style);

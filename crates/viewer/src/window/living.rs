@@ -74,7 +74,11 @@ impl Change<'_> {
             let Some(nth) = self.number_of(*number, placed)? else { continue };
             let visible = !after.hidden.contains(number);
             renderer.set_visible(nth, visible)?;
-            if visible { placed.hidden.remove(&nth) } else { placed.hidden.insert(nth) };
+            if visible {
+                placed.hidden.remove(&nth)
+            } else {
+                placed.hidden.insert(nth)
+            };
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! The scene's and the frame's settings for the engine, and marks for the composite pass.
 
 use super::app::App;
+use crate::describe::{SUN, ambient_radius};
 use crate::pick::Mark;
 use crate::session::Picked;
 use crate::settings::{Lines, Settings};
@@ -9,7 +10,7 @@ use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, SceneSettings, 
 impl App {
     /// Settings of the model that is drawn.
     pub fn scene_settings(&self) -> SceneSettings {
-        let Settings { lines, silhouettes, hidden_lines, smooth, .. } = self.settings;
+        let Settings { lines, silhouettes, hidden_lines, smooth, shadows, .. } = self.settings;
         let which = match lines {
             Lines::All => EdgeChoice::All,
             Lines::Sharp => EdgeChoice::Sharp,
@@ -19,7 +20,15 @@ impl App {
         let edges = (which != EdgeChoice::None || silhouettes).then_some(edges);
         let smooth = if smooth { Smooth::Borders } else { Smooth::None };
         let curvature = self.ui.style.is_curvature();
-        SceneSettings { edges, smooth, curvature, editable: self.ui.trims, ..SceneSettings::default() }
+        SceneSettings {
+            edges,
+            smooth,
+            curvature,
+            ambient: ambient_radius(&self.session.world, &self.settings),
+            sun: shadows.then_some(SUN),
+            editable: self.ui.trims,
+            ..SceneSettings::default()
+        }
     }
 
     /// Settings of the pictures in the window.
