@@ -10,7 +10,7 @@ const HELD_PX: f64 = 0.01;
 
 #[test]
 fn a_gesture_holds_the_point_under_the_cursor() {
-    let Some(screen) = Screen::open() else { return };
+    let Some(screen) = Screen::open((900, 560)) else { return };
     let display = &screen.display;
     let (_folder, mut program, scene) = opened(display, "bracket.step");
     let (at, _) = scene.cylinder();
@@ -43,7 +43,7 @@ fn a_gesture_holds_the_point_under_the_cursor() {
 
 #[test]
 fn keys_and_the_cube_lead_to_views_and_back() {
-    let Some(screen) = Screen::open() else { return };
+    let Some(screen) = Screen::open((900, 560)) else { return };
     let display = &screen.display;
     let (_folder, mut program, scene) = opened(display, "bracket.step");
     let (bounds, centre) = (scene.world.bounds, scene.world.bounds.centre());

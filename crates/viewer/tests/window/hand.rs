@@ -1,6 +1,6 @@
 //! The hand: an X server without a screen, the mouse and the keys that xdotool moves, and the program with the window.
 
-use super::{FILE, NAME, PATIENCE};
+use super::{FILE, NAME, PATIENCE, SIZE};
 use glam::DVec2;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -19,20 +19,22 @@ pub const PICTURE: (u32, u32) = (1280, 720);
 pub struct Display {
     server: Child,
     name: String,
+    /// Width and height of the screen; the window fills it.
+    size: (u32, u32),
 }
 
 impl Display {
-    pub fn open() -> Option<Self> {
+    pub fn open(size: (u32, u32)) -> Option<Self> {
         Command::new("xdotool").arg("version").stdout(Stdio::null()).status().ok()?;
         let mut server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "900x560x24", "-nolisten", "tcp"])
+            .args(["-displayfd", "1", "-screen", "0", &format!("{}x{}x24", size.0, size.1), "-nolisten", "tcp"])
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
             .ok()?;
         let mut number = String::new();
         BufReader::new(server.stdout.take()?).read_line(&mut number).ok()?;
-        Some(Self { server, name: format!(":{}", number.trim()) })
+        Some(Self { server, name: format!(":{}", number.trim()), size })
     }
 
     /// Moves mouse and keys by the words of xdotool's command line.
@@ -90,6 +92,7 @@ impl Program {
         let mut child = Command::new(std::env::current_exe().expect("this test"))
             .args(["--exact", NAME, "--nocapture"])
             .env(FILE, file)
+            .env(SIZE, format!("{} {}", display.size.0, display.size.1))
             .env("DISPLAY", &display.name)
             .env_remove("WAYLAND_DISPLAY")
             .current_dir(&folder)

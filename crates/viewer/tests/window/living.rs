@@ -24,7 +24,7 @@ fn upload(program: &mut Program, display: &Display, key: &str) {
 
 #[test]
 fn parts_are_hidden_and_shown_without_an_upload() {
-    let Some(screen) = Screen::open() else { return };
+    let Some(screen) = Screen::open((900, 560)) else { return };
     let display = &screen.display;
     let (_folder, mut program, scene) = opened(display, "assembly.step");
     let (at, before, behind) = scene.behind();
@@ -59,7 +59,7 @@ fn parts_are_hidden_and_shown_without_an_upload() {
 
 #[test]
 fn a_section_at_a_face_follows_its_handle() {
-    let Some(screen) = Screen::open() else { return };
+    let Some(screen) = Screen::open((900, 560)) else { return };
     let display = &screen.display;
     let (_folder, mut program, scene) = opened(display, "assembly.step");
     let (bounds, forward) = (scene.world.bounds, scene.camera.axes().2);
@@ -99,7 +99,7 @@ fn a_section_at_a_face_follows_its_handle() {
 
 #[test]
 fn a_trim_follows_the_hand_without_an_upload() {
-    let Some(screen) = Screen::open() else { return };
+    let Some(screen) = Screen::open((900, 560)) else { return };
     let display = &screen.display;
     let (_folder, mut program, scene) = opened(display, "bracket.step");
     let (at, hit) = scene.place(|_, face| face.kind == SurfaceKind::Plane && face.loops.len() > 1);

@@ -8,6 +8,7 @@ mod hand;
 mod living;
 mod scene;
 mod soak;
+mod speed;
 
 use hand::{Display, Program, numbers};
 use scene::Scene;
@@ -18,6 +19,8 @@ use std::time::Duration;
 
 /// Names the file that the window opens: set for the process with the window.
 const FILE: &str = "SELVEDGE_WINDOW_FILE";
+/// Names its width and height.
+const SIZE: &str = "SELVEDGE_WINDOW_SIZE";
 const NAME: &str = "a_window_is_used_as_a_person_does";
 /// Longest wait for anything; a machine that draws by its CPU and is busy takes seconds for the first picture.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -27,7 +30,7 @@ fn a_window_is_used_as_a_person_does() {
     if let Some(file) = std::env::var_os(FILE) {
         return window(PathBuf::from(file));
     }
-    if let Some(screen) = Screen::open() {
+    if let Some(screen) = Screen::open((900, 560)) {
         script(&screen.display);
     }
 }
@@ -40,7 +43,7 @@ struct Screen {
 
 impl Screen {
     /// `None` where `SELVEDGE_WITHOUT` leaves the window out.
-    fn open() -> Option<Self> {
+    fn open(size: (u32, u32)) -> Option<Self> {
         static ALONE: Mutex<()> = Mutex::new(());
         if std::env::var("SELVEDGE_WITHOUT").is_ok_and(|left_out| left_out.split(',').any(|name| name == "window")) {
             return None;
@@ -48,7 +51,7 @@ impl Screen {
         let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
         let needs =
             "the window test needs Xvfb and xdotool: apt install xvfb xdotool; SELVEDGE_WITHOUT=window leaves it out";
-        Some(Self { display: Display::open().expect(needs), _alone: alone })
+        Some(Self { display: Display::open(size).expect(needs), _alone: alone })
     }
 }
 
@@ -59,11 +62,13 @@ fn window(file: PathBuf) {
         .with_writer(std::io::stderr)
         .with_ansi(false)
         .init();
+    let size = std::env::var(SIZE).expect("a size");
+    let (width, height) = size.split_once(' ').expect("two numbers");
     let closed = run(ViewOptions {
         settings: file.parent().map(|folder| folder.join("settings.json")),
         files: vec![file],
         validation: true,
-        size: Some((900, 560)),
+        size: width.parse().ok().zip(height.parse().ok()),
         device: None,
     });
     let messages = closed.expect("the window closes well").messages;

@@ -50,7 +50,7 @@ impl Random {
 
 #[test]
 fn random_events_do_no_harm() {
-    let Some(screen) = Screen::open() else { return };
+    let Some(screen) = Screen::open((900, 560)) else { return };
     let display = &screen.display;
     let (_folder, mut program, scene) = opened(display, "assembly.step");
     let count = std::env::var("SELVEDGE_WINDOW_EVENTS").ok().and_then(|n| n.parse().ok()).unwrap_or(EVENTS);
