@@ -124,14 +124,6 @@ impl World {
         });
     }
 
-    /// Whether every placed part has its name and place in the other's list, too.
-    pub fn has_parts_of(&self, other: &Self) -> bool {
-        let named = |i: &Instance, world: &Self| (i.name.clone(), world.model.parts[i.part].name.clone());
-        self.model.instances.len() == other.model.instances.len()
-            && self.model.solids.len() == other.model.solids.len()
-            && self.model.instances.iter().zip(&other.model.instances).all(|(a, b)| named(a, self) == named(b, other))
-    }
-
     /// Nothing is open, or nothing can be drawn.
     pub fn is_empty(&self) -> bool {
         self.model.instances.is_empty() && self.model.solids.is_empty()

@@ -31,6 +31,8 @@ pub enum Event {
     FrameDone(u32, Result<(), vk::Result>),
     /// A file.
     Loader(LoaderEvent),
+    /// The model of all open files, and which one since the start.
+    Joined(u64, Arc<World>),
     /// The engine's thread has finished.
     Uploaded,
     /// Edges can be picked now.
@@ -99,6 +101,10 @@ pub struct App {
     kept: Settings,
     pub files: Vec<Arc<Loaded>>,
     pub loading: Vec<Loading>,
+    /// Counts models of all open files.
+    pub worlds: u64,
+    /// A thread puts the last one together.
+    pub joins: bool,
     pub watcher: Option<Watcher>,
     flight: Option<Flight>,
     /// Drawn again once the frame in flight is done.
@@ -157,6 +163,8 @@ impl App {
             settings,
             files: Vec::new(),
             loading: Vec::new(),
+            worlds: 0,
+            joins: false,
             watcher,
             flight: None,
             again: false,
@@ -328,7 +336,7 @@ impl App {
             loading: self.loading.iter().map(|l| (l.loader.path.as_path(), l.stage, l.share)).collect(),
             stats: self.stats.as_ref(),
             notice: engine.notice.as_deref(),
-            busy: engine.is_busy(),
+            busy: self.joins || engine.is_busy(),
             picture: screen.shown(),
             view: &self.view,
             device: &screen.context.name,

@@ -100,6 +100,7 @@ impl ApplicationHandler<Event> for App {
                     self.recover(error, events);
                 }
             }
+            Event::Joined(nth, world) => self.joined(nth, world),
             Event::Uploaded => self.uploaded(),
             Event::Loader(event) => self.loader(event),
             Event::Chosen(paths) => paths.into_iter().for_each(|path| self.load(path)),
@@ -245,12 +246,28 @@ impl App {
         self.redraw();
     }
 
-    /// All open files as one model.
+    /// All open files as one model, put together by a thread.
     fn put_together(&mut self) {
+        self.worlds += 1;
+        self.joins = true;
+        let (nth, files, proxy) = (self.worlds, self.files.clone(), self.proxy.clone());
+        std::thread::spawn(move || {
+            let world = Arc::new(World::new(&files));
+            drop(proxy.send_event(Event::Joined(nth, Arc::clone(&world))));
+            world.find_edges();
+            drop(proxy.send_event(Event::EdgesFound));
+        });
+    }
+
+    /// Shows the model of all open files, unless they are others by now.
+    fn joined(&mut self, nth: u64, world: Arc<World>) {
+        if nth != self.worlds {
+            return;
+        }
+        self.joins = false;
         let first = self.session.world.is_empty();
-        self.session.open(World::new(&self.files));
+        self.session.open(Arc::clone(&world));
         self.ui.opened();
-        let world = Arc::clone(&self.session.world);
         world.notices.iter().for_each(|notice| self.ui.tell(notice.clone()));
         self.view.set_bounds(self.session.scene.now().bounds(&world));
         self.explosion = self.session.scene.now().explosion;
@@ -263,11 +280,7 @@ impl App {
         if let Some(opened) = &self.opened {
             opened.window.set_title(&format!("{} - selvedge", title.join(", ")));
         }
-        let proxy = self.proxy.clone();
-        std::thread::spawn(move || {
-            world.find_edges();
-            drop(proxy.send_event(Event::EdgesFound));
-        });
+        self.redraw();
     }
 
     /// Reads files again that have changed on the disk and rest.
@@ -327,9 +340,11 @@ impl App {
         }
     }
 
+    /// Closes a file of the tree.
     fn close_file(&mut self, file: usize) {
-        if file < self.files.len() {
-            let closed = self.files.remove(file);
+        let path = self.session.world.files.get(file).map(|file| &file.path);
+        if let Some(nth) = self.files.iter().position(|file| Some(&file.path) == path) {
+            let closed = self.files.remove(nth);
             if let Some(watcher) = &mut self.watcher {
                 watcher.remove(&closed.path);
             }
