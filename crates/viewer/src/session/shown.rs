@@ -84,15 +84,15 @@ impl SceneState {
         if self.is_cut() {
             return self.show(world);
         }
-        let all = world.model.instances.iter().enumerate();
         let stays = |number: usize| {
             let placed = self.instance(number, world);
             let part = &world.model.parts[placed.part];
             !self.hidden.contains(&number) || !part.closed || placed.is_opaque(part)
         };
-        let shown = self.show_these(all.map(|(number, _)| number).filter(|number| stays(*number)).collect(), world);
+        let chosen = (0..world.model.instances.len()).filter(|number| stays(*number)).collect();
+        let shown = self.show_these(chosen, world);
         let numbers = shown.instances.iter().enumerate();
-        let hidden = numbers.filter(|(_, number)| self.hidden.contains(number)).map(|(nth, _)| nth).collect();
+        let hidden = numbers.filter(|(_, number)| self.hidden.contains(*number)).map(|(nth, _)| nth).collect();
         Shown { hidden, ..shown }
     }
 
@@ -237,7 +237,8 @@ mod tests {
         let mut state = SceneState::default();
         state.hidden.extend([1, 2]);
         let shown = state.show_and_hide(&world);
-        assert_eq!((shown.instances, shown.hidden), ((0..count).collect(), BTreeSet::from([1, 2])));
+        let all: Vec<usize> = (0..count).collect();
+        assert_eq!((shown.instances, shown.hidden), (all, BTreeSet::from([1, 2])));
         // the engine follows rays through a closed part of glass, and hides none
         assert!(world.model.parts[world.model.instances[1].part].closed);
         state.clear.insert(1);

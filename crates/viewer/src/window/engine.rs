@@ -148,27 +148,35 @@ impl Engine {
         }
     }
 
-    /// Takes the renderer back from a thread that has called `done`; `Ok(false)` where there is none.
+    /// Takes the renderer back from a thread that has called `done`, if there is one.
     ///
     /// # Errors
     /// Why the model was not uploaded; the model before stays.
-    pub fn take(&mut self) -> Result<bool, RenderError> {
-        let Some((thread, from)) = self.upload.take() else { return Ok(false) };
+    pub fn take(&mut self) -> Result<(), RenderError> {
+        let Some((thread, from)) = self.upload.take() else { return Ok(()) };
         let uploaded = match from.try_recv() {
             Ok(uploaded) => uploaded,
             Err(mpsc::TryRecvError::Empty) => {
                 self.upload = Some((thread, from));
-                return Ok(false);
+                return Ok(());
             }
-            Err(mpsc::TryRecvError::Disconnected) => return Ok(false),
+            Err(mpsc::TryRecvError::Disconnected) => return Ok(()),
         };
         // it has nothing left to do
         let _ = thread.join();
         self.renderer = Some(uploaded.renderer);
-        let (current, notice) = uploaded.result?;
-        (self.current, self.notice) = (Some(current), notice);
-        self.generation += 1;
-        Ok(true)
+        match uploaded.result {
+            Ok((current, notice)) => {
+                (self.current, self.notice) = (Some(current), notice);
+                self.generation += 1;
+                Ok(())
+            }
+            Err(error) => {
+                // the second of two uploads may have failed
+                self.current.iter_mut().for_each(|current| current.is_mixed = true);
+                Err(error)
+            }
+        }
     }
 
     /// Waits for the thread. The renderer is then here, or freed with the engine.
@@ -182,7 +190,10 @@ impl Engine {
 
 /// Uploads a model with hidden instances in it, without those where one of them cannot be hidden.
 fn upload(renderer: &mut Renderer, request: Request) -> Result<(Current, Option<String>), RenderError> {
-    let shown = request.state.show_and_hide(&request.world);
+    // shadows are those of an upload
+    let lives = request.settings.sun.is_none();
+    let state = &request.state;
+    let shown = if lives { state.show_and_hide(&request.world) } else { state.show(&request.world) };
     let failed = shown.failed.as_ref().map(|error| format!("A section is not cut: {error}."));
     let (mut settings, mut rough) = put(renderer, shown.model, request.settings)?;
     let mut placed = Placed { instances: shown.instances.into(), hidden: shown.hidden };
