@@ -211,7 +211,19 @@ impl App {
         self.redraw();
     }
 
+    /// Stops reading. The threads end at their importers' next signs of progress; nothing waits for them.
+    fn give_up(&mut self) {
+        for loading in self.loading.drain(..) {
+            loading.loader.cancel();
+            self.ui.tell(format!("{}: given up", loading.loader.path.display()));
+        }
+    }
+
     fn loader(&mut self, event: LoaderEvent) {
+        // a thread whose file was given up may still send its last events
+        if !self.loading.iter().any(|loading| loading.loader.path == event.path()) {
+            return;
+        }
         let ended = |app: &mut Self, path: &Path| app.loading.retain(|l| l.loader.path != path);
         match event {
             LoaderEvent::Progress { path, stage, share } => {
@@ -224,10 +236,7 @@ impl App {
                 tracing::error!("{why}");
                 self.ui.tell(why);
             }
-            LoaderEvent::Cancelled(path) => {
-                ended(self, &path);
-                self.ui.tell(format!("{}: given up", path.display()));
-            }
+            LoaderEvent::Cancelled(path) => ended(self, &path),
             LoaderEvent::Loaded(loaded) => {
                 ended(self, &loaded.path);
                 let (faces, warnings) = (loaded.import.model.face_count(), loaded.import.warnings.len());
@@ -307,7 +316,7 @@ impl App {
                     let paths: Vec<_> = self.files.iter().map(|f| f.path.clone()).collect();
                     paths.into_iter().for_each(|path| self.load(path));
                 }
-                Command::Cancel => self.loading.iter().for_each(|l| l.loader.cancel()),
+                Command::Cancel => self.give_up(),
                 Command::Fit => self.view.fit(smooth, now),
                 Command::FitSelection => {
                     let points = crate::describe::extent(&self.session);
