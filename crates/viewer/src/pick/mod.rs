@@ -129,10 +129,7 @@ impl Samples {
         };
         let instance_of = |number: u32| shown.get((number as usize).checked_sub(1)?).copied();
         let instance = instance_of(sample.instance);
-        let face = instance.and_then(|i| {
-            let part = &world.model.parts[world.model.instances[i].part];
-            Some((i, part.faces.iter().position(|f| f.id == sample.face)?))
-        });
+        let face = instance.and_then(|i| Some((i, world.face(world.model.instances[i].part, sample.face)?)));
         let seen = (sample.face != 0).then(|| {
             let (origin, direction) = camera.ray(cursor);
             let (_, _, forward) = camera.axes();

@@ -219,6 +219,18 @@ mod tests {
     }
 
     #[test]
+    fn each_face_is_found_by_its_number() {
+        let world = world();
+        for (part, of_part) in world.model.parts.iter().enumerate() {
+            for face in &of_part.faces {
+                let first = of_part.faces.iter().position(|other| other.id == face.id);
+                assert_eq!(world.face(part, face.id), first);
+            }
+        }
+        assert_eq!(world.face(world.model.parts.len(), 1), None);
+    }
+
+    #[test]
     fn what_is_hidden_is_not_drawn_and_the_rest_is_known_again() {
         let world = world();
         let mut state = SceneState::default();

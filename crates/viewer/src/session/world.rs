@@ -2,6 +2,7 @@
 
 use super::Loaded;
 use selvedge::model::{Bounds, Edges, Instance, Model, Part};
+use std::collections::HashMap;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
@@ -41,6 +42,8 @@ pub struct World {
     edges: OnceLock<PartEdges>,
     curvature_range: OnceLock<f64>,
     part_bounds: OnceLock<Vec<Bounds>>,
+    /// By part and number.
+    faces: OnceLock<HashMap<(usize, u32), usize>>,
 }
 
 impl Default for World {
@@ -53,6 +56,7 @@ impl Default for World {
             edges: OnceLock::new(),
             curvature_range: OnceLock::new(),
             part_bounds: OnceLock::new(),
+            faces: OnceLock::new(),
         }
     }
 }
@@ -77,6 +81,20 @@ impl World {
         self.part_bounds.get_or_init(all).get(part).copied().unwrap_or(Bounds::EMPTY)
     }
 
+    /// The face of a part that has this number: the first of several. The faces of all parts are listed once.
+    pub fn face(&self, part: usize, id: u32) -> Option<usize> {
+        let all = || {
+            let mut faces = HashMap::new();
+            for (part, of_part) in self.model.parts.iter().enumerate() {
+                for (nth, face) in of_part.faces.iter().enumerate() {
+                    faces.entry((part, face.id)).or_insert(nth);
+                }
+            }
+            faces
+        };
+        self.faces.get_or_init(all).get(&(part, id)).copied()
+    }
+
     /// Puts files together.
     pub fn new(files: &[Arc<Loaded>]) -> Self {
         let mut world = Self::default();
@@ -84,6 +102,8 @@ impl World {
             world.add(file);
         }
         world.bounds = world.model.bounds();
+        // here, so that no first pick waits for it
+        world.face(0, 0);
         world
     }
 
