@@ -9,10 +9,6 @@
 use super::surface::{self, SurfaceShape};
 use crate::session::{Picked, Section, Session};
 
-/// How far below a plane face it is cut, as a share of the model's diagonal: faces in the plane of a section are cut or
-/// not by rounding, which is some 1e-16 of it.
-const BELOW: f64 = 1e-6;
-
 /// The section at the face that was selected last; `None` where no face is, or the face has none of these shapes.
 pub fn at_selection(session: &Session) -> Option<Section> {
     let Some(Picked::Face { instance, face, uv }) = session.selection.last().copied() else { return None };
@@ -27,7 +23,7 @@ pub fn at_selection(session: &Session) -> Option<Section> {
             let own = face.surface.normal(uv.x, uv.y)?;
             let outward = transform.transform_vector3(if face.same_sense { own } else { -own });
             let normal = if normal.dot(outward) < 0.0 { -normal } else { normal };
-            (normal, point - normal * (BELOW * world.bounds.diagonal()))
+            (normal, point - normal * (Section::BELOW * world.bounds.diagonal()))
         }
         _ => {
             let (middle, axis) = shape.middle()?;
@@ -72,7 +68,7 @@ mod tests {
             let section = cut(part.clone(), face, by).expect("a plane");
             let half = (section.normal.abs() * (high - low)).element_sum() * 0.5;
             let above = section.offset - section.normal.dot(middle) - half;
-            assert!((above + BELOW * diagonal).abs() < 1e-12 * diagonal, "face {face}: {above}");
+            assert!((above + Section::BELOW * diagonal).abs() < 1e-12 * diagonal, "face {face}: {above}");
         }
     }
 

@@ -1,7 +1,9 @@
 //! All open files as one model.
 
 use super::Loaded;
-use selvedge::model::{Bounds, Edges, Instance, Model, Part};
+use glam::{DAffine3, DVec3};
+use selvedge::model::{Bounds, Edges, Instance, Model, Part, SurfaceKind};
+use selvedge::spline::Surface;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -44,6 +46,7 @@ pub struct World {
     part_bounds: OnceLock<Vec<Bounds>>,
     /// By part and number.
     faces: OnceLock<HashMap<(usize, u32), usize>>,
+    planes: OnceLock<Vec<(DVec3, f64)>>,
 }
 
 impl Default for World {
@@ -57,8 +60,17 @@ impl Default for World {
             curvature_range: OnceLock::new(),
             part_bounds: OnceLock::new(),
             faces: OnceLock::new(),
+            planes: OnceLock::new(),
         }
     }
+}
+
+/// The plane of a plane surface.
+fn plane(surface: &Surface, transform: DAffine3) -> Option<(DVec3, f64)> {
+    let ((u0, u1), (v0, v1)) = surface.domain();
+    let jet = surface.jet2(0.5 * (u0 + u1), 0.5 * (v0 + v1));
+    let normal = transform.transform_vector3(jet.du).cross(transform.transform_vector3(jet.dv)).try_normalize()?;
+    Some((normal, normal.dot(transform.transform_point3(jet.point))))
 }
 
 /// Edges of each part; for a part without curves none, and the reason.
@@ -93,6 +105,17 @@ impl World {
             faces
         };
         self.faces.get_or_init(all).get(&(part, id)).copied()
+    }
+
+    /// The planes of plane faces where instances have them: unit normals, and offsets along them. They are found once.
+    pub fn planes(&self) -> &[(DVec3, f64)] {
+        self.planes.get_or_init(|| {
+            let of_instance = |placed: &Instance| {
+                let flat = self.model.parts[placed.part].faces.iter().filter(|face| face.kind == SurfaceKind::Plane);
+                flat.filter_map(|face| plane(&face.surface, placed.transform)).collect::<Vec<_>>()
+            };
+            self.model.instances.iter().flat_map(of_instance).collect()
+        })
     }
 
     /// Puts files together.

@@ -88,9 +88,9 @@ fn a_section_at_a_face_follows_its_handle() {
     program.rest();
     let dragged = offset(&program.command(display));
     assert!(dragged < section.offset);
-    // the cursor has whole pixels, and a step is linear in perspective
+    // the cursor has whole pixels, a step is linear in perspective, and the plane may snap to a face four pixels away
     let off = (place(dragged) - (from + by)).dot(along);
-    assert!(off.abs() < 4.0, "{off} pixels from the hand");
+    assert!(off.abs() < 8.0, "{off} pixels from the hand");
     upload(&mut program, display, "ctrl+z");
     let undone = offset(&program.command(display));
     assert!((undone - section.offset).abs() < 1e-9 * bounds.diagonal());
