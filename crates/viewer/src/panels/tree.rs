@@ -41,7 +41,8 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
                     .collect();
                 let to = last.filter(|_| ui.show_selection).and_then(|last| found.binary_search(&last).ok());
                 rows(list, found.len(), to, |list, row| {
-                    part(list, ui, session, found[row], &selected);
+                    // a row is the same one wherever it is scrolled to
+                    list.push_id(found[row], |list| part(list, ui, session, found[row], &selected));
                 });
                 let count = world.model.instances.len();
                 for solid in file.solids.clone() {

@@ -1,7 +1,7 @@
 //! The model that is drawn: the world in the session's state.
 
 use super::{Section, World};
-use glam::{DAffine3, DVec3};
+use glam::DAffine3;
 use selvedge::model::{Bounds, Colour, Instance, Model, SolidError, TrimLoop};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -190,6 +190,7 @@ impl SceneState {
 mod tests {
     use super::super::file::Loaded;
     use super::*;
+    use glam::DVec3;
     use std::path::Path;
     use std::sync::Arc;
 
