@@ -21,12 +21,17 @@ pub struct Display {
     name: String,
     /// Width and height of the screen; the window fills it.
     size: (u32, u32),
+    /// Where the server keeps its picture.
+    folder: tempfile::TempDir,
 }
 
 impl Display {
     pub fn open(size: (u32, u32)) -> Option<Self> {
         Command::new("xdotool").arg("version").stdout(Stdio::null()).status().ok()?;
+        let folder = tempfile::tempdir().ok()?;
         let mut server = Command::new("Xvfb")
+            .arg("-fbdir")
+            .arg(folder.path())
             .args(["-displayfd", "1", "-screen", "0", &format!("{}x{}x24", size.0, size.1), "-nolisten", "tcp"])
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
@@ -34,7 +39,7 @@ impl Display {
             .ok()?;
         let mut number = String::new();
         BufReader::new(server.stdout.take()?).read_line(&mut number).ok()?;
-        Some(Self { server, name: format!(":{}", number.trim()), size })
+        Some(Self { server, name: format!(":{}", number.trim()), size, folder })
     }
 
     /// Moves mouse and keys by the words of xdotool's command line.
@@ -56,6 +61,22 @@ impl Display {
         self.xdotool(&format!("key --clearmodifiers {key}"));
     }
 
+    /// The screen's pixels, red, green and blue, row 0 on top. The server's file is one of xwd: a header of big-endian
+    /// words, colours of 12 bytes, pixels.
+    pub fn screen(&self) -> Pixels {
+        let bytes = std::fs::read(self.folder.path().join("Xvfb_screen0")).expect("the server's picture");
+        let word = |n: usize| u32::from_be_bytes(bytes[4 * n..4 * n + 4].try_into().expect("four bytes")) as usize;
+        let (header, width, height, bits, row, colours) = (word(0), word(4), word(5), word(11), word(12), word(19));
+        assert_eq!((width, height, bits), (self.size.0 as usize, self.size.1 as usize, 32));
+        let start = header + 12 * colours;
+        let pixel = |x: usize, y: usize| {
+            let [blue, green, red, _] = bytes[start + y * row + 4 * x..][..4] else { unreachable!("four bytes") };
+            [red, green, blue]
+        };
+        let all = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect();
+        Pixels { size: self.size, all }
+    }
+
     /// Drags with a button in a few steps, from a place where the cursor has rested.
     pub fn drag(&self, button: u32, from: DVec2, by: DVec2) {
         self.move_to(from);
@@ -65,6 +86,32 @@ impl Display {
             self.move_to((from + by * (f64::from(step) / f64::from(STEPS))).round());
         }
         self.xdotool(&format!("mouseup {button}"));
+    }
+}
+
+/// A picture of the screen.
+pub struct Pixels {
+    size: (u32, u32),
+    all: Vec<[u8; 3]>,
+}
+
+impl Pixels {
+    /// How much more red than blue a place is, of 255.
+    pub fn warmth(&self, at: DVec2) -> i32 {
+        let [red, _, blue] = self.all[at.y as usize * self.size.0 as usize + at.x as usize];
+        i32::from(red) - i32::from(blue)
+    }
+
+    /// Writes it as a picture of docs/viewer.md, where the environment names a folder for them.
+    pub fn keep(&self, name: &str) {
+        let Some(folder) = std::env::var_os("SELVEDGE_WINDOW_PICTURES") else { return };
+        let file = std::fs::File::create(Path::new(&folder).join(name)).expect("a file");
+        let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), self.size.0, self.size.1);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        let mut writer = encoder.write_header().expect("written");
+        writer.write_image_data(self.all.as_flattened()).expect("written");
+        writer.finish().expect("written");
     }
 }
 

@@ -77,6 +77,8 @@ fn a_section_at_a_face_follows_its_handle() {
     let line = program.command(display);
     assert!((offset(&line) - section.offset).abs() < 1e-9 * bounds.diagonal(), "{line}");
 
+    display.screen().keep("section.png");
+
     // into the material
     let middle = bounds.centre();
     let foot = |offset: f64| middle + section.normal * (offset - section.normal.dot(middle));

@@ -22,6 +22,8 @@ const FILE: &str = "SELVEDGE_WINDOW_FILE";
 /// Names its width and height.
 const SIZE: &str = "SELVEDGE_WINDOW_SIZE";
 const NAME: &str = "a_window_is_used_as_a_person_does";
+/// Least change of a tinted pixel from blue to red or back, of 255: a third of it is the tint.
+const LEAST_TINT: i32 = 20;
 /// Longest wait for anything; a machine that draws by its CPU and is busy takes seconds for the first picture.
 const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -108,8 +110,15 @@ fn script(display: &Display) {
     let file = folder.path().join("bracket.step");
     let id = program.id.clone();
 
-    // a cylinder: recognised, and measured as the file states it
+    // the face under the cursor is tinted orange, beside the cursor's arrow
     let (at, face) = scene.cylinder();
+    let (beside, away) = (at - glam::DVec2::new(4.0, 0.0), scene.corner + 4.0);
+    let plain = display.screen().warmth(beside);
+    program.after(|| display.move_to(at));
+    let hovered = display.screen().warmth(beside);
+    assert!(hovered > plain + LEAST_TINT, "{hovered} where it was {plain}");
+
+    // a cylinder: recognised, and measured as the file states it
     display.click(at);
     let selected = program.wait("selected ");
     assert!(selected.contains(&format!("cylinder #{}", face.id)), "{selected}");
@@ -117,6 +126,13 @@ fn script(display: &Display) {
     let stated = stated_radius(&file, face.id);
     // twelve digits: the accuracy of rational arcs of f64 points
     assert!((radius / stated - 1.0).abs() < 1e-12, "{radius} instead of {stated}");
+
+    // what is selected is tinted blue
+    display.move_to(away);
+    program.rest();
+    let screen = display.screen();
+    screen.keep("window.png");
+    assert!(screen.warmth(beside) < plain - LEAST_TINT, "{} where it was {plain}", screen.warmth(beside));
 
     // an edge, and a corner
     display.click(scene.edge());
