@@ -113,6 +113,7 @@ fn script(display: &Display) {
     // the face under the cursor is tinted orange, beside the cursor's arrow
     let (at, face) = scene.cylinder();
     let (beside, away) = (at - glam::DVec2::new(4.0, 0.0), scene.corner + 4.0);
+    program.after(|| display.move_to(away));
     let plain = display.screen().warmth(beside);
     program.after(|| display.move_to(at));
     let hovered = display.screen().warmth(beside);

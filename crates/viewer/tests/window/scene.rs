@@ -87,7 +87,7 @@ impl Scene {
     fn pixels(&self) -> impl Iterator<Item = DVec2> {
         let (width, height) = self.camera.size;
         let all = (0..height).step_by(7).flat_map(move |y| (0..width).step_by(7).map(move |x| (x, y)));
-        all.map(|(x, y)| DVec2::new(f64::from(x), f64::from(y))).filter(|pixel| self.is_inside(*pixel))
+        all.map(|(x, y)| DVec2::new(f64::from(x), f64::from(y))).filter(move |pixel| self.is_inside(*pixel))
     }
 
     /// A place in the window that shows such a face with nothing else around it.
