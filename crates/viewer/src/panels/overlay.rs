@@ -29,7 +29,9 @@ pub fn show(ctx: &egui::Context, rect: Rect, ui: &mut Ui, session: &mut Session,
     for (picked, colour) in all {
         mark(&painter, &place, session, picked, colour);
     }
-    for measurement in ui.kept.iter().chain(&ui.measurement) {
+    // dimensions are those of the model as it is
+    let is_together = session.scene.now().explosion == 0.0;
+    for measurement in ui.kept.iter().chain(&ui.measurement).filter(|_| is_together) {
         measurement.dimensions.iter().for_each(|(ends, text)| dimension(&painter, &place, *ends, text));
     }
     wrong_pixels(&painter, &place, ui);
@@ -84,7 +86,11 @@ fn mark(painter: &egui::Painter, place: &Place<'_>, session: &Session, picked: &
     let world = &session.world;
     let Some(instance) = picked.instance().filter(|i| *i < world.model.instances.len()) else { return };
     let Some(edges) = world.edges_of(world.model.instances[instance].part) else { return };
-    let transform = session.scene.now().placement(instance, world);
+    let state = session.scene.now();
+    if state.hidden.contains(&instance) {
+        return;
+    }
+    let transform = state.placement(instance, world);
     match *picked {
         Picked::Edge { edge, .. } => {
             let Some(edge) = edges.edges.get(edge) else { return };
