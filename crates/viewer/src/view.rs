@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   press ─▶ Drag, waits for the point under the cursor ─▶ moves ─▶ camera ─▶ a picture of fewer pixels, in time
-//!                                                                     └─ still for SETTLE ─▶ every pixel, once
+//!                                                 still for SETTLE, or released ─┴─▶ every pixel, once
 //! ```
 //!
 //! The caller passes times in; there is no window here.
@@ -271,9 +271,13 @@ impl View {
         self.set(camera, now);
     }
 
-    /// The last button came up; true when it was a click and not a drag.
+    /// The last button came up; true when it was a click and not a drag. After a drag the view is still at once.
     pub fn release(&mut self) -> bool {
-        self.drag.take().is_some_and(|drag| !drag.moved)
+        let Some(drag) = self.drag.take() else { return false };
+        if drag.moved {
+            self.moved = None;
+        }
+        !drag.moved
     }
 
     /// A drag moves the view.
@@ -379,7 +383,10 @@ mod tests {
         view.moved(start + 50.0, held(Button::Right), MODE, now);
         let at = view.camera.project(point).expect("in front").0;
         assert!(at.distance(start_pixel) < 1e-6 && view.is_dragging());
-        assert!(!view.release() && view.previous(false, now));
+        assert!(view.due(now).scale < 1.0);
+        assert!(!view.release());
+        assert_eq!((view.due(now).scale, view.wake(now)), (1.0, None));
+        assert!(view.previous(false, now));
     }
 
     #[test]
