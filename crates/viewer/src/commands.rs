@@ -32,6 +32,10 @@ pub enum Command {
     Previous,
     /// Turn by pixels, right and down.
     Turn(f64, f64),
+    /// Move the picture by pixels, right and down.
+    Shift(f64, f64),
+    /// Come closer by so many notches of the wheel; below 0 go farther.
+    Zoom(f64),
     /// Undo the last change of the scene.
     Undo,
     /// Do it again.
@@ -44,6 +48,8 @@ pub enum Command {
     Isolate,
     /// Show everything.
     ShowAll,
+    /// Cut the model open at the selected face.
+    Cut,
     /// Make the selection transparent, or opaque again.
     SeeThrough,
     /// Open the dialog for writing the picture, or close it.
@@ -86,7 +92,7 @@ pub struct Shortcut {
 const NONE: Modifiers = Modifiers::NONE;
 const CTRL: Modifiers = Modifiers::COMMAND;
 const SHIFT: Modifiers = Modifiers::SHIFT;
-/// One press of an arrow key: 15 degrees at a picture 600 pixels high.
+/// One press of an arrow key, pixels: it turns by 15 degrees at a picture 600 pixels high.
 const TURN_PX: f64 = 50.0;
 
 /// All keys, in the order of the help.
@@ -110,9 +116,17 @@ pub fn shortcuts() -> Vec<Shortcut> {
         (Key::ArrowRight, NONE, Command::Turn(TURN_PX, 0.0), "turn right"),
         (Key::ArrowUp, NONE, Command::Turn(0.0, -TURN_PX), "turn up"),
         (Key::ArrowDown, NONE, Command::Turn(0.0, TURN_PX), "turn down"),
+        (Key::ArrowLeft, SHIFT, Command::Shift(-TURN_PX, 0.0), "move left"),
+        (Key::ArrowRight, SHIFT, Command::Shift(TURN_PX, 0.0), "move right"),
+        (Key::ArrowUp, SHIFT, Command::Shift(0.0, -TURN_PX), "move up"),
+        (Key::ArrowDown, SHIFT, Command::Shift(0.0, TURN_PX), "move down"),
+        (Key::Plus, NONE, Command::Zoom(1.0), "closer"),
+        (Key::Equals, NONE, Command::Zoom(1.0), "closer, too"),
+        (Key::Minus, NONE, Command::Zoom(-1.0), "farther"),
         (Key::H, NONE, Command::Hide, "hide selection"),
         (Key::I, NONE, Command::Isolate, "hide everything else"),
         (Key::A, NONE, Command::ShowAll, "show everything"),
+        (Key::C, NONE, Command::Cut, "cut at the selected face"),
         (Key::X, NONE, Command::SeeThrough, "see through selection"),
         (Key::M, NONE, Command::Measure, "keep the measurement"),
         (Key::Z, CTRL, Command::Undo, "undo"),
@@ -142,15 +156,18 @@ impl Shortcut {
         label + self.key.symbol_or_name()
     }
 
-    /// Whether its key went down with exactly its modifiers held; a question mark needs shift on some keyboards.
+    /// Whether its key went down with exactly its modifiers held; a question mark and a plus need shift on some
+    /// keyboards.
     fn is_pressed(&self, input: &egui::InputState) -> bool {
         let exact = |held: Modifiers| {
             held.command == self.modifiers.command
                 && !held.alt
-                && (held.shift == self.modifiers.shift || self.key == Key::Questionmark)
+                && (held.shift == self.modifiers.shift || matches!(self.key, Key::Questionmark | Key::Plus))
         };
         input.events.iter().any(|event| match event {
             egui::Event::Key { key, pressed: true, modifiers, .. } => *key == self.key && exact(*modifiers),
+            // Ctrl + C comes as this, with or without Shift
+            egui::Event::Copy => self.key == Key::C && exact(input.modifiers),
             _ => false,
         })
     }
@@ -171,8 +188,11 @@ mod tests {
     use super::*;
 
     fn after(key: Key, modifiers: Modifiers) -> Vec<Command> {
+        after_event(egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }, modifiers)
+    }
+
+    fn after_event(event: egui::Event, modifiers: Modifiers) -> Vec<Command> {
         let ctx = egui::Context::default();
-        let event = egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
         let input = egui::RawInput { events: vec![event], modifiers, ..Default::default() };
         let mut commands = Vec::new();
         let _ = ctx.run(input, |ctx| commands = pressed(ctx));
@@ -191,5 +211,14 @@ mod tests {
         }
         assert_eq!(after(Key::Questionmark, SHIFT), [Command::Help]);
         assert_eq!(after(Key::H, Modifiers::ALT), []);
+        assert_eq!(after(Key::Plus, SHIFT), [Command::Zoom(1.0)]);
+    }
+
+    /// A window sends the key of copying as an event of its own.
+    #[test]
+    fn the_key_of_copying_is_known() {
+        let held = |shift| Modifiers { ctrl: true, command: true, shift, ..Modifiers::NONE };
+        assert_eq!(after_event(egui::Event::Copy, held(true)), [Command::CopyCommand]);
+        assert_eq!(after_event(egui::Event::Copy, held(false)), []);
     }
 }

@@ -7,6 +7,17 @@ use glam::DVec3;
 use selvedge::model::{Camera, EdgeKind, Face, Projection, SurfaceKind};
 use selvedge::picture::Style;
 
+/// Towards the light that casts shadows, model axes: from the front right, high above.
+pub const SUN: DVec3 = DVec3::new(0.5, -0.7, 1.0);
+/// Reach of ambient occlusion as a share of the model's diagonal: as `selvedge render` has it.
+const AMBIENT: f64 = 0.04;
+
+/// The reach of ambient occlusion in model units, where it is wanted.
+pub fn ambient_radius(world: &World, settings: &Settings) -> Option<f64> {
+    let radius = AMBIENT * world.bounds.diagonal();
+    (settings.ambient && radius.is_finite() && radius > 0.0).then_some(radius)
+}
+
 /// Lines of a description: name and value.
 pub type Description = Vec<(&'static str, String)>;
 
@@ -133,8 +144,9 @@ pub fn extent(session: &Session) -> Vec<DVec3> {
     let world = &session.world;
     let mut points = Vec::new();
     for picked in &session.selection {
-        let Some(placed) = picked.instance().and_then(|i| world.model.instances.get(i)) else { continue };
-        let part = &world.model.parts[placed.part];
+        let Some(instance) = picked.instance().filter(|i| *i < world.model.instances.len()) else { continue };
+        let placed = &world.model.instances[instance];
+        let (part, transform) = (&world.model.parts[placed.part], session.scene.now().placement(instance, world));
         let bounds = match *picked {
             Picked::Face { face, .. } => part.faces[face].control_bounds(),
             Picked::Edge { edge, .. } => {
@@ -146,7 +158,7 @@ pub fn extent(session: &Session) -> Vec<DVec3> {
             _ => part.control_bounds(),
         };
         if !bounds.is_empty() {
-            points.extend(bounds.corners().map(|p| placed.transform.transform_point3(p)));
+            points.extend(bounds.corners().map(|p| transform.transform_point3(p)));
         }
     }
     points
@@ -190,6 +202,11 @@ pub fn command(session: &Session, camera: &Camera, settings: &Settings, style: S
     };
     push("--edges", edges.to_owned());
     push("--smooth", if settings.smooth { "borders" } else { "none" }.to_owned());
+    let ambient = ambient_radius(&session.world, settings);
+    push("--ao", ambient.map_or("none".to_owned(), |radius| format!("{radius}")));
+    if settings.shadows {
+        push("--sun", triple(SUN));
+    }
     for (flag, on) in [("--silhouettes", settings.silhouettes), ("--hidden-lines", settings.hidden_lines)] {
         words.extend(on.then(|| flag.to_owned()));
     }
@@ -205,6 +222,21 @@ mod tests {
         let all = [0.0, 5.0, -0.5, 12.7, 1.0 / 3.0, 1234567.0, 2.0e-7, 25.4 / 3.0];
         let text = all.map(number);
         assert_eq!(text, ["0", "5", "-0.5", "12.7", "0.333333333333", "1234567", "0.0000002", "8.46666666667"]);
+    }
+
+    /// The program's own default is ambient occlusion, and a light that casts no shadows.
+    #[test]
+    fn the_command_names_the_light_of_the_window() {
+        let bounds = selvedge::model::Bounds { min: DVec3::ZERO, max: DVec3::new(3.0, 0.0, 4.0) };
+        let camera = Camera::around(bounds, DVec3::ONE, DVec3::Z, 0.6, (64, 48));
+        let mut world = World::default();
+        world.bounds = bounds;
+        let session = Session { world: std::sync::Arc::new(world), ..Session::default() };
+        let of = |settings: &Settings| command(&session, &camera, settings, Style::Shaded);
+        let plain = of(&Settings::default());
+        assert!(plain.contains(" --ao=none") && !plain.contains("--sun"), "{plain}");
+        let lit = of(&Settings { ambient: true, shadows: true, ..Settings::default() });
+        assert!(lit.contains(" --ao=0.2") && lit.contains(" --sun=0.5,-0.7,1"), "{lit}");
     }
 
     #[test]

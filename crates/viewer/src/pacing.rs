@@ -36,13 +36,15 @@ impl Pacing {
         SCALES[self.scale]
     }
 
-    /// Records that a picture of this scale took so long; changes the scale by one step at most.
+    /// Records that a picture of this scale took so long. A coarser scale is one step away, or the finest that would do
+    /// if all of the time grew with the pixels; a finer one is one step away.
     pub fn took(&mut self, scale: f64, time: Duration) {
         if scale != self.scale() {
             return;
         }
         if time > BUDGET {
-            self.scale = (self.scale + 1).min(SCALES.len() - 1);
+            let would_do = |next: &usize| time.mul_f64((SCALES[*next] / scale).powi(2)) <= BUDGET;
+            self.scale = (self.scale + 1..SCALES.len()).find(would_do).unwrap_or(SCALES.len() - 1);
         } else if let Some(finer) = self.scale.checked_sub(1) {
             let growth = (SCALES[finer] / scale).powi(2);
             if time.mul_f64(growth) < BUDGET.mul_f64(SURE) {
@@ -84,6 +86,17 @@ mod tests {
             assert!(time <= 40.0, "{time} ms at {scale}");
         }
         assert_eq!(settled(500.0, 10.0).0, SCALES[5]);
+    }
+
+    #[test]
+    fn a_picture_that_took_much_too_long_skips_scales() {
+        let mut pacing = Pacing::default();
+        pacing.took(0.5, Duration::from_millis(150));
+        assert_eq!(pacing.scale(), 0.25);
+        pacing.took(0.25, Duration::from_millis(41));
+        assert_eq!(pacing.scale(), 0.1875);
+        pacing.took(0.1875, Duration::from_millis(1));
+        assert_eq!(pacing.scale(), 0.25);
     }
 
     #[test]

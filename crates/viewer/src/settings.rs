@@ -55,6 +55,10 @@ pub struct Settings {
     pub hidden_lines: bool,
     /// Borders of trimmed faces are smooth.
     pub smooth: bool,
+    /// Ambient occlusion darkens corners.
+    pub ambient: bool,
+    /// The light stands still and casts shadows.
+    pub shadows: bool,
     /// Files opened last, the last one first.
     pub recent: Vec<PathBuf>,
     /// Fields of other versions.
@@ -74,6 +78,8 @@ impl Default for Settings {
             silhouettes: true,
             hidden_lines: false,
             smooth: true,
+            ambient: false,
+            shadows: false,
             recent: Vec::new(),
             others: serde_json::Map::new(),
         }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   press ─▶ Drag, waits for the point under the cursor ─▶ moves ─▶ camera ─▶ a picture of fewer pixels, in time
-//!                                                                     └─ still for SETTLE ─▶ every pixel, once
+//!                                                 still for SETTLE, or released ─┴─▶ every pixel, once
 //! ```
 //!
 //! The caller passes times in; there is no window here.
@@ -102,7 +102,7 @@ impl View {
 
     /// Sets the box of the drawn model.
     pub fn set_bounds(&mut self, bounds: Bounds) {
-        if !bounds.is_empty() {
+        if !bounds.is_empty() && bounds != self.bounds {
             self.bounds = bounds;
             self.camera = navigation::settle(&self.camera, bounds);
         }
@@ -207,6 +207,22 @@ impl View {
         self.set(to, now);
     }
 
+    /// Moves the picture by pixels, as keys do.
+    pub fn shift(&mut self, pixels: DVec2, now: Instant) {
+        let from = self.goal();
+        let Some((at, _)) = from.project(from.target) else { return };
+        self.remember();
+        (self.anchor, self.transition) = (None, None);
+        self.set(navigation::pan(&from, from.target, at + pixels), now);
+    }
+
+    /// Zooms by notches to what is in the middle of the picture, as keys do.
+    pub fn zoom(&mut self, notches: f64, now: Instant) {
+        self.remember();
+        let (width, height) = self.camera.size;
+        self.wheel(DVec2::new(f64::from(width), f64::from(height)) * 0.5, notches, now);
+    }
+
     /// A button went down at `cursor`. The view needs the point under it, unless it is known: [`hold`](Self::hold).
     pub fn press(&mut self, cursor: DVec2) {
         self.transition = None;
@@ -255,9 +271,13 @@ impl View {
         self.set(camera, now);
     }
 
-    /// The last button came up; true when it was a click and not a drag.
+    /// The last button came up; true when it was a click and not a drag. After a drag the view is still at once.
     pub fn release(&mut self) -> bool {
-        self.drag.take().is_some_and(|drag| !drag.moved)
+        let Some(drag) = self.drag.take() else { return false };
+        if drag.moved {
+            self.moved = None;
+        }
+        !drag.moved
     }
 
     /// A drag moves the view.
@@ -363,7 +383,10 @@ mod tests {
         view.moved(start + 50.0, held(Button::Right), MODE, now);
         let at = view.camera.project(point).expect("in front").0;
         assert!(at.distance(start_pixel) < 1e-6 && view.is_dragging());
-        assert!(!view.release() && view.previous(false, now));
+        assert!(view.due(now).scale < 1.0);
+        assert!(!view.release());
+        assert_eq!((view.due(now).scale, view.wake(now)), (1.0, None));
+        assert!(view.previous(false, now));
     }
 
     #[test]
@@ -388,6 +411,22 @@ mod tests {
             view.wheel(cursor, 1.0, now);
             assert!(view.camera.project(point).expect("in front").0.distance(cursor) < 1e-5);
         }
+    }
+
+    #[test]
+    fn keys_move_and_zoom_and_lead_back() {
+        let now = Instant::now();
+        let mut view = view(now);
+        let (first, point) = (view.camera, view.camera.target);
+        let (start, _) = first.project(point).expect("in front");
+        view.shift(DVec2::new(50.0, -20.0), now);
+        let (at, depth) = view.camera.project(point).expect("in front");
+        assert!(at.distance(start + DVec2::new(50.0, -20.0)) < 1e-6, "{at}");
+        view.zoom(3.0, now);
+        let (_, closer) = view.camera.project(point).expect("in front");
+        assert!(closer < depth);
+        assert!(view.previous(false, now) && view.previous(false, now));
+        assert_eq!((view.camera.eye, view.camera.target), (first.eye, first.target));
     }
 
     #[test]

@@ -10,6 +10,7 @@
 //!
 //! Values carry an estimate of their own error; the accuracy of the file is the limit.
 
+pub mod cut;
 pub mod distance;
 pub mod mass;
 pub mod surface;

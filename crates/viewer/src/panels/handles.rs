@@ -1,4 +1,5 @@
-//! Handles of section planes: an arrow along the normal, dragged along itself.
+//! Handles of section planes: an arrow along the normal, dragged along itself. The plane snaps to parallel faces, unless
+//! Ctrl is held.
 //!
 //! ```text
 //!      plane │     the mouse moves by d on the screen; the arrow of length L in the model is a on the screen:
@@ -15,6 +16,8 @@ use selvedge::model::Bounds;
 const SIZE: f32 = 18.0;
 /// Length of an arrow, of the model's diagonal.
 const ARROW: f64 = 0.08;
+/// The plane snaps to faces that are no farther from the hand, points.
+const SNAP: f64 = 4.0;
 /// An arrow shorter than this on the screen, points, points at the eye: it cannot be dragged.
 const SHORTEST: f32 = 6.0;
 
@@ -54,12 +57,23 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, session: &mut Session) {
         if along.length() < SHORTEST || !response.dragged() && !response.drag_started() {
             continue;
         }
-        let step = moved(response.drag_delta(), along, ARROW * bounds.diagonal());
+        let length = ARROW * bounds.diagonal();
+        let step = moved(response.drag_delta(), along, length);
         let (low, high) = section.range(bounds);
-        let offset = (section.offset + step).clamp(low, high);
-        if response.drag_started() {
+        // where the hand is, beside the face that the plane has snapped to
+        let hand = egui::Id::new(("hand", i));
+        let before = if response.drag_started() {
             session.scene.begin();
-        }
+            section.offset
+        } else {
+            ctx.data(|data| data.get_temp::<f64>(hand)).unwrap_or(section.offset)
+        };
+        let free = (before + step).clamp(low, high);
+        ctx.data_mut(|data| data.insert_temp(hand, free));
+        let snaps = !ctx.input(|input| input.modifiers.command) && session.scene.now().explosion == 0.0;
+        let reach = if snaps { SNAP * length / f64::from(along.length()) } else { 0.0 };
+        let face = section.snapped(free, session.world.planes(), reach);
+        let offset = if face == free { free } else { face - Section::BELOW * bounds.diagonal() };
         session.scene.go_on(|state| state.sections[i].offset = offset);
     }
 }

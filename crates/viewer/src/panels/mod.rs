@@ -17,10 +17,11 @@ mod tree;
 mod trims;
 
 use crate::commands::{self, Command};
-use crate::measure::Measurement;
+use crate::measure::{Measurement, cut};
 use crate::pick::PickFilter;
 use crate::session::Picked;
 use crate::session::Session;
+use crate::session::shown::MOST_SECTIONS;
 use crate::settings::Settings;
 use crate::view::View;
 use glam::DVec3;
@@ -223,6 +224,11 @@ impl Ui {
                 session.select(None, false);
             }
             Command::Isolate if !chosen.is_empty() => session.scene.change(|state| state.isolate(&chosen, &world)),
+            Command::Cut if session.scene.now().sections.len() < MOST_SECTIONS => {
+                if let Some(section) = cut::at_selection(session) {
+                    session.scene.change(|state| state.sections.push(section));
+                }
+            }
             Command::ShowAll => session.scene.change(|state| state.hidden.clear()),
             Command::SeeThrough => session.scene.change(|state| {
                 let all = chosen.iter().all(|i| state.clear.contains(i));

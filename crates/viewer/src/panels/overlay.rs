@@ -4,7 +4,7 @@ use super::{Facts, Ui};
 use crate::commands::Command;
 use crate::navigation::cube;
 use crate::session::Picked;
-use crate::session::{Session, World};
+use crate::session::Session;
 use egui::{Color32, Pos2, Rect, Shape, Stroke};
 use glam::{DVec2, DVec3};
 use selvedge::model::Camera;
@@ -27,9 +27,11 @@ pub fn show(ctx: &egui::Context, rect: Rect, ui: &mut Ui, session: &mut Session,
     let hovered = facts.view.hover.and_then(|hover| hover.hit.picked);
     let all = session.selection.iter().map(|picked| (picked, SELECTED)).chain(hovered.iter().map(|p| (p, HOVERED)));
     for (picked, colour) in all {
-        mark(&painter, &place, &session.world, picked, colour);
+        mark(&painter, &place, session, picked, colour);
     }
-    for measurement in ui.kept.iter().chain(&ui.measurement) {
+    // dimensions are those of the model as it is
+    let is_together = session.scene.now().explosion == 0.0;
+    for measurement in ui.kept.iter().chain(&ui.measurement).filter(|_| is_together) {
         measurement.dimensions.iter().for_each(|(ends, text)| dimension(&painter, &place, *ends, text));
     }
     wrong_pixels(&painter, &place, ui);
@@ -80,16 +82,21 @@ impl Place<'_> {
 }
 
 /// Draws an edge or a vertex; faces are marked in the picture.
-fn mark(painter: &egui::Painter, place: &Place<'_>, world: &World, picked: &Picked, colour: Color32) {
-    let Some(placed) = picked.instance().and_then(|i| world.model.instances.get(i)) else { return };
-    let Some(edges) = world.edges_of(placed.part) else { return };
+fn mark(painter: &egui::Painter, place: &Place<'_>, session: &Session, picked: &Picked, colour: Color32) {
+    let world = &session.world;
+    let Some(instance) = picked.instance().filter(|i| *i < world.model.instances.len()) else { return };
+    let Some(edges) = world.edges_of(world.model.instances[instance].part) else { return };
+    let state = session.scene.now();
+    if state.hidden.contains(&instance) {
+        return;
+    }
+    let transform = state.placement(instance, world);
     match *picked {
         Picked::Edge { edge, .. } => {
             let Some(edge) = edges.edges.get(edge) else { return };
             for span in &edge.curve {
                 let points = (0..=CHORDS).map(|i| span.piece.point(i as f64 / CHORDS as f64));
-                let points: Vec<Option<Pos2>> =
-                    points.map(|p| place.of(placed.transform.transform_point3(p))).collect();
+                let points: Vec<Option<Pos2>> = points.map(|p| place.of(transform.transform_point3(p))).collect();
                 for pair in points.windows(2) {
                     if let [Some(a), Some(b)] = *pair {
                         painter.line_segment([a, b], Stroke::new(3.0, colour));
@@ -98,7 +105,7 @@ fn mark(painter: &egui::Painter, place: &Place<'_>, world: &World, picked: &Pick
             }
         }
         Picked::Vertex { vertex, .. } => {
-            let p = edges.vertices.get(vertex).and_then(|p| place.of(placed.transform.transform_point3(*p)));
+            let p = edges.vertices.get(vertex).and_then(|p| place.of(transform.transform_point3(*p)));
             if let Some(at) = p {
                 painter.circle(at, 4.0, colour, Stroke::new(1.0, Color32::WHITE));
             }

@@ -179,8 +179,8 @@ fn a_section_follows_its_handle_and_is_undone_as_one() {
     let to = bench.place(bounds.centre() + DVec3::X * 10.0);
     bench.drag(from, to - from);
     let moved = bench.session.scene.now().sections[0].offset - section.offset;
-    // perspective: the arrow is nearer at its tip
-    assert!((moved - 10.0).abs() < 1.5, "{moved}");
+    // perspective: the arrow is nearer at its tip; and the plane may snap to a face four points away
+    assert!((moved - 10.0).abs() < 3.0, "{moved}");
     assert!(bench.session.scene.undo() && bench.session.scene.now().sections[0] == section);
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Facts, Ui};
 use crate::commands::Command;
+use crate::measure::cut;
 use crate::navigation::OrbitStyle;
 use crate::navigation::gesture::Preset;
 use crate::navigation::standard::StandardView;
@@ -18,7 +19,7 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session, settings: 
         row.menu_button("File", |menu| file(menu, ui, session, settings));
         row.menu_button("View", |menu| views(menu, ui, facts));
         row.menu_button("Style", |menu| style(menu, ui, settings));
-        row.menu_button("Section", |menu| sections(menu, session));
+        row.menu_button("Section", |menu| sections(menu, ui, session));
         row.menu_button("Settings", |menu| choices(menu, settings));
         row.separator();
         if row.button("Fit").on_hover_text("All in view (Home)").clicked() {
@@ -129,14 +130,26 @@ fn style(menu: &mut egui::Ui, ui: &mut Ui, settings: &mut Settings) {
     menu.checkbox(&mut settings.silhouettes, "silhouettes");
     menu.checkbox(&mut settings.hidden_lines, "hidden lines");
     menu.checkbox(&mut settings.smooth, "smooth borders");
+    menu.separator();
+    menu.checkbox(&mut settings.ambient, "ambient occlusion");
+    menu.checkbox(&mut settings.shadows, "shadows");
 }
 
-fn sections(menu: &mut egui::Ui, session: &mut Session) {
+/// There may be another section.
+fn has_room(session: &Session) -> bool {
+    session.scene.now().sections.len() < MOST_SECTIONS && !session.world.is_empty()
+}
+
+fn sections(menu: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
     let bounds = session.world.bounds;
+    let at_face = egui::Button::new("At the selected face").shortcut_text("C");
+    if menu.add_enabled(cut::at_selection(session).is_some() && has_room(session), at_face).clicked() {
+        ui.commands.push(Command::Cut);
+        menu.close();
+    }
     menu.horizontal(|row| {
         for (name, axis) in [("Across x", DVec3::X), ("Across y", DVec3::Y), ("Across z", DVec3::Z)] {
-            let room = session.scene.now().sections.len() < MOST_SECTIONS && !session.world.is_empty();
-            if row.add_enabled(room, egui::Button::new(name)).clicked() {
+            if row.add_enabled(has_room(session), egui::Button::new(name)).clicked() {
                 session.scene.change(|state| state.sections.push(Section::across(axis, bounds)));
             }
         }

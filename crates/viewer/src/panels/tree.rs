@@ -1,13 +1,14 @@
 //! Open files with their parts: show, hide, isolate, make transparent, colour, find.
+//!
+//! Rows that are scrolled out of sight are not laid out: a frame costs the same for every number of parts.
 
 use super::Ui;
 use crate::commands::Command;
 use crate::session::Picked;
 use crate::session::Session;
+use egui::{Rect, Vec2};
 use selvedge::model::GREY;
-
-/// Rows that are drawn of a file; the search finds the others.
-const MOST_ROWS: usize = 2000;
+use std::ops::Range;
 
 /// Shows it.
 pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
@@ -25,7 +26,8 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
     });
     panel.separator();
     egui::ScrollArea::both().auto_shrink(false).show(panel, |area| {
-        let world = session.world.clone();
+        let (world, selected) = (session.world.clone(), session.selected_instances());
+        let last = session.selection.last().and_then(Picked::instance);
         for file in &world.files {
             egui::CollapsingHeader::new(&file.name).id_salt(&file.path).default_open(true).show(area, |list| {
                 if !file.complete {
@@ -37,10 +39,11 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
                     .clone()
                     .filter(|i| wanted.is_empty() || world.instance_name(*i).to_lowercase().contains(&wanted))
                     .collect();
-                found.iter().take(MOST_ROWS).for_each(|instance| part(list, ui, session, *instance));
-                if found.len() > MOST_ROWS {
-                    list.label(format!("and {} more: find them by name", found.len() - MOST_ROWS));
-                }
+                let to = last.filter(|_| ui.show_selection).and_then(|last| found.binary_search(&last).ok());
+                rows(list, found.len(), to, |list, row| {
+                    // a row is the same one wherever it is scrolled to
+                    list.push_id(found[row], |list| part(list, ui, session, found[row], &selected));
+                });
                 let count = world.model.instances.len();
                 for solid in file.solids.clone() {
                     solid_row(list, session, count + solid, &format!("Solid {}", solid + 1));
@@ -68,7 +71,29 @@ fn solid_row(list: &mut egui::Ui, session: &mut Session, item: usize, name: &str
     });
 }
 
-fn part(list: &mut egui::Ui, ui: &mut Ui, session: &mut Session, instance: usize) {
+/// Lays out those of `count` rows that are in sight, and scrolls to one of them.
+fn rows(list: &mut egui::Ui, count: usize, to: Option<usize>, mut show: impl FnMut(&mut egui::Ui, usize)) {
+    let height = list.spacing().interact_size.y;
+    let step = height + list.spacing().item_spacing.y;
+    let start = list.cursor().min;
+    if let Some(row) = to {
+        let place = Rect::from_min_size(start + Vec2::new(0.0, step * row as f32), Vec2::new(1.0, height));
+        list.scroll_to_rect(place, None);
+    }
+    let seen = in_sight(list.clip_rect().y_range(), start.y, step, count);
+    list.add_space(step * seen.start as f32);
+    seen.clone().for_each(|row| show(list, row));
+    list.add_space(step * (count - seen.end) as f32);
+}
+
+/// The rows that meet a range of heights.
+fn in_sight(seen: egui::Rangef, start: f32, step: f32, count: usize) -> Range<usize> {
+    let row = |y: f32| ((y - start) / step).max(0.0);
+    let first = (row(seen.min).floor() as usize).min(count);
+    first..(row(seen.max).ceil() as usize).clamp(first, count)
+}
+
+fn part(list: &mut egui::Ui, ui: &mut Ui, session: &mut Session, instance: usize, selected: &[usize]) {
     let world = session.world.clone();
     let placed = &world.model.instances[instance];
     let name = world.instance_name(instance);
@@ -82,11 +107,7 @@ fn part(list: &mut egui::Ui, ui: &mut Ui, session: &mut Session, instance: usize
             colour[..3].copy_from_slice(&rgb);
             session.scene.change(|state| _ = state.colours.insert(instance, colour));
         }
-        let selected = session.selected_instances().contains(&instance);
-        let label = row.selectable_label(selected, name);
-        if selected && ui.show_selection {
-            label.scroll_to_me(None);
-        }
+        let label = row.selectable_label(selected.binary_search(&instance).is_ok(), name);
         if label.clicked() {
             let add = row.input(|input| input.modifiers.shift);
             session.select(Some(Picked::Instance(instance)), add);
@@ -109,4 +130,17 @@ fn part(list: &mut egui::Ui, ui: &mut Ui, session: &mut Session, instance: usize
             }
         });
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_rows_in_sight_are_laid_out() {
+        let of = |min: f32, max: f32| in_sight(egui::Rangef::new(min, max), 100.0, 20.0, 50);
+        assert_eq!(of(0.0, 700.0), 0..30);
+        assert_eq!(of(310.0, 390.0), 10..15);
+        assert_eq!([of(0.0, 90.0), of(2000.0, 2400.0)], [0..0, 50..50]);
+    }
 }

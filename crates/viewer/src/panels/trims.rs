@@ -52,6 +52,7 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, ui: &mut Ui, session: &mut S
     let key = |trim_loop: usize| (placed.part, face, trim_loop);
     let loops = of_face.loops.iter().enumerate().map(|(i, l)| state.edits.get(&key(i)).unwrap_or(l));
     let loops: Vec<&TrimLoop> = loops.collect();
+    let transform = state.placement(instance, &world);
     let all = handles(&loops);
     if all.len() > MOST_POINTS {
         ui.notice = Some(format!("This face has {} trim points, more than can be gripped.", all.len()));
@@ -59,7 +60,7 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, ui: &mut Ui, session: &mut S
     }
     let mut gripped = None;
     for handle in all {
-        let point = placed.transform.transform_point3(of_face.surface.point(handle.uv.x, handle.uv.y));
+        let point = transform.transform_point3(of_face.surface.point(handle.uv.x, handle.uv.y));
         let Some(at) = place.of(point) else { continue };
         let id = egui::Id::new(("trim", handle.trim_loop, handle.curve, handle.point));
         let area = egui::Area::new(id).fixed_pos(at - Vec2::splat(0.5 * SIZE)).order(egui::Order::Middle);
@@ -82,7 +83,7 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, ui: &mut Ui, session: &mut S
     let Some(hand) = response.interact_pointer_pos() else { return };
     let pixel = (hand - place.rect.min) / place.to_points as f32;
     let (origin, direction) = place.camera.ray(DVec2::new(f64::from(pixel.x), f64::from(pixel.y)));
-    let back = placed.transform.inverse();
+    let back = transform.inverse();
     let ray = (back.transform_point3(origin), back.transform_vector3(direction));
     // beyond the surface the point follows its border
     let Some((uv, ..)) = towards(&of_face.surface, ray, handle.uv) else { return };

@@ -7,7 +7,7 @@
 //! ```
 
 use crate::session::{Picked, World};
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 use selvedge::model::Camera;
 use selvedge::spline::{Jet2, Surface};
 
@@ -93,6 +93,19 @@ pub struct Hit {
     pub point: Option<DVec3>,
 }
 
+/// The picture that is picked from.
+#[derive(Clone, Copy)]
+pub struct Seen<'a> {
+    /// The session's model.
+    pub world: &'a World,
+    /// Of each of the picture's instances the number in it.
+    pub instances: &'a [usize],
+    /// Where the picture has an instance of the world: part coordinates to the picture's.
+    pub placement: &'a dyn Fn(usize) -> DAffine3,
+    /// Of the picture.
+    pub camera: &'a Camera,
+}
+
 impl Samples {
     fn at(&self, pixel: (u32, u32)) -> Option<&Sample> {
         let (x, y) = (pixel.0.checked_sub(self.corner.0)?, pixel.1.checked_sub(self.corner.1)?);
@@ -108,30 +121,27 @@ impl Samples {
         })
     }
 
-    /// The item under `cursor`, pixels of the picture of `camera`. `shown` has the session's instance of each one of
-    /// the picture's.
-    pub fn pick(&self, world: &World, shown: &[usize], camera: &Camera, cursor: DVec2, filter: PickFilter) -> Hit {
+    /// The item under `cursor`, pixels of the picture.
+    pub fn pick(&self, seen: &Seen<'_>, cursor: DVec2, filter: PickFilter) -> Hit {
+        let Seen { world, instances: shown, placement, camera } = *seen;
         let Some(sample) = self.at((cursor.x.max(0.0) as u32, cursor.y.max(0.0) as u32)) else {
             return Hit { picked: None, point: None };
         };
         let instance_of = |number: u32| shown.get((number as usize).checked_sub(1)?).copied();
         let instance = instance_of(sample.instance);
-        let face = instance.and_then(|i| {
-            let part = &world.model.parts[world.model.instances[i].part];
-            Some((i, part.faces.iter().position(|f| f.id == sample.face)?))
-        });
+        let face = instance.and_then(|i| Some((i, world.face(world.model.instances[i].part, sample.face)?)));
         let seen = (sample.face != 0).then(|| {
             let (origin, direction) = camera.ray(cursor);
             let (_, _, forward) = camera.axes();
             let near = origin + direction * (f64::from(sample.depth) / direction.dot(forward));
             let uv = DVec2::new(f64::from(sample.uv[0]), f64::from(sample.uv[1]));
             let exact = face.and_then(|(instance, face)| {
-                let placed = &world.model.instances[instance];
-                let surface = &world.model.parts[placed.part].faces[face].surface;
-                let back = placed.transform.inverse();
+                let part = world.model.instances[instance].part;
+                let (surface, transform) = (&world.model.parts[part].faces[face].surface, placement(instance));
+                let back = transform.inverse();
                 let ray = (back.transform_point3(near), back.transform_vector3(direction));
                 let (uv, point) = on_surface(surface, ray, uv)?;
-                Some((uv, placed.transform.transform_point3(point)))
+                Some((uv, transform.transform_point3(point)))
             });
             exact.unwrap_or((uv, near))
         });
@@ -148,7 +158,7 @@ impl Samples {
         };
         let vertex = || {
             let (instance, part, edge) = edge()?;
-            let transform = world.model.instances[instance].transform;
+            let transform = placement(instance);
             let edges = world.edges_of(part)?;
             let on_screen = |vertex: &usize| {
                 let p = transform.transform_point3(*edges.vertices.get(*vertex)?);

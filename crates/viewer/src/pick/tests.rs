@@ -39,12 +39,18 @@ fn one(pixel: DVec2, sample: Sample) -> Samples {
     Samples { corner, width: 9, samples: vec![sample; 81] }
 }
 
+/// Picks in a picture of the world as it is.
+fn pick(samples: &Samples, world: &World, camera: &Camera, at: DVec2, filter: PickFilter) -> Hit {
+    let placement = |instance: usize| world.model.instances[instance].transform;
+    samples.pick(&Seen { world, instances: &[0], placement: &placement, camera }, at, filter)
+}
+
 #[test]
 fn the_point_under_the_cursor_is_exact() {
     let world = world();
     for face in 0..world.model.parts[0].faces.len() {
         let (camera, pixel, sample, point) = over_face(&world, face);
-        let hit = one(pixel, sample).pick(&world, &[0], &camera, pixel, PickFilter::Any);
+        let hit = pick(&one(pixel, sample), &world, &camera, pixel, PickFilter::Any);
         let Some(Picked::Face { instance: 0, face: found, uv }) = hit.picked else { panic!("{hit:?}") };
         assert_eq!(found, face);
         let off = hit.point.expect("a point").distance(point);
@@ -55,6 +61,24 @@ fn the_point_under_the_cursor_is_exact() {
     }
 }
 
+/// An exploded view moves an instance with its points.
+#[test]
+fn the_point_of_a_moved_instance_moves_with_it() {
+    let world = world();
+    let (mut camera, pixel, sample, point) = over_face(&world, 0);
+    let by = DVec3::new(30.0, -20.0, 11.0);
+    (camera.eye, camera.target) = (camera.eye + by, camera.target + by);
+    let placement = |instance: usize| DAffine3::from_translation(by) * world.model.instances[instance].transform;
+    let seen = Seen { world: &world, instances: &[0], placement: &placement, camera: &camera };
+    let hit = one(pixel, sample).pick(&seen, pixel, PickFilter::Any);
+    let off = hit.point.expect("a point").distance(point + by);
+    // as exact as where nothing is moved
+    assert!(off < 1e-9 * world.bounds.diagonal(), "{off}");
+    let Some(Picked::Face { uv, .. }) = hit.picked else { panic!("{hit:?}") };
+    let own = world.model.parts[0].faces[0].surface.point(uv.x, uv.y);
+    assert!(own.distance(point) < 1e-9 * world.bounds.diagonal());
+}
+
 #[test]
 fn edges_go_before_faces_and_their_ends_before_them() {
     let world = world();
@@ -63,7 +87,7 @@ fn edges_go_before_faces_and_their_ends_before_them() {
     let mut samples = one(pixel, sample);
     // two pixels to the right
     samples.samples[4 * 9 + 6].edge = 3;
-    let pick = |samples: &Samples, camera: &Camera, at, filter| samples.pick(&world, &[0], camera, at, filter).picked;
+    let pick = |samples: &Samples, camera: &Camera, at, filter| pick(samples, &world, camera, at, filter).picked;
     assert_eq!(pick(&samples, &camera, pixel, PickFilter::Any), Some(Picked::Edge { instance: 0, edge: 2 }));
     assert!(matches!(pick(&samples, &camera, pixel, PickFilter::Faces), Some(Picked::Face { .. })));
     assert_eq!(pick(&samples, &camera, pixel, PickFilter::Parts), Some(Picked::Instance(0)));
@@ -87,14 +111,14 @@ fn edges_go_before_faces_and_their_ends_before_them() {
 fn the_background_and_numbers_without_a_part_are_reported() {
     let world = world();
     let (camera, pixel, sample, _) = over_face(&world, 0);
-    let hit = one(pixel, NOTHING).pick(&world, &[0], &camera, pixel, PickFilter::Any);
+    let hit = pick(&one(pixel, NOTHING), &world, &camera, pixel, PickFilter::Any);
     assert_eq!(hit, Hit { picked: None, point: None });
     let solid = Sample { face: 77, part: 0, instance: 0, ..sample };
-    let hit = one(pixel, solid).pick(&world, &[0], &camera, pixel, PickFilter::Any);
+    let hit = pick(&one(pixel, solid), &world, &camera, pixel, PickFilter::Any);
     assert_eq!(hit.picked, Some(Picked::Number { instance: None, id: 77 }));
     assert!(hit.point.is_some());
     // beside the copied pixels
-    let hit = one(pixel, sample).pick(&world, &[0], &camera, pixel + 40.0, PickFilter::Any);
+    let hit = pick(&one(pixel, sample), &world, &camera, pixel + 40.0, PickFilter::Any);
     assert_eq!(hit.picked, None);
 }
 

@@ -2,7 +2,7 @@
 
 use selvedge_io::import::{self, Folders, Import, Options, Stage};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
@@ -34,6 +34,16 @@ pub enum LoaderEvent {
     Failed(PathBuf, String),
     /// Reading was stopped.
     Cancelled(PathBuf),
+}
+
+impl LoaderEvent {
+    /// The file that it is about.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Progress { path, .. } | Self::Failed(path, _) | Self::Cancelled(path) => path,
+            Self::Loaded(loaded) => &loaded.path,
+        }
+    }
 }
 
 /// A file that is being read.

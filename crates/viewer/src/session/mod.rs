@@ -7,15 +7,19 @@
 //!   (hidden, see-through, colours, sections, explosion; undone and redone)
 //! ```
 
+pub mod carry;
 pub mod file;
 pub mod picked;
+pub mod section;
 pub mod shown;
 pub mod undo;
 pub mod world;
 
+pub use carry::Carried;
 pub use file::{Loaded, Loader, LoaderEvent};
 pub use picked::Picked;
-pub use shown::{SceneState, Section, Shown};
+pub use section::Section;
+pub use shown::{SceneState, Shown};
 pub use undo::History;
 pub use world::{FilePart, World};
 
@@ -33,14 +37,15 @@ pub struct Session {
 }
 
 impl Session {
-    /// Replaces the open files. Hidden, coloured and cut items stay so if the number and names of placed parts are
-    /// unchanged. The selection is cleared, since its numbers may refer to other items.
-    pub fn open(&mut self, world: World) {
-        if !world.has_parts_of(&self.world) {
-            let sections = self.scene.now().sections.clone();
-            self.scene = History::new(SceneState { sections, ..SceneState::default() });
+    /// Replaces the open files. Hidden, coloured and edited items stay so, found again by their names, and sections stay.
+    /// Earlier states can be undone as long as no item has another number. The selection is cleared.
+    pub fn open(&mut self, world: impl Into<Arc<World>>) {
+        let world = world.into();
+        let carried = Carried::new(&self.world, &world);
+        if !carried.is_identity() {
+            self.scene = History::new(carried.state(self.scene.now()));
         }
-        self.world = Arc::new(world);
+        self.world = world;
         self.selection.clear();
     }
 

@@ -1,40 +1,9 @@
 //! The model that is drawn: the world in the session's state.
 
-use super::World;
-use glam::{DAffine3, DVec3};
+use super::{Section, World};
+use glam::DAffine3;
 use selvedge::model::{Bounds, Colour, Instance, Model, SolidError, TrimLoop};
-use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-
-/// A plane that cuts the model open: the side `normal · p <= offset` stays.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Section {
-    /// Unit length.
-    pub normal: DVec3,
-    /// Model units.
-    pub offset: f64,
-    /// It cuts.
-    pub on: bool,
-}
-
-impl Section {
-    /// Across an axis, through the middle of the model.
-    pub fn across(axis: DVec3, bounds: Bounds) -> Self {
-        let middle = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
-        Self { normal: axis, offset: axis.dot(middle), on: true }
-    }
-
-    /// The same plane, the other side stays.
-    pub fn flipped(self) -> Self {
-        Self { normal: -self.normal, offset: -self.offset, ..self }
-    }
-
-    /// Smallest and largest offset at which it passes through the box.
-    pub fn range(&self, bounds: Bounds) -> (f64, f64) {
-        let along = bounds.corners().map(|corner| self.normal.dot(corner));
-        along.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)))
-    }
-}
 
 /// How the world is shown.
 ///
@@ -68,8 +37,10 @@ const CLEAR: f32 = 0.25;
 pub struct Shown {
     /// For the engine.
     pub model: Model,
-    /// Of each of its instances the number in the world.
+    /// Of each of its instances the number in the world, in ascending order.
     pub instances: Vec<usize>,
+    /// Its instances that are not shown.
+    pub hidden: BTreeSet<usize>,
     /// Why a section is not cut.
     pub failed: Option<SolidError>,
 }
@@ -101,23 +72,49 @@ impl SceneState {
         }
     }
 
-    /// The same state but for its trim loops.
-    pub fn differs_in_loops_alone(&self, other: &Self) -> bool {
-        Self { edits: BTreeMap::new(), ..self.clone() } == Self { edits: BTreeMap::new(), ..other.clone() }
-    }
-
-    /// The model that is drawn.
+    /// The model of what is shown, and of nothing else.
     pub fn show(&self, world: &World) -> Shown {
         let count = world.model.instances.len();
-        let visible: Vec<usize> = (0..count).filter(|i| !self.hidden.contains(i)).collect();
+        self.show_these((0..count).filter(|i| !self.hidden.contains(i)).collect(), world)
+    }
+
+    /// The same with hidden instances in it that the engine hides and shows in place. A section cuts whatever is in the
+    /// model, so with one hidden instances are left out.
+    pub fn show_and_hide(&self, world: &World) -> Shown {
+        if self.is_cut() {
+            return self.show(world);
+        }
+        let stays = |number: usize| {
+            let placed = self.instance(number, world);
+            let part = &world.model.parts[placed.part];
+            !self.hidden.contains(&number) || !part.closed || placed.is_opaque(part)
+        };
+        let chosen = (0..world.model.instances.len()).filter(|number| stays(*number)).collect();
+        let shown = self.show_these(chosen, world);
+        let numbers = shown.instances.iter().enumerate();
+        let hidden = numbers.filter(|(_, number)| self.hidden.contains(*number)).map(|(nth, _)| nth).collect();
+        Shown { hidden, ..shown }
+    }
+
+    /// Whether a section cuts the model.
+    pub fn is_cut(&self) -> bool {
+        self.sections.iter().any(|section| section.on)
+    }
+
+    /// These instances, and the solids that are not hidden.
+    fn show_these(&self, chosen: Vec<usize>, world: &World) -> Shown {
+        let count = world.model.instances.len();
         let mut model = Model {
-            instances: visible.iter().map(|i| self.instance(*i, world)).collect(),
+            instances: chosen.iter().map(|i| self.instance(*i, world)).collect(),
             solids: Vec::new(),
             ..world.model.clone()
         };
         let solids = world.model.solids.iter().enumerate();
         model.solids.extend(solids.filter(|(i, _)| !self.hidden.contains(&(count + i))).map(|(_, s)| s.clone()));
         self.edit(&mut model);
+        if !self.is_cut() {
+            return Shown { model, instances: chosen, ..Shown::default() };
+        }
         let mut failed = None;
         for section in self.sections.iter().filter(|section| section.on) {
             match model.section(section.normal, section.offset) {
@@ -126,7 +123,7 @@ impl SceneState {
             }
         }
         // a section omits the instances that it cuts away or makes solid; the others keep their order
-        let mut left = visible.iter().peekable();
+        let mut left = chosen.iter().peekable();
         let mut instances = Vec::with_capacity(model.instances.len());
         for placed in &model.instances {
             let same = |i: &usize| self.instance(*i, world) == *placed;
@@ -135,11 +132,11 @@ impl SceneState {
             }
             instances.extend(left.next().copied());
         }
-        Shown { model, instances, failed }
+        Shown { model, instances, hidden: BTreeSet::new(), failed }
     }
 
     /// An instance as it is drawn.
-    fn instance(&self, number: usize, world: &World) -> Instance {
+    pub fn instance(&self, number: usize, world: &World) -> Instance {
         let placed = &world.model.instances[number];
         let mut instance = placed.clone();
         instance.colour = self.colours.get(&number).copied().or(placed.colour);
@@ -147,8 +144,31 @@ impl SceneState {
             let [r, g, b, _] = instance.colour.unwrap_or(selvedge::model::GREY);
             instance.colour = Some([r, g, b, CLEAR]);
         }
-        instance.transform = self.moved(number, world) * placed.transform;
+        instance.transform = self.placement(number, world);
         instance
+    }
+
+    /// Where an instance is drawn: part coordinates to model coordinates.
+    pub fn placement(&self, number: usize, world: &World) -> DAffine3 {
+        self.moved(number, world) * world.model.instances[number].transform
+    }
+
+    /// A box around everything drawn.
+    pub fn bounds(&self, world: &World) -> Bounds {
+        if world.bounds.is_empty() || self.explosion == 0.0 {
+            return world.bounds;
+        }
+        let of_instance = |(number, placed): (usize, &Instance)| {
+            let corners = world.part_bounds(placed.part).corners().map(|p| placed.transform.transform_point3(p));
+            let own = corners.into_iter().fold(Bounds::EMPTY, Bounds::with);
+            // control points may lie far outside of what is drawn
+            let own = Bounds { min: own.min.max(world.bounds.min), max: own.max.min(world.bounds.max) };
+            let by = self.moved(number, world).translation;
+            Bounds { min: own.min + by, max: own.max + by }
+        };
+        let all = world.model.instances.iter().enumerate();
+        let some = all.filter(|(_, placed)| !world.part_bounds(placed.part).is_empty());
+        some.map(of_instance).fold(world.bounds, Bounds::union)
     }
 
     /// How the explosion moves an instance: away from the middle of the model.
@@ -157,7 +177,7 @@ impl SceneState {
             return DAffine3::IDENTITY;
         }
         let placed = &world.model.instances[number];
-        let bounds = world.model.parts[placed.part].control_bounds();
+        let bounds = world.part_bounds(placed.part);
         if bounds.is_empty() {
             return DAffine3::IDENTITY;
         }
@@ -170,6 +190,7 @@ impl SceneState {
 mod tests {
     use super::super::file::Loaded;
     use super::*;
+    use glam::DVec3;
     use std::path::Path;
     use std::sync::Arc;
 
@@ -199,6 +220,18 @@ mod tests {
     }
 
     #[test]
+    fn each_face_is_found_by_its_number() {
+        let world = world();
+        for (part, of_part) in world.model.parts.iter().enumerate() {
+            for face in &of_part.faces {
+                let first = of_part.faces.iter().position(|other| other.id == face.id);
+                assert_eq!(world.face(part, face.id), first);
+            }
+        }
+        assert_eq!(world.face(world.model.parts.len(), 1), None);
+    }
+
+    #[test]
     fn what_is_hidden_is_not_drawn_and_the_rest_is_known_again() {
         let world = world();
         let mut state = SceneState::default();
@@ -208,6 +241,42 @@ mod tests {
         assert_eq!((shown.instances, shown.model.instances.len()), (expected.clone(), expected.len()));
         state.isolate(&[2], &world);
         assert_eq!(state.show(&world).instances, [2]);
+    }
+
+    #[test]
+    fn hidden_instances_stay_in_the_model_unless_rays_or_a_section_need_them_gone() {
+        let world = world();
+        let count = world.model.instances.len();
+        let mut state = SceneState::default();
+        state.hidden.extend([1, 2]);
+        let shown = state.show_and_hide(&world);
+        let all: Vec<usize> = (0..count).collect();
+        assert_eq!((shown.instances, shown.hidden), (all, BTreeSet::from([1, 2])));
+        // the engine follows rays through a closed part of glass, and hides none
+        assert!(world.model.parts[world.model.instances[1].part].closed);
+        state.clear.insert(1);
+        let shown = state.show_and_hide(&world);
+        let expected: Vec<usize> = (0..count).filter(|i| *i != 1).collect();
+        assert_eq!((shown.instances, shown.hidden), (expected, BTreeSet::from([1])));
+        let mut section = Section::across(DVec3::X, world.bounds);
+        section.offset = section.range(world.bounds).1 + 1.0;
+        state.sections = vec![section];
+        let shown = state.show_and_hide(&world);
+        assert!(shown.hidden.is_empty() && shown.instances == state.show(&world).instances);
+        assert!(!shown.instances.contains(&2));
+    }
+
+    #[test]
+    fn what_is_moved_apart_stays_within_its_bounds() {
+        let world = world();
+        let state = SceneState { explosion: 0.7, ..SceneState::default() };
+        let (bounds, drawn) = (state.bounds(&world), state.show(&world).model.bounds());
+        // a face may be beyond its box by a hundred-thousandth of the diagonal (`Face::bounds`)
+        let room = DVec3::splat(2e-5 * bounds.diagonal());
+        assert!((drawn.min + room).cmpge(bounds.min).all(), "{drawn:?} is beyond {bounds:?}");
+        assert!((drawn.max - room).cmple(bounds.max).all(), "{drawn:?} is beyond {bounds:?}");
+        assert!(drawn.diagonal() > 1.1 * world.bounds.diagonal(), "the parts are apart");
+        assert_eq!(SceneState::default().bounds(&world), world.bounds);
     }
 
     #[test]
@@ -237,8 +306,6 @@ mod tests {
         state.edits.insert((part, face, 0), after.clone());
         state.edits.insert((part, face, 999), after.clone());
         assert_eq!(state.show(&world).model.parts[part].faces[face].loops[0], after);
-        assert!(state.differs_in_loops_alone(&SceneState::default()));
-        assert!(!state.differs_in_loops_alone(&SceneState { explosion: 0.5, ..SceneState::default() }));
         assert_eq!(SceneState::default().show(&world).model.parts[part].faces[face].loops[0], before);
     }
 

@@ -1,7 +1,10 @@
 //! All open files as one model.
 
 use super::Loaded;
-use selvedge::model::{Bounds, Edges, Instance, Model};
+use glam::{DAffine3, DVec3};
+use selvedge::model::{Bounds, Edges, Instance, Model, Part, SurfaceKind};
+use selvedge::spline::Surface;
+use std::collections::HashMap;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
@@ -40,6 +43,10 @@ pub struct World {
     pub notices: Vec<String>,
     edges: OnceLock<PartEdges>,
     curvature_range: OnceLock<f64>,
+    part_bounds: OnceLock<Vec<Bounds>>,
+    /// By part and number.
+    faces: OnceLock<HashMap<(usize, u32), usize>>,
+    planes: OnceLock<Vec<(DVec3, f64)>>,
 }
 
 impl Default for World {
@@ -51,8 +58,19 @@ impl Default for World {
             notices: Vec::new(),
             edges: OnceLock::new(),
             curvature_range: OnceLock::new(),
+            part_bounds: OnceLock::new(),
+            faces: OnceLock::new(),
+            planes: OnceLock::new(),
         }
     }
+}
+
+/// The plane of a plane surface.
+fn plane(surface: &Surface, transform: DAffine3) -> Option<(DVec3, f64)> {
+    let ((u0, u1), (v0, v1)) = surface.domain();
+    let jet = surface.jet2(0.5 * (u0 + u1), 0.5 * (v0 + v1));
+    let normal = transform.transform_vector3(jet.du).cross(transform.transform_vector3(jet.dv)).try_normalize()?;
+    Some((normal, normal.dot(transform.transform_point3(jet.point))))
 }
 
 /// Edges of each part; for a part without curves none, and the reason.
@@ -69,6 +87,37 @@ impl World {
         *self.curvature_range.get_or_init(|| self.model.curvature_range())
     }
 
+    /// The box of a part's control points, in its own coordinates. The boxes of all parts are found once.
+    pub fn part_bounds(&self, part: usize) -> Bounds {
+        let all = || self.model.parts.iter().map(Part::control_bounds).collect();
+        self.part_bounds.get_or_init(all).get(part).copied().unwrap_or(Bounds::EMPTY)
+    }
+
+    /// The face of a part that has this number: the first of several. The faces of all parts are listed once.
+    pub fn face(&self, part: usize, id: u32) -> Option<usize> {
+        let all = || {
+            let mut faces = HashMap::new();
+            for (part, of_part) in self.model.parts.iter().enumerate() {
+                for (nth, face) in of_part.faces.iter().enumerate() {
+                    faces.entry((part, face.id)).or_insert(nth);
+                }
+            }
+            faces
+        };
+        self.faces.get_or_init(all).get(&(part, id)).copied()
+    }
+
+    /// The planes of plane faces where instances have them: unit normals, and offsets along them. They are found once.
+    pub fn planes(&self) -> &[(DVec3, f64)] {
+        self.planes.get_or_init(|| {
+            let of_instance = |placed: &Instance| {
+                let flat = self.model.parts[placed.part].faces.iter().filter(|face| face.kind == SurfaceKind::Plane);
+                flat.filter_map(|face| plane(&face.surface, placed.transform)).collect::<Vec<_>>()
+            };
+            self.model.instances.iter().flat_map(of_instance).collect()
+        })
+    }
+
     /// Puts files together.
     pub fn new(files: &[Arc<Loaded>]) -> Self {
         let mut world = Self::default();
@@ -76,6 +125,8 @@ impl World {
             world.add(file);
         }
         world.bounds = world.model.bounds();
+        // here, so that no first pick waits for it
+        world.face(0, 0);
         world
     }
 
@@ -114,14 +165,6 @@ impl World {
             complete: summary.is_complete(),
             warnings: file.import.warnings.iter().map(warning).collect(),
         });
-    }
-
-    /// Whether every placed part has its name and place in the other's list, too.
-    pub fn has_parts_of(&self, other: &Self) -> bool {
-        let named = |i: &Instance, world: &Self| (i.name.clone(), world.model.parts[i.part].name.clone());
-        self.model.instances.len() == other.model.instances.len()
-            && self.model.solids.len() == other.model.solids.len()
-            && self.model.instances.iter().zip(&other.model.instances).all(|(a, b)| named(a, self) == named(b, other))
     }
 
     /// Nothing is open, or nothing can be drawn.

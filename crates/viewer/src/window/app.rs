@@ -1,17 +1,17 @@
 //! The window's state, and one frame of it.
 
 use super::composite::ViewRect;
-use super::context::DeviceOptions;
-use super::engine::{Engine, Outcome, Request, Uploaded};
+use super::engine::{Engine, Wanted};
 use super::look::background;
 use super::screen::{Frame, Picture, Screen};
 use super::waiter::Waiter;
-use super::{Closed, Failure, ViewError, ViewOptions};
+use super::{Failure, ViewError, ViewOptions};
 use crate::measure::Measurement;
 use crate::navigation::gesture::Held;
 use crate::panels::{Facts, Ui, Verdict};
+use crate::pick::Seen;
 use crate::session::Picked;
-use crate::session::{Loaded, Loader, LoaderEvent, Session};
+use crate::session::{Loaded, Loader, LoaderEvent, Session, World};
 use crate::settings::{Settings, Theme};
 use crate::view::{Due, Hover, View};
 use crate::watch::Watcher;
@@ -22,17 +22,19 @@ use selvedge::picture::{FrameSettings, FrameStats, Style};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
-use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
+use winit::event_loop::EventLoopProxy;
 use winit::window::Window;
 
 /// Messages of other threads to the window.
 pub enum Event {
-    /// The frame that was submitted has finished.
-    FrameDone(Result<(), vk::Result>),
+    /// The frame that was submitted to the device of this number has finished.
+    FrameDone(u32, Result<(), vk::Result>),
     /// A file.
     Loader(LoaderEvent),
-    /// The engine's renderer comes back.
-    Uploaded(Box<Uploaded>),
+    /// The model of all open files, and which one since the start.
+    Joined(u64, Arc<World>),
+    /// The engine's thread has finished.
+    Uploaded,
     /// Edges can be picked now.
     EdgesFound,
     /// Files were chosen.
@@ -62,6 +64,8 @@ struct Flight {
     pick: Option<DVec2>,
     /// The picture that the pick reads.
     camera: Option<Camera>,
+    /// The numbers of the picture's instances in a world.
+    numbers: Option<(Arc<World>, Arc<[usize]>)>,
     free: Vec<egui::TextureId>,
 }
 
@@ -97,6 +101,10 @@ pub struct App {
     kept: Settings,
     pub files: Vec<Arc<Loaded>>,
     pub loading: Vec<Loading>,
+    /// Counts models of all open files.
+    pub worlds: u64,
+    /// A thread puts the last one together.
+    pub joins: bool,
     pub watcher: Option<Watcher>,
     flight: Option<Flight>,
     /// Drawn again once the frame in flight is done.
@@ -115,10 +123,17 @@ pub struct App {
     pub click: Option<(bool, DVec2)>,
     pub failed: Option<ViewError>,
     clipboard: Option<arboard::Clipboard>,
-    messages: Vec<String>,
+    /// Of the validation layer.
+    pub messages: Vec<String>,
     /// The first picture was shown.
     seen: bool,
-    begun: Instant,
+    /// Size of the engine's last picture.
+    drawn: (u32, u32),
+    /// The explosion that the view has room for.
+    pub explosion: f64,
+    /// Counts devices that were opened.
+    pub devices: u32,
+    pub begun: Instant,
 }
 
 impl App {
@@ -148,6 +163,8 @@ impl App {
             settings,
             files: Vec::new(),
             loading: Vec::new(),
+            worlds: 0,
+            joins: false,
             watcher,
             flight: None,
             again: false,
@@ -163,45 +180,11 @@ impl App {
             clipboard: None,
             messages: Vec::new(),
             seen: false,
+            drawn: (0, 0),
+            explosion: 0.0,
+            devices: 0,
             begun: Instant::now(),
         }
-    }
-
-    /// Opens window and device; begins to read the files.
-    pub fn open_window(&mut self, events: &ActiveEventLoop) -> Result<(), ViewError> {
-        let mut attributes = Window::default_attributes().with_title("selvedge");
-        if let Some((width, height)) = self.options.size {
-            attributes = attributes.with_inner_size(winit::dpi::LogicalSize::new(width, height));
-        }
-        let window = events.create_window(attributes).map_err(|e| ViewError::Window(e.to_string()))?;
-        let window = Arc::new(window);
-        let scale = Some(window.scale_factor() as f32);
-        let root = egui::ViewportId::ROOT;
-        let input = egui_winit::State::new(self.context.clone(), root, &window, scale, window.theme(), None);
-        let proxy = self.proxy.clone();
-        self.context.set_request_repaint_callback(move |info| {
-            if info.delay.is_zero() {
-                drop(proxy.send_event(Event::Repaint));
-            }
-        });
-        let (waiter, engine, screen) = self.open_device(&window)?;
-        tracing::info!("window on {} after {:.0?}", screen.context.name, self.begun.elapsed());
-        self.opened = Some(Opened { window, input, waiter, engine, screen });
-        for file in std::mem::take(&mut self.options.files) {
-            self.load(file);
-        }
-        self.redraw();
-        Ok(())
-    }
-
-    fn open_device(&self, window: &Window) -> Result<(Waiter, Engine, Screen), ViewError> {
-        let ViewOptions { device, validation, .. } = &self.options;
-        let options = DeviceOptions { device: device.clone(), validation: *validation, ..Default::default() };
-        let screen = Screen::new(window, &options)?;
-        let engine = Engine::new(screen.renderer()?);
-        let proxy = self.proxy.clone();
-        let done = move |result| drop(proxy.send_event(Event::FrameDone(result)));
-        Ok((Waiter::new(screen.context.device.clone(), done), engine, screen))
     }
 
     /// Makes all objects of the device again, after it was lost.
@@ -214,6 +197,7 @@ impl App {
         let (waiter, engine, screen) = self.open_device(&window)?;
         // the textures of the panels are gone: a new context sends them again
         self.context = crate::panels::context();
+        self.watch_panels();
         let input = egui_winit::State::new(
             self.context.clone(),
             egui::ViewportId::ROOT,
@@ -262,19 +246,13 @@ impl App {
             self.measure();
         }
         self.keep_settings();
-        let request = Request {
-            world: Arc::clone(&self.session.world),
-            state: self.session.scene.now().clone(),
-            settings: self.scene_settings(),
-        };
+        self.make_room();
         let (due, mut settings, marks) = (self.view.due(now), self.frame_settings(), self.marks());
-        let under = self.over_view();
+        let (under, scene) = (self.over_view(), self.scene_settings());
         let Some(Opened { window, waiter, engine, screen, .. }) = &mut self.opened else { return Ok(()) };
-        let uploaded = |proxy: &EventLoopProxy<Event>| {
-            let proxy = proxy.clone();
-            move |uploaded| drop(proxy.send_event(Event::Uploaded(uploaded)))
-        };
-        engine.want(&request, uploaded(&self.proxy));
+        let wanted = Wanted { world: &self.session.world, state: self.session.scene.now(), settings: scene };
+        let proxy = self.proxy.clone();
+        engine.want(wanted, move || drop(proxy.send_event(Event::Uploaded)));
         if settings.style.is_curvature() && !engine.has_curvature() {
             settings.style = Style::Clay; // until the upload that was just asked for is there
         }
@@ -285,16 +263,21 @@ impl App {
         let wanted = ShownPicture { camera: due.camera, settings, generation: engine.generation };
         let is_new = self.picture != Some(wanted) && due.camera.size.0 > 1 && !self.session.world.is_empty();
         let generation = engine.generation;
+        let numbers = engine.instances_of(&self.session.world).map(Arc::clone);
         let picture = if is_new { engine.renderer() } else { None };
         let picture = picture.map(|renderer| Picture { renderer, camera: &due.camera, settings });
         let in_picture = picture.is_some().then_some((due, settings, generation, now));
         let seen_by = in_picture.map(|_| due.camera).or(self.picture.map(|p| p.camera));
         // the item under a resting cursor changes with the picture
         let rests = in_picture.is_some() && !self.view.is_dragging();
-        // without a picture there is nothing to click
-        self.click = self.click.filter(|_| seen_by.is_some());
+        let numbers = numbers.filter(|_| seen_by.is_some());
+        // without a picture of what is open there is nothing to click
+        self.click = self.click.filter(|_| numbers.is_some());
         let clicked = self.click.map(|(_, at)| at);
-        let pick = clicked.or(self.pick.take()).or(under.filter(|_| rests)).filter(|_| seen_by.is_some());
+        let pick = clicked.or(self.pick.take()).or(under.filter(|_| rests)).filter(|_| numbers.is_some());
+        if numbers.is_none() && self.view.wants_point().is_some() {
+            self.view.hold(None);
+        }
         screen.set_textures(&output.textures_delta)?;
         let shapes = self.context.tessellate(output.shapes, output.pixels_per_point);
         let frame = Frame {
@@ -317,7 +300,8 @@ impl App {
         };
         if drawn {
             waiter.watch(screen.context.fence);
-            self.flight = Some(Flight { picture: in_picture, pick, camera: seen_by, free });
+            let numbers = numbers.map(|numbers| (Arc::clone(&self.session.world), numbers));
+            self.flight = Some(Flight { picture: in_picture, pick, camera: seen_by, numbers, free });
         } else {
             screen.free_textures(&free)?;
         }
@@ -325,6 +309,15 @@ impl App {
         let repaint = repaint.and_then(|delay| now.checked_add(delay)).filter(|_| drawn);
         self.wake = [repaint, self.view.wake(now)].into_iter().flatten().min();
         Ok(())
+    }
+
+    /// Near and far plane enclose instances that are moved apart, too.
+    fn make_room(&mut self) {
+        let state = self.session.scene.now();
+        if self.explosion != state.explosion {
+            self.explosion = state.explosion;
+            self.view.set_bounds(state.bounds(&self.session.world));
+        }
     }
 
     fn run_panels(&mut self) -> egui::FullOutput {
@@ -343,7 +336,7 @@ impl App {
             loading: self.loading.iter().map(|l| (l.loader.path.as_path(), l.stage, l.share)).collect(),
             stats: self.stats.as_ref(),
             notice: engine.notice.as_deref(),
-            busy: engine.is_busy(),
+            busy: self.joins || engine.is_busy(),
             picture: screen.shown(),
             view: &self.view,
             device: &screen.context.name,
@@ -398,13 +391,12 @@ impl App {
 
     /// The frame in flight has finished.
     pub fn frame_done(&mut self, result: Result<(), vk::Result>) -> Result<(), ViewError> {
-        let Some(Flight { picture, pick, camera, free }) = self.flight.take() else { return Ok(()) };
+        let Some(Flight { picture, pick, camera, numbers, free }) = self.flight.take() else { return Ok(()) };
         result?;
         tracing::debug!("frame");
         let Some(Opened { engine, screen, .. }) = &mut self.opened else { return Ok(()) };
         screen.free_textures(&free)?;
         if let Some((due, settings, generation, start)) = picture {
-            self.view.pacing.took(due.scale, start.elapsed());
             let report = match engine.renderer() {
                 Some(renderer) => renderer.report(0)?,
                 None => None,
@@ -415,6 +407,10 @@ impl App {
             if complete {
                 self.picture = Some(shown);
             }
+            // the first picture of a size makes its buffers, and an incomplete one is no measure
+            if std::mem::replace(&mut self.drawn, due.camera.size) == due.camera.size && complete {
+                self.view.pacing.took(due.scale, start.elapsed());
+            }
             self.again |= !complete;
             if !self.seen && complete {
                 self.seen = true;
@@ -424,10 +420,14 @@ impl App {
             tracing::debug!("picture of {width} x {height} in {:.1?}, complete: {complete}", start.elapsed());
         }
         let samples = screen.picked();
-        let shown = engine.shown().cloned();
-        if let (Some(at), Some(camera), Some(samples), Some(shown)) = (pick, camera, samples, shown) {
+        let world = &self.session.world;
+        let numbers = numbers.filter(|(of, _)| Arc::ptr_eq(of, world)).map(|(_, numbers)| numbers);
+        if let (Some(at), Some(camera), Some(samples), Some(numbers)) = (pick, camera, samples, numbers) {
             let scale = f64::from(camera.size.0) / f64::from(self.rect.width.max(1));
-            let hit = samples.pick(&self.session.world, &shown.instances, &camera, at * scale, self.ui.filter);
+            let state = self.session.scene.now();
+            let placed = |number: usize| state.placement(number, world);
+            let seen = Seen { world, instances: &numbers, placement: &placed, camera: &camera };
+            let hit = samples.pick(&seen, at * scale, self.ui.filter);
             let before = self.view.hover.and_then(|h| h.hit.picked);
             self.view.hover = Some(Hover { cursor: at, hit });
             if self.view.wants_point().is_some_and(|start| start.distance(at) < 1.0) {
@@ -449,35 +449,13 @@ impl App {
     }
 
     /// The engine's thread has finished.
-    pub fn uploaded(&mut self, uploaded: Uploaded) {
+    pub fn uploaded(&mut self) {
         let Some(opened) = &mut self.opened else { return };
-        match opened.engine.take(uploaded) {
-            Outcome::Failed(error) => {
-                tracing::error!("{error}");
-                self.ui.tell(format!("It cannot be drawn: {error}"));
-            }
-            Outcome::Model | Outcome::Cut => {}
+        if let Err(error) = opened.engine.take() {
+            tracing::error!("{error}");
+            self.ui.tell(format!("It cannot be drawn: {error}"));
         }
         self.redraw();
-    }
-
-    /// Frees everything.
-    pub fn close(mut self) -> Result<Closed, ViewError> {
-        for loading in &self.loading {
-            loading.loader.cancel();
-        }
-        if let Some(Opened { window, input, waiter, mut engine, screen }) = self.opened.take() {
-            // a renderer in a thread comes back through the queue of events, which ends with the loop
-            engine.wait();
-            screen.context.wait();
-            drop((waiter, engine, input));
-            self.messages.extend(screen.shutdown());
-            drop(window);
-        }
-        match self.failed {
-            Some(error) => Err(error),
-            None => Ok(Closed { messages: self.messages }),
-        }
     }
 }
 

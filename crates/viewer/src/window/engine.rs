@@ -1,15 +1,19 @@
-//! The engine's renderer. A thread takes it for uploads, so that the window stays responsive.
+//! The engine's renderer. It changes instances and loops in place; a thread takes it for uploads, so that the window
+//! stays responsive.
 //!
 //! ```text
-//!   Ready ──request──▶ Uploading (thread: model of the state, upload) ──Uploaded──▶ Ready, or the renderer before
+//!   Ready ──hidden, coloured, moved, a loop──▶ changed in place ─▶ Ready
+//!     └─────anything else──▶ Uploading (thread: model of the state, upload) ──▶ Ready, or the model before
 //! ```
 
-use crate::session::{SceneState, Shown, World};
-use selvedge::model::LoopAt;
+use super::living::{self, Placed};
+use crate::session::{SceneState, World};
+use selvedge::model::Model;
 use selvedge::picture::{SceneSettings, Smooth};
 use selvedge::renderer::{RenderError, Renderer};
 use std::collections::BTreeSet;
 use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver};
 use std::thread::{self, JoinHandle};
 
 /// A model to draw.
@@ -20,49 +24,57 @@ pub struct Request {
     pub settings: SceneSettings,
 }
 
-impl PartialEq for Request {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.world, &other.world) && self.state == other.state && self.settings == other.settings
+/// The same, borrowed: it is copied only when it differs from the last one.
+#[derive(Clone, Copy, Debug)]
+pub struct Wanted<'a> {
+    pub world: &'a Arc<World>,
+    pub state: &'a SceneState,
+    pub settings: SceneSettings,
+}
+
+impl Wanted<'_> {
+    fn is_of(self, request: &Request) -> bool {
+        let Request { world, state, settings } = request;
+        Arc::ptr_eq(self.world, world) && self.settings == *settings && self.state == state
+    }
+
+    fn request(self) -> Request {
+        Request { world: Arc::clone(self.world), state: self.state.clone(), settings: self.settings }
     }
 }
 
-/// The result of a thread.
-pub struct Uploaded {
-    renderer: Renderer,
-    /// `None`: another part of the same model.
-    request: Option<(Request, Arc<Shown>)>,
-    result: Result<(), RenderError>,
-    /// A setting that had to be ignored.
-    notice: Option<String>,
+/// The model that the renderer holds.
+struct Current {
+    request: Request,
+    /// The settings of the upload, which may have fewer effects than the requested ones.
+    settings: SceneSettings,
+    placed: Placed,
+    /// A change in place failed halfway: only an upload leads to a known state.
+    is_mixed: bool,
 }
 
-/// The result of an upload.
-pub enum Outcome {
-    /// Another model, or the same in another state, is drawn from now on.
-    Model,
-    /// Another part of it.
-    Cut,
-    /// The reason of a failure; the model before stays.
-    Failed(RenderError),
+/// The result of a thread.
+struct Uploaded {
+    renderer: Renderer,
+    result: Result<(Current, Option<String>), RenderError>,
 }
 
 /// The renderer and its model.
 pub struct Engine {
     renderer: Option<Renderer>,
-    thread: Option<JoinHandle<()>>,
-    /// The renderer's model.
-    current: Option<(Request, Arc<Shown>)>,
-    /// The last request.
+    upload: Option<(JoinHandle<()>, Receiver<Uploaded>)>,
+    current: Option<Current>,
+    /// The last request, which may have failed.
     asked: Option<Request>,
     /// A setting that does not apply to the model.
     pub notice: Option<String>,
-    /// Counts uploads: pictures of another count are old.
+    /// Counts uploads and changes: pictures of another count are old.
     pub generation: u64,
 }
 
 impl Engine {
     pub fn new(renderer: Renderer) -> Self {
-        Self { renderer: Some(renderer), thread: None, current: None, asked: None, notice: None, generation: 0 }
+        Self { renderer: Some(renderer), upload: None, current: None, asked: None, notice: None, generation: 0 }
     }
 
     /// Whether a thread uploads.
@@ -70,14 +82,21 @@ impl Engine {
         self.renderer.is_none()
     }
 
-    /// The model that is drawn.
-    pub fn shown(&self) -> Option<&Arc<Shown>> {
-        self.current.as_ref().map(|(_, shown)| shown)
+    /// Of each instance that is drawn the number in this world; `None` while something else is drawn.
+    pub fn instances_of(&self, world: &Arc<World>) -> Option<&Arc<[usize]>> {
+        let current = self.current.as_ref().filter(|current| Arc::ptr_eq(&current.request.world, world))?;
+        Some(&current.placed.instances)
+    }
+
+    /// The renderer's model, and its instances that are hidden; `None` during an upload.
+    pub fn model(&self) -> Option<(Arc<Model>, BTreeSet<usize>)> {
+        let (current, renderer) = (self.current.as_ref()?, self.renderer.as_ref()?);
+        Some((Arc::clone(renderer.model()?), current.placed.hidden.clone()))
     }
 
     /// What is drawn may be drawn in a style of curvature.
     pub fn has_curvature(&self) -> bool {
-        self.current.as_ref().is_some_and(|(request, _)| request.settings.curvature)
+        self.current.as_ref().is_some_and(|current| current.settings.curvature)
     }
 
     /// The renderer, when it holds a model.
@@ -85,89 +104,124 @@ impl Engine {
         self.renderer.as_mut().filter(|_| self.current.is_some())
     }
 
-    /// Begins to upload the requested model, unless it is there or on its way; no frame is in flight. The thread calls
-    /// `done`.
-    pub fn want(&mut self, request: &Request, done: impl FnOnce(Box<Uploaded>) + Send + 'static) {
-        if self.is_busy() || self.asked.as_ref() == Some(request) || request.world.is_empty() || self.edits(request) {
+    /// Shows the requested model: by changes in place, or by an upload that begins now. No frame is in flight. The thread
+    /// of an upload calls `done`; [`take`](Self::take) then has the result.
+    pub fn want(&mut self, wanted: Wanted<'_>, done: impl FnOnce() + Send + 'static) {
+        let is_asked = self.asked.as_ref().is_some_and(|asked| wanted.is_of(asked));
+        if self.is_busy() || is_asked || wanted.world.is_empty() || self.changes(wanted) {
             return;
         }
         let Some(mut renderer) = self.renderer.take() else { return };
+        let request = wanted.request();
         self.asked = Some(request.clone());
-        let request = request.clone();
-        self.thread = Some(thread::spawn(move || {
-            let shown = Arc::new(request.state.show(&request.world));
-            let mut notice = shown.failed.as_ref().map(|error| format!("A section is not cut: {error}."));
-            let mut settings = request.settings;
-            let mut result = renderer.upload_with(&shown.model, settings);
-            if let Err(RenderError::SmoothTrims(what)) = result {
-                notice = Some(format!("Borders are not smooth: that does not go with {what}."));
-                settings.smooth = Smooth::None;
-                result = renderer.upload_with(&shown.model, settings);
-            }
-            let request = Request { settings, ..request };
-            done(Box::new(Uploaded { renderer, request: Some((request, shown)), result, notice }));
-        }));
+        let (to, from) = mpsc::channel();
+        let thread = thread::spawn(move || {
+            let result = upload(&mut renderer, request);
+            // nobody waits for it when the window closes
+            drop(to.send(Uploaded { renderer, result }));
+            done();
+        });
+        self.upload = Some((thread, from));
     }
 
-    /// Changes trim loops in place, if nothing else differs from the last request.
-    fn edits(&mut self, request: &Request) -> bool {
-        let (Some(asked), Some((current, shown)), Some(renderer)) =
-            (&self.asked, &mut self.current, &mut self.renderer)
-        else {
+    /// Changes the scene in place. `false` where only an upload can show what is wanted.
+    fn changes(&mut self, wanted: Wanted<'_>) -> bool {
+        let (Some(current), Some(renderer)) = (&mut self.current, &mut self.renderer) else { return false };
+        let Request { world, state, settings } = &mut current.request;
+        if current.is_mixed || !Arc::ptr_eq(world, wanted.world) || *settings != wanted.settings {
             return false;
+        }
+        let changed = living::Change { world, before: state, after: wanted.state };
+        match changed.apply(renderer, &mut current.placed, current.settings.editable) {
+            Ok(()) => {
+                tracing::debug!("changed in place");
+                state.clone_from(wanted.state);
+                self.asked = Some(wanted.request());
+                self.generation += 1;
+                true
+            }
+            Err(why) => {
+                tracing::info!("an upload is needed: {why}");
+                current.is_mixed = true;
+                false
+            }
+        }
+    }
+
+    /// Takes the renderer back from a thread that has called `done`, if there is one.
+    ///
+    /// # Errors
+    /// Why the model was not uploaded; the model before stays.
+    pub fn take(&mut self) -> Result<(), RenderError> {
+        let Some((thread, from)) = self.upload.take() else { return Ok(()) };
+        let uploaded = match from.try_recv() {
+            Ok(uploaded) => uploaded,
+            Err(mpsc::TryRecvError::Empty) => {
+                self.upload = Some((thread, from));
+                return Ok(());
+            }
+            Err(mpsc::TryRecvError::Disconnected) => return Ok(()),
         };
-        let same = Arc::ptr_eq(&asked.world, &request.world) && asked.settings == request.settings;
-        if !(same && current.settings.editable && asked.state.differs_in_loops_alone(&request.state)) {
-            return false;
-        }
-        let (old, new) = (&asked.state.edits, &request.state.edits);
-        let changed: BTreeSet<_> = old.keys().chain(new.keys()).filter(|key| old.get(key) != new.get(key)).collect();
-        let model = &mut Arc::make_mut(shown).model;
-        for key in changed {
-            let (part, face, trim_loop) = *key;
-            let Some(original) =
-                request.world.model.parts.get(part).and_then(|p| p.faces.get(face)?.loops.get(trim_loop))
-            else {
-                continue;
-            };
-            let wanted = new.get(key).unwrap_or(original);
-            if let Err(error) = renderer.edit_loop(LoopAt { part, face, trim_loop }, wanted) {
-                // uploaded anew, it is drawn
-                tracing::info!("{error}");
-                return false;
+        // it has nothing left to do
+        let _ = thread.join();
+        self.renderer = Some(uploaded.renderer);
+        match uploaded.result {
+            Ok((current, notice)) => {
+                (self.current, self.notice) = (Some(current), notice);
+                self.generation += 1;
+                Ok(())
             }
-            model.parts[part].faces[face].loops[trim_loop] = wanted.clone();
+            Err(error) => {
+                // the second of two uploads may have failed
+                self.current.iter_mut().for_each(|current| current.is_mixed = true);
+                Err(error)
+            }
         }
-        current.state = request.state.clone();
-        self.asked = Some(request.clone());
-        self.generation += 1;
-        true
     }
 
-    /// Takes the renderer back from the thread.
-    pub fn take(&mut self, uploaded: Uploaded) -> Outcome {
-        let Uploaded { renderer, request, result, notice } = uploaded;
-        if let Some(thread) = self.thread.take() {
-            // the thread has ended
-            let _ = thread.join();
-        }
-        self.renderer = Some(renderer);
-        let is_model = request.is_some();
-        if let Err(error) = result {
-            return Outcome::Failed(error);
-        }
-        self.generation += 1;
-        if let Some(current) = request {
-            self.current = Some(current);
-            self.notice = notice;
-        }
-        if is_model { Outcome::Model } else { Outcome::Cut }
-    }
-
-    /// Waits for the thread; its result is then in the queue of events, and must be taken or dropped.
+    /// Waits for the thread. The renderer is then here, or freed with the engine.
     pub fn wait(&mut self) {
-        if let Some(thread) = self.thread.take() {
+        if let Some((thread, from)) = self.upload.take() {
             let _ = thread.join();
+            self.renderer = from.try_recv().ok().map(|uploaded| uploaded.renderer);
         }
+    }
+}
+
+/// Uploads a model with hidden instances in it, without those where one of them cannot be hidden.
+fn upload(renderer: &mut Renderer, request: Request) -> Result<(Current, Option<String>), RenderError> {
+    // shadows are those of an upload
+    let lives = request.settings.sun.is_none();
+    let state = &request.state;
+    let shown = if lives { state.show_and_hide(&request.world) } else { state.show(&request.world) };
+    let failed = shown.failed.as_ref().map(|error| format!("A section is not cut: {error}."));
+    let (mut settings, mut rough) = put(renderer, shown.model, request.settings)?;
+    let mut placed = Placed { instances: shown.instances.into(), hidden: shown.hidden };
+    let hidden = placed.hidden.iter().try_for_each(|nth| renderer.set_visible(*nth, false));
+    if let Err(why) = hidden {
+        tracing::info!("what is hidden is left out: {why}");
+        let shown = request.state.show(&request.world);
+        (settings, rough) = put(renderer, shown.model, request.settings)?;
+        placed = Placed { instances: shown.instances.into(), hidden: BTreeSet::new() };
+    }
+    tracing::info!("uploaded");
+    Ok((Current { request, settings, placed, is_mixed: false }, rough.or(failed)))
+}
+
+/// Uploads a model, with fewer effects where they do not go with it. Returns the settings that it has, and a notice.
+fn put(
+    renderer: &mut Renderer,
+    model: Model,
+    settings: SceneSettings,
+) -> Result<(SceneSettings, Option<String>), RenderError> {
+    let model = Arc::new(model);
+    match renderer.upload_shared(Arc::clone(&model), settings, &|_| ()) {
+        Ok(()) => Ok((settings, None)),
+        Err(RenderError::SmoothTrims(what)) => {
+            let settings = SceneSettings { smooth: Smooth::None, ..settings };
+            renderer.upload_shared(model, settings, &|_| ())?;
+            Ok((settings, Some(format!("Borders are not smooth: that does not go with {what}."))))
+        }
+        Err(error) => Err(error),
     }
 }

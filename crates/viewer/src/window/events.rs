@@ -93,12 +93,15 @@ impl ApplicationHandler<Event> for App {
 
     fn user_event(&mut self, events: &ActiveEventLoop, event: Event) {
         match event {
-            Event::FrameDone(result) => {
+            // of a device that was lost
+            Event::FrameDone(device, _) if device != self.devices => {}
+            Event::FrameDone(_, result) => {
                 if let Err(error) = self.frame_done(result) {
                     self.recover(error, events);
                 }
             }
-            Event::Uploaded(uploaded) => self.uploaded(*uploaded),
+            Event::Joined(nth, world) => self.joined(nth, world),
+            Event::Uploaded => self.uploaded(),
             Event::Loader(event) => self.loader(event),
             Event::Chosen(paths) => paths.into_iter().for_each(|path| self.load(path)),
             Event::Changed(path) => drop(self.ui.changed.insert(path, Instant::now())),
@@ -208,7 +211,19 @@ impl App {
         self.redraw();
     }
 
+    /// Stops reading. The threads end at their importers' next signs of progress; nothing waits for them.
+    fn give_up(&mut self) {
+        for loading in self.loading.drain(..) {
+            loading.loader.cancel();
+            self.ui.tell(format!("{}: given up", loading.loader.path.display()));
+        }
+    }
+
     fn loader(&mut self, event: LoaderEvent) {
+        // a thread whose file was given up may still send its last events
+        if !self.loading.iter().any(|loading| loading.loader.path == event.path()) {
+            return;
+        }
         let ended = |app: &mut Self, path: &Path| app.loading.retain(|l| l.loader.path != path);
         match event {
             LoaderEvent::Progress { path, stage, share } => {
@@ -221,10 +236,7 @@ impl App {
                 tracing::error!("{why}");
                 self.ui.tell(why);
             }
-            LoaderEvent::Cancelled(path) => {
-                ended(self, &path);
-                self.ui.tell(format!("{}: given up", path.display()));
-            }
+            LoaderEvent::Cancelled(path) => ended(self, &path),
             LoaderEvent::Loaded(loaded) => {
                 ended(self, &loaded.path);
                 let (faces, warnings) = (loaded.import.model.face_count(), loaded.import.warnings.len());
@@ -243,14 +255,31 @@ impl App {
         self.redraw();
     }
 
-    /// All open files as one model.
+    /// All open files as one model, put together by a thread.
     fn put_together(&mut self) {
+        self.worlds += 1;
+        self.joins = true;
+        let (nth, files, proxy) = (self.worlds, self.files.clone(), self.proxy.clone());
+        std::thread::spawn(move || {
+            let world = Arc::new(World::new(&files));
+            drop(proxy.send_event(Event::Joined(nth, Arc::clone(&world))));
+            world.find_edges();
+            drop(proxy.send_event(Event::EdgesFound));
+        });
+    }
+
+    /// Shows the model of all open files, unless they are others by now.
+    fn joined(&mut self, nth: u64, world: Arc<World>) {
+        if nth != self.worlds {
+            return;
+        }
+        self.joins = false;
         let first = self.session.world.is_empty();
-        self.session.open(World::new(&self.files));
+        self.session.open(Arc::clone(&world));
         self.ui.opened();
-        let world = Arc::clone(&self.session.world);
         world.notices.iter().for_each(|notice| self.ui.tell(notice.clone()));
-        self.view.set_bounds(world.bounds);
+        self.view.set_bounds(self.session.scene.now().bounds(&world));
+        self.explosion = self.session.scene.now().explosion;
         self.view.hover = None;
         if first {
             self.view.reset(Instant::now());
@@ -260,11 +289,7 @@ impl App {
         if let Some(opened) = &self.opened {
             opened.window.set_title(&format!("{} - selvedge", title.join(", ")));
         }
-        let proxy = self.proxy.clone();
-        std::thread::spawn(move || {
-            world.find_edges();
-            drop(proxy.send_event(Event::EdgesFound));
-        });
+        self.redraw();
     }
 
     /// Reads files again that have changed on the disk and rest.
@@ -291,7 +316,7 @@ impl App {
                     let paths: Vec<_> = self.files.iter().map(|f| f.path.clone()).collect();
                     paths.into_iter().for_each(|path| self.load(path));
                 }
-                Command::Cancel => self.loading.iter().for_each(|l| l.loader.cancel()),
+                Command::Cancel => self.give_up(),
                 Command::Fit => self.view.fit(smooth, now),
                 Command::FitSelection => {
                     let points = crate::describe::extent(&self.session);
@@ -306,6 +331,8 @@ impl App {
                 Command::Projection => self.view.toggle_projection(now),
                 Command::Previous => drop(self.view.previous(smooth, now)),
                 Command::Turn(x, y) => self.view.turn(DVec2::new(x, y), self.settings.orbit, now),
+                Command::Shift(x, y) => self.view.shift(DVec2::new(x, y), now),
+                Command::Zoom(notches) => self.view.zoom(notches, now),
                 Command::CopyCommand => {
                     let text =
                         crate::describe::command(&self.session, self.view.camera(), &self.settings, self.ui.style);
@@ -322,9 +349,11 @@ impl App {
         }
     }
 
+    /// Closes a file of the tree.
     fn close_file(&mut self, file: usize) {
-        if file < self.files.len() {
-            let closed = self.files.remove(file);
+        let path = self.session.world.files.get(file).map(|file| &file.path);
+        if let Some(nth) = self.files.iter().position(|file| Some(&file.path) == path) {
+            let closed = self.files.remove(nth);
             if let Some(watcher) = &mut self.watcher {
                 watcher.remove(&closed.path);
             }

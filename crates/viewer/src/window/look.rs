@@ -1,6 +1,7 @@
 //! The scene's and the frame's settings for the engine, and marks for the composite pass.
 
 use super::app::App;
+use crate::describe::{SUN, ambient_radius};
 use crate::pick::Mark;
 use crate::session::Picked;
 use crate::settings::{Lines, Settings};
@@ -9,7 +10,7 @@ use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, SceneSettings, 
 impl App {
     /// Settings of the model that is drawn.
     pub fn scene_settings(&self) -> SceneSettings {
-        let Settings { lines, silhouettes, hidden_lines, smooth, .. } = self.settings;
+        let Settings { lines, silhouettes, hidden_lines, smooth, shadows, .. } = self.settings;
         let which = match lines {
             Lines::All => EdgeChoice::All,
             Lines::Sharp => EdgeChoice::Sharp,
@@ -19,7 +20,15 @@ impl App {
         let edges = (which != EdgeChoice::None || silhouettes).then_some(edges);
         let smooth = if smooth { Smooth::Borders } else { Smooth::None };
         let curvature = self.ui.style.is_curvature();
-        SceneSettings { edges, smooth, curvature, editable: self.ui.trims, ..SceneSettings::default() }
+        SceneSettings {
+            edges,
+            smooth,
+            curvature,
+            ambient: ambient_radius(&self.session.world, &self.settings),
+            sun: shadows.then_some(SUN),
+            editable: self.ui.trims,
+            ..SceneSettings::default()
+        }
     }
 
     /// Settings of the pictures in the window.
@@ -34,8 +43,9 @@ impl App {
 
     /// Hovered and selected items, by the numbers of the shown picture.
     pub fn marks(&self) -> (Option<Mark>, Vec<Mark>) {
-        let Some(shown) = self.opened.as_ref().and_then(|o| o.engine.shown()) else { return (None, Vec::new()) };
-        let number = |instance: usize| shown.instances.iter().position(|i| *i == instance).map(|i| i as u32 + 1);
+        let numbers = self.opened.as_ref().and_then(|o| o.engine.instances_of(&self.session.world));
+        let Some(numbers) = numbers else { return (None, Vec::new()) };
+        let number = |instance: usize| numbers.binary_search(&instance).ok().map(|i| i as u32 + 1);
         let mark = |picked: &Picked| match *picked {
             Picked::Face { instance, face, .. } => {
                 let part = self.session.world.model.instances.get(instance)?.part;

@@ -3,7 +3,7 @@
 //! ```text
 //!   winit ─events─▶ App ─▶ View (camera), Session (what is shown), panels (egui)
 //!                    │
-//!                    ├─▶ Engine: uploads in a thread
+//!                    ├─▶ Engine: changes in place, uploads in a thread
 //!                    └─▶ Screen: a frame when something has changed; none otherwise
 //! ```
 
@@ -12,7 +12,9 @@ mod composite;
 mod context;
 mod engine;
 mod events;
+mod living;
 mod look;
+mod opening;
 mod photograph;
 mod screen;
 mod swapchain;

@@ -83,7 +83,7 @@ impl App {
     /// Draws the view again, and judges it in a thread.
     pub fn check(&mut self) {
         let (camera, settings) = (*self.view.camera(), self.frame_settings());
-        let Some(shown) = self.opened.as_ref().and_then(|o| o.engine.shown()).map(Arc::clone) else { return };
+        let Some((model, hidden)) = self.opened.as_ref().and_then(|o| o.engine.model()) else { return };
         let Some(photograph) = self.photograph(&camera, settings) else { return };
         self.ui.tell("The view is being checked against exact rays.".to_owned());
         let (proxy, limit_px) = (self.proxy.clone(), settings.tolerance_px);
@@ -91,7 +91,10 @@ impl App {
             let Photograph { size, depth, face, normal, .. } = &photograph;
             let images = Images { size: *size, depth, face, normal, ..Images::default() };
             let options = JudgeOptions { samples: Some(JUDGED), limit_px, listed: 1000, ..JudgeOptions::default() };
-            let judgement = judge(&Tracer::new(&shown.model), &camera, &images, &options);
+            let visible = model.instances.iter().enumerate().filter(|(nth, _)| !hidden.contains(nth));
+            let instances = visible.map(|(_, placed)| placed.clone()).collect();
+            let seen = Model { instances, ..Model::clone(&model) };
+            let judgement = judge(&Tracer::new(&seen), &camera, &images, &options);
             let wrong = judgement.wrong + judgement.folds.beyond + judgement.folds.wrong_depth;
             let pixels = judgement.mismatches.iter().map(|m| m.pixel).collect();
             tracing::info!("checked {} pixels: {wrong} wrong", judgement.sampled);

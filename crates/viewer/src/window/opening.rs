@@ -1,0 +1,75 @@
+//! Opens the window and its device, and closes both.
+
+use super::app::{App, Event, Opened};
+use super::context::DeviceOptions;
+use super::engine::Engine;
+use super::screen::Screen;
+use super::waiter::Waiter;
+use super::{Closed, ViewError, ViewOptions};
+use std::sync::Arc;
+use winit::event_loop::ActiveEventLoop;
+use winit::window::Window;
+
+impl App {
+    /// Opens window and device; begins to read the files.
+    pub fn open_window(&mut self, events: &ActiveEventLoop) -> Result<(), ViewError> {
+        let mut attributes = Window::default_attributes().with_title("selvedge");
+        if let Some((width, height)) = self.options.size {
+            attributes = attributes.with_inner_size(winit::dpi::LogicalSize::new(width, height));
+        }
+        let window = events.create_window(attributes).map_err(|e| ViewError::Window(e.to_string()))?;
+        let window = Arc::new(window);
+        let scale = Some(window.scale_factor() as f32);
+        let root = egui::ViewportId::ROOT;
+        let input = egui_winit::State::new(self.context.clone(), root, &window, scale, window.theme(), None);
+        self.watch_panels();
+        let (waiter, engine, screen) = self.open_device(&window)?;
+        tracing::info!("window on {} after {:.0?}", screen.context.name, self.begun.elapsed());
+        self.opened = Some(Opened { window, input, waiter, engine, screen });
+        for file in std::mem::take(&mut self.options.files) {
+            self.load(file);
+        }
+        self.redraw();
+        Ok(())
+    }
+
+    /// Panels that move draw themselves again.
+    pub fn watch_panels(&self) {
+        let proxy = self.proxy.clone();
+        self.context.set_request_repaint_callback(move |info| {
+            if info.delay.is_zero() {
+                drop(proxy.send_event(Event::Repaint));
+            }
+        });
+    }
+
+    /// Opens the device, with a renderer on it.
+    pub fn open_device(&mut self, window: &Window) -> Result<(Waiter, Engine, Screen), ViewError> {
+        let ViewOptions { device, validation, .. } = &self.options;
+        let options = DeviceOptions { device: device.clone(), validation: *validation, ..Default::default() };
+        let screen = Screen::new(window, &options)?;
+        let engine = Engine::new(screen.renderer()?);
+        self.devices += 1;
+        let (proxy, device) = (self.proxy.clone(), self.devices);
+        let done = move |result| drop(proxy.send_event(Event::FrameDone(device, result)));
+        Ok((Waiter::new(screen.context.device.clone(), done), engine, screen))
+    }
+
+    /// Frees everything.
+    pub fn close(mut self) -> Result<Closed, ViewError> {
+        for loading in &self.loading {
+            loading.loader.cancel();
+        }
+        if let Some(Opened { window, input, waiter, mut engine, screen }) = self.opened.take() {
+            engine.wait();
+            screen.context.wait();
+            drop((waiter, engine, input));
+            self.messages.extend(screen.shutdown());
+            drop(window);
+        }
+        match self.failed {
+            Some(error) => Err(error),
+            None => Ok(Closed { messages: self.messages }),
+        }
+    }
+}

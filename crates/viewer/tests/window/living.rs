@@ -1,0 +1,122 @@
+//! Parts that are hidden and shown, cut, and trims that are dragged.
+
+use super::hand::{Display, Program, numbers};
+use super::{Screen, opened};
+use glam::DVec2;
+use selvedge::model::SurfaceKind;
+use selvedge_viewer::measure::cut;
+use selvedge_viewer::session::{Picked, Session};
+use std::sync::Arc;
+
+/// The scene changed in place: nothing was uploaded, and no upload is on its way.
+fn is_in_place(said: &[String]) -> bool {
+    let has = |what: &str| said.iter().any(|line| line.contains(what));
+    has("changed in place") && !has("uploaded") && !has("an upload is needed")
+}
+
+/// Sends a key that needs an upload, and waits for its picture.
+fn upload(program: &mut Program, display: &Display, key: &str) {
+    display.key(key);
+    program.wait("uploaded");
+    program.wait("picture of");
+    program.rest();
+}
+
+#[test]
+fn parts_are_hidden_and_shown_without_an_upload() {
+    let Some(screen) = Screen::open((900, 560)) else { return };
+    let display = &screen.display;
+    let (_folder, mut program, scene) = opened(display, "assembly.step");
+    let (at, before, behind) = scene.behind();
+    let first = program.picture(display);
+    let shows = |program: &mut Program, face: u32, instance: usize| {
+        display.click(at);
+        let selected = program.wait("selected ");
+        let wanted = format!("#{face} of {}", scene.world.instance_name(instance));
+        assert!(selected.contains(&wanted), "{selected} instead of {wanted}");
+        program.rest();
+    };
+    shows(&mut program, before.face, before.instance);
+    assert!(is_in_place(&program.after(|| display.key("h"))));
+    assert!(program.picture(display) != first, "the part is hidden");
+    shows(&mut program, behind.face, behind.instance);
+    assert!(is_in_place(&program.after(|| display.key("a"))));
+    assert!(program.picture(display) == first, "as it was, pixel by pixel");
+    assert!(is_in_place(&program.after(|| display.key("ctrl+z"))));
+    assert!(is_in_place(&program.after(|| display.key("ctrl+shift+z"))));
+    shows(&mut program, before.face, before.instance);
+    assert!(is_in_place(&program.after(|| display.key("i"))));
+    assert!(is_in_place(&program.after(|| display.key("a"))));
+
+    // rays are followed through glass: that is another scene, also for what is hidden in it
+    shows(&mut program, before.face, before.instance);
+    upload(&mut program, display, "x");
+    assert!(program.picture(display) != first, "the part is of glass");
+    upload(&mut program, display, "ctrl+z");
+    assert!(program.picture(display) == first, "as it was, pixel by pixel");
+    program.close(display);
+}
+
+#[test]
+fn a_section_at_a_face_follows_its_handle() {
+    let Some(screen) = Screen::open((900, 560)) else { return };
+    let display = &screen.display;
+    let (_folder, mut program, scene) = opened(display, "assembly.step");
+    let (bounds, forward) = (scene.world.bounds, scene.camera.axes().2);
+    // its arrow is long enough to be gripped
+    let is_slanted = |normal: glam::DVec3| normal.dot(forward).abs() < 0.8;
+    let (at, hit) = scene.place(|hit, face| face.kind == SurfaceKind::Plane && is_slanted(hit.normal));
+    let mut session = Session { world: Arc::clone(&scene.world), ..Session::default() };
+    session.select(Some(Picked::Face { instance: hit.instance, face: hit.face_index, uv: hit.uv }), false);
+    let section = cut::at_selection(&session).expect("a plane");
+    display.click(at);
+    program.wait("selected ");
+    program.rest();
+    upload(&mut program, display, "c");
+    let offset = |line: &str| numbers(line, "--section=")[3];
+    let line = program.command(display);
+    assert!((offset(&line) - section.offset).abs() < 1e-9 * bounds.diagonal(), "{line}");
+
+    display.screen().keep("section.png");
+
+    // into the material
+    let middle = bounds.centre();
+    let foot = |offset: f64| middle + section.normal * (offset - section.normal.dot(middle));
+    let place = |offset: f64| scene.in_window(&scene.camera, foot(offset));
+    let along = (place(section.offset + 0.08 * bounds.diagonal()) - place(section.offset)).normalize();
+    let (from, by) = (place(section.offset).round(), -30.0 * along);
+    display.drag(1, from, by);
+    program.wait("uploaded");
+    program.rest();
+    let dragged = offset(&program.command(display));
+    assert!(dragged < section.offset);
+    // the cursor has whole pixels, a step is linear in perspective, and the plane may snap to a face four pixels away
+    let off = (place(dragged) - (from + by)).dot(along);
+    assert!(off.abs() < 8.0, "{off} pixels from the hand");
+    upload(&mut program, display, "ctrl+z");
+    let undone = offset(&program.command(display));
+    assert!((undone - section.offset).abs() < 1e-9 * bounds.diagonal());
+    program.close(display);
+}
+
+#[test]
+fn a_trim_follows_the_hand_without_an_upload() {
+    let Some(screen) = Screen::open((900, 560)) else { return };
+    let display = &screen.display;
+    let (_folder, mut program, scene) = opened(display, "bracket.step");
+    let (at, hit) = scene.place(|_, face| face.kind == SurfaceKind::Plane && face.loops.len() > 1);
+    display.click(at);
+    program.wait("selected ");
+    program.rest();
+    upload(&mut program, display, "t");
+    let (face, placed) = (&scene.faces()[hit.face_index], &scene.world.model.instances[hit.instance]);
+    let points = face.loops[1..].iter().flat_map(|l| l.curves().collect::<Vec<_>>()).map(|curve| curve.points[0]);
+    let uvs = points.map(|p| p.truncate() / p.z);
+    let places = uvs.map(|uv| placed.transform.transform_point3(face.surface.point(uv.x, uv.y)));
+    let mut places = places.map(|p| scene.in_window(&scene.camera, p).round());
+    let grip = places.find(|place| scene.is_in_view(*place)).expect("a point of a hole is seen");
+    let said = program.after(|| display.drag(1, grip, DVec2::new(6.0, 4.0)));
+    assert!(is_in_place(&said), "{}", said.join("\n"));
+    assert!(is_in_place(&program.after(|| display.key("ctrl+z"))));
+    program.close(display);
+}
