@@ -1,5 +1,5 @@
-//! Twin of the passes `part_counts`, `part_runs` and `cull_parts`: lists of the placed parts in sight, and the parts that
-//! are hidden as a whole.
+//! Twin of the passes `part_counts`, `part_runs` and `cull_parts`: lists of the placed parts in sight, and the parts
+//! that are hidden as a whole.
 
 use super::grid::grid_of;
 use super::occlusion::Farthest;
@@ -15,8 +15,8 @@ pub fn is_listed(list: u32, before: bool, now: bool) -> bool {
     }
 }
 
-/// The numbers of patch instances of all parts in sight, 0 for those that are not listed; then whether a run begins with
-/// each. Sets `hidden_parts` of the counters, and `before` for the first list.
+/// The numbers of patch instances of all parts in sight, 0 for those that are not listed; then whether a run begins
+/// with each. Sets `hidden_parts` of the counters, and `before` for the first list.
 pub fn part_counts(
     list: u32,
     parts: &[PartInSight],

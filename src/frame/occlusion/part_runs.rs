@@ -6,7 +6,8 @@
 //!                           ─▶ listed: dispatches
 //! ```
 //!
-//! Reads: `parts_in_sight`, `counts`, `starts`. Writes: `frame`, `runs`, `listed`, `counters`. Twin: `src/twin/parts.rs`.
+//! Reads: `parts_in_sight`, `counts`, `starts`. Writes: `frame`, `runs`, `listed`, `counters`.
+//! Twin: `src/twin/parts.rs`.
 
 use crate::abi::PartList;
 use crate::frame::common::kernel::Kernel;

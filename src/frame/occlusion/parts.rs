@@ -10,9 +10,9 @@
 //!   list "all"        both ─▶ cull_late … visibility again
 //! ```
 //!
-//! A part is hidden if every pixel of a rectangle shows something nearer than a depth. Rectangle and depth come from a
-//! box around everything that is drawn of the part (`scene/in_sight/drawn.rs`). So every fragment of the part would fail
-//! the depth test, and the picture is the same bit for bit. A part that was hidden and is no longer certainly hidden is
+//! A part is hidden if every pixel of a rectangle shows something nearer than a depth. Rectangle and depth come from
+//! a box around everything that is drawn of the part (`scene/in_sight/drawn.rs`). So every fragment of the part would
+//! fail the depth test, and the picture is the same bit for bit. A part that was hidden and is no longer certainly hidden is
 //! drawn in the same frame.
 //!
 //! The lists are made on the GPU, so passes over patches take their number of threads from there

@@ -131,8 +131,8 @@ fn skirts(patch: &Patch, borders: u32) -> Vec<Patch> {
 
 impl PlacedBox {
     /// A reversed depth that nothing drawn of the part exceeds, and the first and last pixel of a rectangle with all
-    /// that is drawn, column and row in 16 bits each. `None` if the part reaches the near plane or is beside the picture,
-    /// or if its box is not known.
+    /// that is drawn, column and row in 16 bits each. `None` if the part reaches the near plane or is beside the
+    /// picture, or if its box is not known.
     fn in_picture(&self, pixels: DMat4, placement: DAffine3, camera: &Camera) -> Option<(f32, [u32; 2])> {
         let drawn = self.drawn?;
         let rows = (pixels * DMat4::from(placement)).transpose();
