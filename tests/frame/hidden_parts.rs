@@ -22,7 +22,7 @@ fn middle() -> DVec3 {
 }
 
 /// A block before a hall of cubes and plates. The block is instance 0.
-fn hall() -> Model {
+pub fn hall() -> Model {
     let mut model = Model::default();
     model.parts.extend(shapes::cube().parts.into_iter().chain(shapes::plate().parts));
     let placed = |part: usize, transform: DAffine3| Instance { part, ..shapes::placed(transform, None) };
