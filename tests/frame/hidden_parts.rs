@@ -62,7 +62,7 @@ fn alone(renderer: &mut HeadlessRenderer, model: &Model, settings: SceneSettings
     picture
 }
 
-/// Of each view, the stats of two pictures: the first after another view, the second of the same view.
+/// Two pictures of each view: the first after another view, the second after the same view.
 fn same_as_alone(model: &Model, settings: SceneSettings, views: &[Camera]) -> Vec<[Picture; 2]> {
     let mut renderer = watched_with(model, settings);
     let mut other = watched_with(model, settings);
