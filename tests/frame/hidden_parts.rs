@@ -6,7 +6,7 @@ use crate::support::{assert_identical, assert_silent, render, watched_with};
 use glam::{DAffine3, DVec3};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Instance, Model, Projection};
-use selvedge::picture::{Picture, SceneSettings, TrimWay};
+use selvedge::picture::{EdgeSettings, Picture, SceneSettings, Smooth, TrimWay};
 
 const SIZE: (u32, u32) = (200, 150);
 /// Parts along each side of the hall.
@@ -106,6 +106,19 @@ fn nothing_shows_that_parts_are_left_out() {
             let (hidden, listed, patches) = most(stats(view, 0));
             assert!(hidden < 100 && listed > patches / 2, "{trim:?}, view {view}: {:?}", (hidden, listed, patches));
         }
+    }
+}
+
+/// Smooth borders look between the pixels' centres, and lines are drawn over the picture.
+#[test]
+fn smooth_borders_and_lines_show_nothing_of_it_either() {
+    let model = hall();
+    let views = [90.0, 93.0, 97.0].map(|x| before_the_block(DVec3::X * x));
+    let smooth = SceneSettings { smooth: Smooth::Borders, ..SceneSettings::default() };
+    let lines = SceneSettings { edges: Some(EdgeSettings::default()), ..SceneSettings::default() };
+    for settings in [smooth, lines] {
+        let pictures = same_as_alone(&model, settings, &views);
+        assert!(pictures[2][1].stats.hidden_parts > 20, "{} parts", pictures[2][1].stats.hidden_parts);
     }
 }
 
