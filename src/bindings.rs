@@ -58,7 +58,7 @@ pub(crate) struct Bounded<'a> {
     pub cones: Option<&'a Buffer>,
     /// Control points.
     pub points: &'a TexelBuffer,
-    /// [`PatchRun`](crate::abi::PatchRun)s of the patch instances in sight.
+    /// [`PatchRun`](crate::abi::PatchRun)s of the listed patch instances.
     pub in_sight: &'a Buffer,
 }
 

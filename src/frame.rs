@@ -44,6 +44,8 @@ use crate::gpu::{
 use crate::scene::Scene;
 use antialiasing::samples::Scopes;
 use capacities::Capacities;
+use common::Listed;
+use common::kernel::Threads;
 use counts::Counts;
 use shading::resolve;
 use std::ops::Range;
@@ -89,6 +91,8 @@ pub(crate) struct Frame<'a> {
     pub in_sight: &'a Buffer,
     /// Number of patch instances in sight.
     pub patch_instances_in_sight: u32,
+    /// [`PartInSight`](crate::abi::PartInSight)s and their number, in a scene with occlusion culling of whole parts.
+    pub parts_in_sight: Option<(&'a Buffer, u32)>,
     /// Constants and transforms for each of a pixel's samples; empty with one sample.
     pub samples: &'a [ViewBuffers],
     /// The view for which the trim table is made; `None` if it is this view.
@@ -127,6 +131,20 @@ impl<'a> Frame<'a> {
     /// The trim test's resources, in its order; empty if no patch is trimmed.
     fn trim_test(&self) -> Vec<Resource<'a>> {
         self.stages.trim.as_ref().map_or_else(Vec::new, |trim| trim.test(self))
+    }
+
+    /// The patch instances that passes over patches look at.
+    fn listed(&self) -> Listed<'a> {
+        let parts = self.stages.occlusion.as_ref().and_then(|occlusion| occlusion.listed());
+        parts.unwrap_or(Listed { runs: self.in_sight, threads: Threads::Host(self.patch_instances_in_sight) })
+    }
+
+    /// The placed parts in sight and their number.
+    ///
+    /// # Panics
+    /// In a scene without occlusion culling of whole parts.
+    fn parts_in_sight(&self) -> (&'a Buffer, u32) {
+        self.parts_in_sight.expect("the slot has written them")
     }
 
     /// The volume that trims the scene; `None` without one.

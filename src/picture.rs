@@ -397,8 +397,13 @@ pub struct FrameStats {
     /// frame.
     pub clamps: u64,
     /// Patches that were not drawn because other surfaces hide them; 0 in the first frames of a scene, before any
-    /// occlusion test.
+    /// occlusion test. Patches of [`hidden_parts`](Self::hidden_parts) are not among them.
     pub hidden_patches: u64,
+    /// Placed parts in the picture that other surfaces hide as a whole, so that no pass looked at their patches. 0 in
+    /// the first frames of a scene, and in scenes of few placed parts.
+    pub hidden_parts: u64,
+    /// Patches that passes looked at: those of placed parts in the picture, without `hidden_parts`.
+    pub listed_patches: u64,
     /// Crossings of rays with operands of Boolean solids that are meshes or spline parts.
     pub fragments: u64,
     /// Rays among those that pass through a gap between two faces of an operand, and were given the nearest face beside

@@ -294,6 +294,7 @@ impl Renderer {
             views,
             in_sight,
             patch_instances_in_sight: slot.patch_instances_in_sight,
+            parts_in_sight: slot.parts_in_sight.as_ref().map(|parts| (parts, slot.part_count)),
             samples: &slot.samples,
             table_view: slot.table.as_ref(),
             centres: slot.centres.solids(),

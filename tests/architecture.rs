@@ -77,6 +77,7 @@ const RECORDS: &[&str] = &[
     "src/frame/edges/solid_lines.rs",
     "src/frame/gaps/mod.rs",
     "src/frame/occlusion/mod.rs",
+    "src/frame/occlusion/parts.rs",
     "src/frame/shading/contact.rs",
     "src/frame/shading/linear.rs",
     "src/frame/shading/mod.rs",

@@ -8,13 +8,12 @@
 #ifndef BEHIND_GLSL
 #define BEHIND_GLSL
 
-#include "depth_pyramid.glsl"
+#include "nearer.glsl"
 #include "push.glsl"
 
 const float CELL_PX = 32.0;
 const uint OUTSIDE_CELLS = 8u;
 const uint MOST_CELLS = 8u; // along each parameter
-const uint MOST_SQUARES = 10u; // tested along each axis of a cell; larger squares if a cell covers more
 const float DEPTH_ROUNDING = 1e-5; // of interpolated depths: more than STAND_BACK and rounding
 const float PUSH_SLACK = 2.0; // factor: skirts may be pushed farther between a cell's corners
 
@@ -55,22 +54,6 @@ void cover(inout Cover c, vec4 q) {
     c.depth = min(c.depth, q.z);
 }
 
-// Whether every square of this side, from the first to the last, is nearer than `z`. False if the loop ends early:
-// llvmpipe ends loops of a shader after too many steps.
-bool all_nearer(uvec2 first, uvec2 last, uint side, float z) {
-    uint base = first_square(frame, side);
-    uint across = square_count(frame, side).x;
-    uint asked = 0u;
-    for (uint y = first.y; y <= last.y; ++y) {
-        for (uint x = first.x; x <= last.x; ++x) {
-            ++asked;
-            if (!(farthest[base + y * across + x] > z)) return false;
-        }
-    }
-    uvec2 all_ = last - first + 1u;
-    return asked == all_.x * all_.y;
-}
-
 // Whether every pixel of the cover, and of `reach` pixels around it, shows something nearer.
 bool is_covered(Cover c, float reach) {
     vec2 low = max(floor(c.low - reach), 0.0);
@@ -78,10 +61,7 @@ bool is_covered(Cover c, float reach) {
     if (any(greaterThan(low, high))) return true; // outside the picture
     float z = reversed_depth(frame, c.depth) / (frame.perspective != 0u ? c.depth : 1.0);
     z += DEPTH_ROUNDING * z;
-    uint side = TILE * BLOCK;
-    if (all(lessThan(uvec2(high) / TILE - uvec2(low) / TILE, uvec2(MOST_SQUARES)))) side = TILE;
-    if (all(lessThan(uvec2(high) / SQUARE - uvec2(low) / SQUARE, uvec2(MOST_SQUARES)))) side = SQUARE;
-    return all_nearer(uvec2(low) / side, uvec2(high) / side, side, z);
+    return all_pixels_nearer(uvec2(low), uvec2(high), z);
 }
 
 // The cover of a cell of `n` x `n`, for triangles with segments of this size, including skirts beyond borders (with

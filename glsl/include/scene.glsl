@@ -158,8 +158,8 @@ struct Frame {
     float chord_px;     // budget of a trim curve's linear segments
     float table_density; // pixels a model unit of the trim table, for every view; 0: those of this view
     uint fixed_factor;  // of every patch; 0: the factor of pass `bound`
-    uint patch_instances_in_sight; // placed patches of placed parts that are in sight
-    uint run_count;     // runs of consecutive patch instances in sight (in_sight.glsl)
+    uint patch_instances_in_sight; // placed patches of placed parts that are in sight; of listed ones (parts.glsl)
+    uint run_count;     // runs of consecutive patch instances among them (in_sight.glsl)
     uint cell_count;
     uint bin_count;     // of all strips of all placed faces
     uint curve_count;
@@ -230,7 +230,9 @@ struct Counters {
     uint overlaps;
     uint layers;       // peeled by way `blister`
     uint ray_segments;         // of rays through Boolean solids that did not reach their ends
-    uint hidden;       // patches that are not drawn because they are hidden
+    uint hidden;       // patches of listed parts that are not drawn because they are hidden
+    uint hidden_parts; // placed parts in sight that are not listed because they are hidden (parts.glsl)
+    uint listed_patches; // patch instances of the listed parts
     uint edge_chords;  // of lines along edges
     uint clamps;       // factors or densities above their hard limits, loops that a driver ended
     uint failed;       // one bit for each buffer that was too small, and for passes drawn too seldom

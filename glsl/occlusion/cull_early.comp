@@ -5,6 +5,9 @@
 // they may be visible. One thread for each patch instance in sight. Twin: src/twin/occlusion.rs.
 #include "scene.glsl"
 
+// All patches were hidden: those of parts that were hidden as a whole.
+layout(constant_id = 40) const bool ALL_WERE_HIDDEN = false;
+
 layout(local_size_x = 64) in;
 #include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
@@ -19,7 +22,7 @@ void main() {
     if (place >= frame.patch_instances_in_sight) return;
     uint patch_instance = patch_instance_at(place);
     if (taus[patch_instance] == 0u) return;
-    if (hidden[patch_instance] == 0u) return;
+    if (!ALL_WERE_HIDDEN && hidden[patch_instance] == 0u) return;
     taus[patch_instance] |= TAU_HIDDEN;
     atomicAdd(counters.hidden, 1u);
 }

@@ -19,7 +19,6 @@ pub mod behind {
     pub const CELL_PX: f32 = 32.0;
     pub const DEPTH_ROUNDING: f32 = 1e-5;
     pub const MOST_CELLS: u32 = 8;
-    pub const MOST_SQUARES: u32 = 10;
     pub const OUTSIDE_CELLS: u32 = 8;
     pub const PUSH_SLACK: f32 = 2.0;
 }
@@ -206,8 +205,20 @@ pub mod mesh_walk {
     pub const WALK_TOO_FAR: u32 = 2;
     pub const WEIGHT_ROUNDING: f32 = 1e-5;
 }
+pub mod nearer {
+    pub const MOST_SQUARES: u32 = 10;
+}
 pub mod on_pixel {
     pub const ON_PIXEL_PX: f32 = 0.05;
+}
+pub mod part_runs {
+    pub const SCAN_BLOCK: u32 = 1024;
+    pub const THREADS: u32 = 64;
+}
+pub mod parts {
+    pub const LIST_ALL: u32 = 2;
+    pub const LIST_APPEARING: u32 = 1;
+    pub const LIST_FIRST: u32 = 0;
 }
 pub mod patch_normal {
     pub const FIRST_INWARDS: f32 = 1e-3;

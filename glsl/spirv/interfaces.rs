@@ -1,5 +1,6 @@
 // Written by build.rs from the shaders: what they need of their pipelines.
 pub mod constant {
+    pub const ALL_WERE_HIDDEN: u32 = 40;
     pub const ASKS_FIRST: u32 = 38;
     pub const BEHIND: u32 = 18;
     pub const COUNT_ON_GPU: u32 = 22;
@@ -95,9 +96,12 @@ pub(super) const GAP_FILL_TABLE_COMP: Interface = Interface { group: [64, 1, 1],
 pub(super) const GAP_FILL_TABLE_VOLUME_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 0, bindings: &[Binding::Uniform, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer, Binding::StorageImage, Binding::Storage, Binding::Storage, Binding::TexelBuffer, Binding::StorageImage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer, Binding::Storage, Binding::TexelBuffer, Binding::TexelBuffer, Binding::TexelBuffer], constants: &[0, 4, 5, 20] };
 pub(super) const GAP_FIND_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 0, bindings: &[Binding::Uniform, Binding::StorageImage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Sampled, Binding::Sampled], constants: &[4] };
 pub(super) const GAP_WRITE_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 0, bindings: &[Binding::Uniform, Binding::StorageImage, Binding::Storage, Binding::Storage], constants: &[4] };
-pub(super) const CULL_EARLY_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 0, bindings: &[Binding::Uniform, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage], constants: &[] };
+pub(super) const CULL_EARLY_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 0, bindings: &[Binding::Uniform, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage], constants: &[40] };
 pub(super) const CULL_LATE_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 0, bindings: &[Binding::Uniform, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::TexelBuffer, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage], constants: &[0] };
+pub(super) const CULL_PARTS_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 8, bindings: &[Binding::Uniform, Binding::Storage, Binding::Storage, Binding::Storage], constants: &[] };
 pub(super) const DEPTH_PYRAMID_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 0, bindings: &[Binding::Uniform, Binding::Sampled, Binding::Storage], constants: &[] };
+pub(super) const PART_COUNTS_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 8, bindings: &[Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage], constants: &[] };
+pub(super) const PART_RUNS_COMP: Interface = Interface { group: [64, 1, 1], push_bytes: 8, bindings: &[Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage, Binding::Storage], constants: &[] };
 pub(super) const AMBIENT_FIND_COMP: Interface = Interface { group: [8, 8, 1], push_bytes: 4, bindings: &[Binding::Uniform, Binding::StorageImage, Binding::StorageImage], constants: &[] };
 pub(super) const AMBIENT_WRITE_COMP: Interface = Interface { group: [8, 8, 1], push_bytes: 4, bindings: &[Binding::Uniform, Binding::StorageImage, Binding::StorageImage], constants: &[] };
 pub(super) const LINEAR_SHOW_FRAG: Interface = Interface { group: [0, 0, 0], push_bytes: 0, bindings: &[Binding::Uniform, Binding::StorageImage], constants: &[] };

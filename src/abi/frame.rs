@@ -104,6 +104,8 @@ pub struct Counters {
     pub layers: u32,
     pub ray_segments: u32,
     pub hidden: u32,
+    pub hidden_parts: u32,
+    pub listed_patches: u32,
     pub edge_chords: u32,
     pub clamps: u32,
     pub failed: u32,

@@ -1,5 +1,5 @@
 //! The structures that Rust and GLSL share, in scalar layout. Twins of `glsl/include/scene.glsl`,
-//! `view.glsl`, `border_pixel.glsl`, `border_seen.glsl`, `edges.glsl`, `exact.glsl`, `solids.glsl`, `tiles.glsl` and `sun.glsl`; the build asserts every offset and stride
+//! `view.glsl`, `parts.glsl`, `border_pixel.glsl`, `border_seen.glsl`, `edges.glsl`, `exact.glsl`, `solids.glsl`, `tiles.glsl` and `sun.glsl`; the build asserts every offset and stride
 //! against the compiled shaders.
 
 // the GLSL states the meaning and units of the fields; the build compares both
@@ -9,6 +9,7 @@ mod borders;
 mod edges;
 mod exact;
 mod frame;
+mod parts;
 mod scan;
 mod scene;
 mod solids;
@@ -18,6 +19,7 @@ pub use borders::*;
 pub use edges::*;
 pub use exact::*;
 pub use frame::*;
+pub use parts::*;
 pub use scan::ScanParams;
 pub use scene::*;
 pub use solids::*;

@@ -12,6 +12,7 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Counts {
     pub patch_instances: u32,
+    pub placed_parts: u32,
     pub cells: u32,
     pub bins: u32,
     /// v-strips with several bins.
@@ -22,6 +23,8 @@ pub(crate) struct Counts {
     pub views_all: bool,
     /// The scene has occlusion culling.
     pub hides: bool,
+    /// The same of placed parts as wholes.
+    pub hides_parts: bool,
     /// Patches or meshes are drawn as surfaces of their own.
     pub has_surfaces: bool,
     /// Leaves of Boolean solids.
@@ -68,6 +71,7 @@ impl Counts {
         let by_view = !matches!(data.trim_way(), None | Some(TakenWay::Exact)) || data.has_lines();
         Self {
             patch_instances: data.patch_instances.len() as u32,
+            placed_parts: count(data.instances.len()),
             cells: data.cell_instances.len() as u32,
             bins: data.bin_count,
             wide_strips: count(data.wide_strips.len()),
@@ -75,6 +79,7 @@ impl Counts {
             face_instances: data.face_instances.len() as u32,
             views_all: by_view || data.has_meshes() || data.has_operands || !data.solids.leaves.is_empty(),
             hides: data.hides(),
+            hides_parts: data.hides_parts(),
             has_surfaces: data.has_surfaces(),
             leaves: data.solids.leaves.len() as u32,
             boundary_operands: data.solids.operand_leaves.len() as u32,
@@ -100,11 +105,20 @@ impl Counts {
     }
 
     /// What grows when a model joins the scene.
-    fn sizes(&mut self) -> [&mut u32; 8] {
+    fn sizes(&mut self) -> [&mut u32; 9] {
         let Self {
-            patch_instances, cells, bins, wide_strips, curves, face_instances, triangles, mesh_instances, ..
+            patch_instances,
+            placed_parts,
+            cells,
+            bins,
+            wide_strips,
+            curves,
+            face_instances,
+            triangles,
+            mesh_instances,
+            ..
         } = self;
-        [patch_instances, cells, bins, wide_strips, curves, face_instances, triangles, mesh_instances]
+        [patch_instances, placed_parts, cells, bins, wide_strips, curves, face_instances, triangles, mesh_instances]
     }
 
     /// With those of a model that joins the scene: parts, and nothing that the scene has none of.

@@ -63,6 +63,8 @@ mod occlusion;
 #[cfg(feature = "headless")]
 mod operand_sort;
 #[cfg(feature = "headless")]
+mod parts;
+#[cfg(feature = "headless")]
 mod reset;
 #[cfg(feature = "headless")]
 mod segments;

@@ -34,13 +34,14 @@ fn taus(case: &Case) -> Vec<u32> {
     twin::bound::bound(&case.frame, &case.scene(), &mut Counters::default())
 }
 
-fn compare_cull_early(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<(), Mismatch> {
+/// `all`: all patches count as hidden, whatever `given` says.
+fn compare_cull_early(gpu: &Gpu, case: &Case, all: bool, given: &[u32], expected: &[u32]) -> Result<(), Mismatch> {
     let n = case.data.patch_instances.len();
     let s = SceneBuffers::new(gpu, case);
     let mut twin_taus = taus(case);
     let (hidden, taus) = (gpu.upload("hidden", given), gpu.upload("taus", &twin_taus));
     let counters = gpu.upload("counters", &[Counters::default()]);
-    let pass = cull_early::CullEarly::new(gpu.device()).unwrap();
+    let pass = cull_early::CullEarly::new(gpu.device(), all).unwrap();
     let bindings = cull_early::Bindings {
         frame: &s.frame,
         hidden: &hidden,
@@ -60,11 +61,12 @@ fn parity_of_hide_is_exact_and_sees_a_difference() {
     let case = &crowd()[0];
     let mut random = Random::new(9);
     let hidden: Vec<u32> = case.data.patch_instances.iter().map(|_| u32::from(random.integer(0, 3) > 0)).collect();
-    compare_cull_early(&gpu, case, &hidden, &hidden).unwrap();
+    compare_cull_early(&gpu, case, false, &hidden, &hidden).unwrap();
+    compare_cull_early(&gpu, case, true, &hidden, &vec![1; hidden.len()]).unwrap();
     let mut other = hidden.clone();
     let seen = taus(case).iter().position(|tau| *tau != 0).unwrap();
     other[seen] ^= 1;
-    let mismatch = compare_cull_early(&gpu, case, &other, &hidden).unwrap_err();
+    let mismatch = compare_cull_early(&gpu, case, false, &other, &hidden).unwrap_err();
     assert_eq!((mismatch.buffer, mismatch.index), ("taus", seen));
     gpu.finish();
 }

@@ -31,6 +31,11 @@ impl Renderer {
             return Ok(None);
         }
         let c = if slot.copies.is_none() { slot.read_counters() } else { Counters::default() };
+        let listed = match (slot.copies, slot.counts.hides_parts) {
+            (Some(_), _) => 0,
+            (None, true) => c.listed_patches,
+            (None, false) => slot.patch_instances_in_sight,
+        };
         let scopes = slot.times.read().inspect_err(|error| self.device.note(error))?;
         let stats = FrameStats {
             passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
@@ -45,6 +50,8 @@ impl Renderer {
             gap_candidates: u64::from(c.gap_candidates),
             clamps: u64::from(c.clamps),
             hidden_patches: u64::from(c.hidden),
+            hidden_parts: u64::from(c.hidden_parts),
+            listed_patches: u64::from(listed),
             fragments: u64::from(c.fragments),
             mended: u64::from(c.mended),
             unpaired: u64::from(c.unpaired),

@@ -30,6 +30,9 @@ pub(super) struct Slot {
     pub(super) in_sight: Option<Buffer>,
     /// How many patch instances are in sight.
     pub(super) patch_instances_in_sight: u32,
+    /// [`PartInSight`](abi::PartInSight)s, in a scene with occlusion culling of whole parts; and their number.
+    pub(super) parts_in_sight: Option<Buffer>,
+    pub(super) part_count: u32,
     /// Constants and views for each of a pixel's samples, where there are several.
     pub(super) samples: Vec<ViewBuffers>,
     /// What the trim table is made of, where that is another view.
@@ -69,6 +72,8 @@ impl Slot {
             views: None,
             in_sight: None,
             patch_instances_in_sight: 0,
+            parts_in_sight: None,
+            part_count: 0,
             samples: Vec::new(),
             table: None,
             centres: SlotCentres::default(),
@@ -116,6 +121,7 @@ impl Slot {
             write_views(buffer, loaded, input.camera.pixel_matrix(), &in_sight);
         }
         self.write_in_sight(device, &in_sight)?;
+        self.write_parts(device, loaded, (input.camera, &in_sight))?;
         self.centres.write(device, &loaded.data, input.camera, &mut self.retired)?;
         let centre = constants(device, loaded, input, formats, (history.table.as_ref(), &in_sight));
         self.constants.write(0, &[centre]);
@@ -147,6 +153,30 @@ impl Slot {
             buffer.write(0, &in_sight.runs);
         }
         self.patch_instances_in_sight = in_sight.patch_instances;
+        Ok(())
+    }
+
+    /// Writes the placed parts in sight, for occlusion culling of whole parts.
+    fn write_parts(
+        &mut self,
+        device: &Device,
+        loaded: &Loaded,
+        (camera, in_sight): (&Camera, &InSight),
+    ) -> Result<(), GpuError> {
+        if !loaded.counts.hides_parts {
+            self.retired.extend(self.parts_in_sight.take().map(Retired::Buffer));
+            return Ok(());
+        }
+        let parts = loaded.data.parts_in_sight(camera, &in_sight.parts);
+        let bytes = size_of_val(parts.as_slice()) as u64;
+        if self.parts_in_sight.as_ref().is_none_or(|b| b.bytes() < bytes) {
+            let made = upload_buffer(device, "parts in sight", bytes.next_power_of_two())?;
+            self.retired.extend(self.parts_in_sight.replace(made).map(Retired::Buffer));
+        }
+        if let Some(buffer) = &mut self.parts_in_sight {
+            buffer.write(0, &parts);
+        }
+        self.part_count = parts.len() as u32;
         Ok(())
     }
 

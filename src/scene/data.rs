@@ -162,6 +162,9 @@ impl SceneData {
         if !self.hides() {
             self.outside = Vec::new();
         }
+        if self.hides_parts() {
+            self.find_drawn();
+        }
         self
     }
 

@@ -20,6 +20,8 @@ use glam::{DAffine3, DMat4, DVec3, DVec4};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
+mod drawn;
+
 /// Placed parts of one task.
 const CHUNK: usize = 2048;
 /// Pixels by which the picture is wider on each side than in pass `bound`, for the rounding there in single precision.
@@ -29,12 +31,19 @@ const ROUNDING_PX: f64 = 0.03125;
 /// Error of a depth in single precision, relative to the sum of the magnitudes of its terms.
 const SINGLE_ROUNDING: f64 = 1e-5;
 
+/// A box in part coordinates.
+#[derive(Clone, Copy, Debug, Default)]
+struct Extent {
+    centre: DVec3,
+    half: DVec3,
+}
+
 /// The box of the patches of a placed part, and its patch instances.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PlacedBox {
-    /// Centre and half size of the box, part coordinates.
-    centre: DVec3,
-    half: DVec3,
+    patches: Extent,
+    /// The box around all that may be drawn of the part; `None` if it is not known, or has no bound.
+    drawn: Option<Extent>,
     /// First patch instance, and number of patch instances; 0 of a part without patches.
     first: u32,
     count: u32,
@@ -80,8 +89,8 @@ pub(super) fn boxes(data: &SceneData) -> Vec<PlacedBox> {
             })
         });
         boxes[first.instance as usize] = PlacedBox {
-            centre: 0.5 * (low + high),
-            half: 0.5 * (high - low),
+            patches: Extent::between(low, high),
+            drawn: None,
             first: first.first_patch_instance,
             count: end - first.first_patch_instance,
             is_operand: data.faces[first.face as usize].flags & abi::FACE_OPERAND != 0,
@@ -100,10 +109,9 @@ struct Range {
     terms: f64,
 }
 
-impl PlacedBox {
-    /// The same of a part that comes behind so many patch instances; one without any stays as it is.
-    pub(super) fn behind(self, patch_instances: u32) -> Self {
-        Self { first: if self.count > 0 { self.first + patch_instances } else { 0 }, ..self }
+impl Extent {
+    fn between(low: DVec3, high: DVec3) -> Self {
+        Self { centre: 0.5 * (low + high), half: 0.5 * (high - low) }
     }
 
     fn range(&self, row: DVec4) -> Range {
@@ -112,13 +120,21 @@ impl PlacedBox {
         let terms = size.dot(self.centre.abs()) + reach + row.w.abs();
         Range { middle: linear.dot(self.centre) + row.w, reach, terms }
     }
+}
+
+impl PlacedBox {
+    /// The same of a part that comes behind so many patch instances; one without any stays as it is.
+    pub(super) fn behind(self, patch_instances: u32) -> Self {
+        Self { first: if self.count > 0 { self.first + patch_instances } else { 0 }, ..self }
+    }
 
     /// Whether pass `bound` may draw a patch of the box.
     fn is_in_sight(&self, pixels: DMat4, placement: DAffine3, camera: &Camera, reach: Reach) -> bool {
         let (margin, beyond) = (reach.beside_px + SPARE_PX, reach.beyond_px + ROUNDING_PX);
         let rows = (pixels * DMat4::from(placement)).transpose();
         let [x, y, depth, w] = [rows.x_axis, rows.y_axis, rows.z_axis, rows.w_axis];
-        let of_depth = self.range(depth);
+        let range = |row: DVec4| self.patches.range(row);
+        let of_depth = range(depth);
         let rounding = SINGLE_ROUNDING * of_depth.terms;
         let (near, far) = camera.depth_range;
         let is_before = of_depth.middle + of_depth.reach < near - rounding;
@@ -127,21 +143,21 @@ impl PlacedBox {
             return false;
         }
         let beside = |row: DVec4, size: u32| {
-            let (low, high) = (self.range(row + margin * w), self.range(row - (f64::from(size) + margin) * w));
+            let (low, high) = (range(row + margin * w), range(row - (f64::from(size) + margin) * w));
             low.middle + low.reach < 0.0 || high.middle - high.reach > 0.0
         };
         if beside(x, camera.size.0) || beside(y, camera.size.1) {
             return false;
         }
-        let of_w = self.range(w);
+        let of_w = range(w);
         let least = of_w.middle - of_w.reach;
         // in a parallel view W is 1
         if least <= 0.0 || of_depth.middle - of_depth.reach < near {
             return true;
         }
         let covers_a_centre = |row: DVec4| {
-            let pixel = self.range(row).middle / of_w.middle;
-            let around = self.range(row - pixel * w).reach / least + beyond;
+            let pixel = range(row).middle / of_w.middle;
+            let around = range(row - pixel * w).reach / least + beyond;
             (pixel - around - 0.5).ceil() <= (pixel + around - 0.5).floor()
         };
         covers_a_centre(x) && covers_a_centre(y)

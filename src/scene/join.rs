@@ -152,6 +152,8 @@ pub(crate) struct Joinable {
     kinds: Kinds,
     /// Patches may lie behind others.
     hides: bool,
+    /// Whole parts may.
+    hides_parts: bool,
     /// What the scene is made by, with the way to trim that was taken.
     request: SceneRequest,
 }
@@ -171,7 +173,8 @@ impl Joinable {
         let mut request = request;
         let is_exact = data.way == Some(TakenWay::Exact);
         request.settings.trim = if is_exact { TrimWay::Exact } else { TrimWay::Table };
-        Some(Self { lengths: Lengths::of(data), kinds: Kinds::of(data), hides: data.hides(), request })
+        let (hides, hides_parts) = (data.hides(), data.hides_parts());
+        Some(Self { lengths: Lengths::of(data), kinds: Kinds::of(data), hides, hides_parts, request })
     }
 
     /// The arrays of a model that is to join, in a scene that is so wide; `None` where the scene has to be made anew
@@ -180,9 +183,15 @@ impl Joinable {
         if !is_of_parts(model) || !model.is_opaque() {
             return None;
         }
-        let data = SceneData::joining(model, self.request, extent).ok()?;
-        let hides = self.hides || data.hides_with(self.lengths.patch_instances as usize);
-        (self.kinds.has(Kinds::of(&data)) && hides == self.hides).then_some(data)
+        let mut data = SceneData::joining(model, self.request, extent).ok()?;
+        let [parts, patches] = [self.lengths.instances, self.lengths.patch_instances].map(|n| n as usize);
+        let hides = self.hides || data.hides_with(patches);
+        let hides_parts = self.hides_parts || data.hides_parts_with([parts, patches]);
+        if self.hides_parts {
+            data.find_drawn();
+        }
+        let is_same = hides == self.hides && hides_parts == self.hides_parts;
+        (self.kinds.has(Kinds::of(&data)) && is_same).then_some(data)
     }
 }
 

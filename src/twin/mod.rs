@@ -32,6 +32,7 @@ pub mod lines;
 pub mod mesh_walk;
 pub mod occlusion;
 pub mod operand_sort;
+pub mod parts;
 pub mod reset;
 pub mod scan;
 pub mod segments;

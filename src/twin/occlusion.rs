@@ -1,5 +1,5 @@
-//! Twin of the passes `cull_early`, `depth_pyramid` and `cull_late`, and of `glsl/include/behind.glsl`: finds the
-//! patches that are hidden behind the surfaces drawn so far.
+//! Twin of the passes `cull_early`, `depth_pyramid` and `cull_late`, and of `glsl/include/behind.glsl` and
+//! `nearer.glsl`: finds the patches that are hidden behind the surfaces drawn so far.
 //!
 //! ```text
 //!        eye
@@ -29,7 +29,8 @@
 //! Rounding is covered by a pixel on each side, and by `DEPTH_ROUNDING` of the depth.
 
 use super::{MAX_PUSH, Scene};
-use crate::abi::constants::behind::{self, MOST_CELLS, MOST_SQUARES};
+use crate::abi::constants::behind::{self, MOST_CELLS};
+use crate::abi::constants::nearer::MOST_SQUARES;
 pub use crate::abi::constants::scene::TAU_HIDDEN;
 use crate::abi::{self, BLOCK, Frame, OUTSIDE_CELLS, SQUARE, Side, TILE};
 use crate::spline::Patch;
@@ -96,6 +97,15 @@ impl Farthest {
         let first: u32 = smaller.map(|s| count(s)[0] * count(s)[1]).sum();
         let depth = |x: u32, y: u32| f64::from(self.depths[(first + y * count(side)[0] + x) as usize]);
         rows.into_iter().all(|y| columns.clone().all(|x| depth(x, y) > z))
+    }
+
+    /// Whether all of these pixels, columns and rows, are certainly nearer than the reversed depth `z`.
+    pub fn all_pixels_nearer(&self, pixels: &[RangeInclusive<u32>; 2], z: f64) -> bool {
+        let squares = |side: u32| pixels.clone().map(|p| p.start() / side..=p.end() / side);
+        let few = |side: &u32| squares(*side).iter().all(|range| range.end() - range.start() < MOST_SQUARES);
+        let side = [SQUARE, TILE].into_iter().find(few).unwrap_or(TILE * BLOCK);
+        let [columns, rows] = squares(side);
+        self.all_nearer(columns, rows, side, z)
     }
 }
 
@@ -253,12 +263,7 @@ impl Seen<'_> {
         let [near, far] = [self.frame.near, self.frame.far].map(f64::from);
         let scale = if self.frame.perspective != 0 { near / cover.depth } else { 1.0 };
         let z = (far - cover.depth) / (far - near) * scale * (1.0 + DEPTH_ROUNDING + 1e-3 * slack);
-        let pixels: [RangeInclusive<u32>; 2] = [low.x as u32..=high.x as u32, low.y as u32..=high.y as u32];
-        let squares = |side: u32| pixels.clone().map(|p| p.start() / side..=p.end() / side);
-        let few = |side: &u32| squares(*side).iter().all(|range| range.end() - range.start() < MOST_SQUARES);
-        let side = [SQUARE, TILE].into_iter().find(few).unwrap_or(TILE * BLOCK);
-        let [columns, rows] = squares(side);
-        farthest.all_nearer(columns, rows, side, z)
+        farthest.all_pixels_nearer(&[low.x as u32..=high.x as u32, low.y as u32..=high.y as u32], z)
     }
 }
 

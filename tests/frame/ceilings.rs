@@ -1,6 +1,7 @@
 //! Dispatches with more workgroups than fit into one row use several rows.
 
 use crate::hidden::crowd;
+use crate::hidden_parts::hall;
 use crate::shapes::operands::splines;
 use crate::shapes::{self, solids};
 use crate::support::{assert_identical, assert_silent, perspective, watched_with};
@@ -30,6 +31,7 @@ fn several_rows_of_workgroups_draw_the_same() {
     let cases = [
         ("patches by table", crowd(), by(TrimWay::Table)),
         ("patches exactly", crowd(), by(TrimWay::Exact)),
+        ("parts", hall(), plain),
         ("samples", shapes::pair(), SceneSettings { samples: Samples::Four, ..plain }),
         ("smooth borders", crowd(), SceneSettings { smooth: Smooth::Borders, ..plain }),
         ("lines", crowd(), lines),
@@ -42,12 +44,15 @@ fn several_rows_of_workgroups_draw_the_same() {
         let mut whole = watched_with(&model, settings);
         let mut in_rows = limited(FEW_GROUPS);
         in_rows.upload_with(&model, settings).unwrap();
-        // the second picture uses the first one's occlusion test
-        for nth in 0..2 {
+        // the second picture tests for occlusion, the third uses the result
+        for nth in 0..3 {
             let (a, b) = (draw(&mut whole, &camera), draw(&mut in_rows, &camera));
             assert!(a.face.iter().any(|face| *face != 0), "{name} shows nothing");
             assert_identical(&a, &b, &format!("{name}, {nth}"));
-            let told = |p: &Picture| (p.stats.sub_patches, p.stats.trim_rows, p.stats.hidden_patches, p.stats.clamps);
+            let told = |p: &Picture| {
+                let hidden = [p.stats.hidden_parts, p.stats.hidden_patches, p.stats.listed_patches];
+                (p.stats.sub_patches, p.stats.trim_rows, hidden, p.stats.clamps)
+            };
             assert_eq!(told(&a), told(&b), "{name}, {nth}");
         }
         [whole, in_rows].into_iter().for_each(assert_silent);

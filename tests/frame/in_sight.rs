@@ -6,6 +6,7 @@ use glam::{DAffine3, DVec3};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, TrimWay};
+use std::time::{Duration, Instant};
 
 const SIZE: (u32, u32) = (200, 150);
 
@@ -14,10 +15,11 @@ fn draw(renderer: &mut HeadlessRenderer, camera: &Camera) -> Picture {
     renderer.render(camera, &FrameSettings::default(), outputs).unwrap()
 }
 
-/// Cubes, plates, waves and ripples in a block, far enough apart that none meets another.
-fn block(side: i32) -> Model {
+/// Cubes, plates, waves and ripples in a block, far enough apart that none meets another; of so many parts.
+fn block(side: i32, parts: usize) -> Model {
     let shapes = [shapes::cube(), shapes::plate(), shapes::wave(), shapes::ripple()];
-    let mut model = Model { parts: shapes.into_iter().flat_map(|shape| shape.parts).collect(), ..Model::default() };
+    let four: Vec<_> = shapes.into_iter().flat_map(|shape| shape.parts).collect();
+    let mut model = Model { parts: four.iter().cycle().take(parts).cloned().collect(), ..Model::default() };
     for nth in 0..side * side * side {
         let place = DVec3::new((nth % side).into(), (nth / side % side).into(), (nth / side / side).into()) * 9.0;
         let part = nth as usize % model.parts.len();
@@ -44,7 +46,7 @@ fn cameras(model: &Model) -> Vec<Camera> {
 
 /// Draws the views one after another with one renderer, and each view again with only the instances near its picture.
 fn check(settings: SceneSettings) {
-    let model = block(6);
+    let model = block(6, 4);
     let mut renderer = watched_with(&model, settings);
     let mut alone = watched_with(&Model::default(), settings);
     let mut least = usize::MAX;
@@ -81,7 +83,8 @@ fn in_front(model: &Model, camera: &Camera, size: (u32, u32)) -> Model {
             || all(&|q| q.x > (w + border[0]) * q.w)
             || all(&|q| q.y < -border[1] * q.w)
             || all(&|q| q.y > (h + border[1]) * q.w)
-            || all(&|q| q.z < camera.depth_range.0))
+            || all(&|q| q.z < camera.depth_range.0)
+            || all(&|q| q.z > camera.depth_range.1))
     };
     Model { instances: model.instances.iter().filter(|i| is_seen(i)).cloned().collect(), ..model.clone() }
 }
@@ -109,7 +112,7 @@ fn with_smooth_borders() {
 /// An instance is moved out of sight and back, then hidden and shown.
 #[test]
 fn what_moves_is_where_it_is() {
-    let model = block(4);
+    let model = block(4, 4);
     let camera = cameras(&model)[2];
     let mut renderer = watched_with(&model, exact());
     let first = draw(&mut renderer, &camera);
@@ -124,4 +127,46 @@ fn what_moves_is_where_it_is() {
     renderer.set_visible(0, true).unwrap();
     assert_identical(&first, &draw(&mut renderer, &camera), "shown again");
     assert_silent(renderer);
+}
+
+/// The time of a picture of the colour alone.
+fn time_of(renderer: &mut HeadlessRenderer, camera: &Camera) -> Duration {
+    let start = Instant::now();
+    renderer.render(camera, &FrameSettings::default(), Outputs::default()).unwrap();
+    start.elapsed()
+}
+
+/// A hundred thousand placed parts, of two hundred: whole, from within, and in a corner. In the corner a hundredth is
+/// seen. A frame of it takes at most twice as long as one of that hundredth alone.
+#[test]
+#[ignore = "minutes, and times"]
+fn a_hundred_thousand_parts() {
+    let model = block(47, 200);
+    assert!(model.instances.len() > 100_000);
+    let near = |camera: Camera| Camera { depth_range: (0.1, 160.0), ..camera };
+    let [whole, within, corner, _]: [Camera; 4] = cameras(&model).try_into().expect("four views");
+    let (within, corner) = (near(within), near(corner));
+    let (mut renderer, mut alone) = (watched_with(&model, exact()), watched_with(&Model::default(), exact()));
+    assert!(draw(&mut renderer, &whole).face.iter().any(|face| *face != 0));
+    for camera in [within, corner] {
+        let wider = (SIZE.0 + 64, SIZE.1 + 64);
+        alone.upload_with(&in_front(&model, &camera, wider), exact()).unwrap();
+        // the second pictures have the results of an occlusion test
+        for nth in 0..3 {
+            assert_identical(&draw(&mut renderer, &camera), &draw(&mut alone, &camera), &format!("picture {nth}"));
+        }
+    }
+    let stats = draw(&mut renderer, &corner).stats;
+    assert!(stats.listed_patches < stats.patches / 50, "{} of {} patches", stats.listed_patches, stats.patches);
+    // the view moves, so every pass runs; the least time of each is that without other programs
+    let moved = |k: u32| Camera { eye: corner.eye + 0.01 * f64::from(k) * DVec3::X, ..corner };
+    let mut least = [Duration::MAX; 2];
+    for k in 1..8 {
+        for (least, renderer) in least.iter_mut().zip([&mut renderer, &mut alone]) {
+            *least = (*least).min(time_of(renderer, &moved(k)));
+        }
+    }
+    println!("of {} parts {:?}, alone {:?}", model.instances.len(), least[0], least[1]);
+    assert!(least[0] <= 2 * least[1], "{least:?}");
+    [renderer, alone].into_iter().for_each(assert_silent);
 }

@@ -23,6 +23,7 @@ mod hard_solids;
 mod hard_trims;
 mod hard_views;
 mod hidden;
+mod hidden_parts;
 mod in_sight;
 mod layers;
 mod ledges;

@@ -96,6 +96,36 @@ fn only_a_scene_with_meshes_has_what_they_need() {
     }
 }
 
+/// Occlusion culling of whole parts exists only in scenes of many placed parts that have several patches each.
+#[test]
+fn only_a_scene_of_many_parts_knows_which_parts_lie_behind_others() {
+    let of_parts = [
+        "part counts",
+        "part runs",
+        "cull parts",
+        "cull early (all)",
+        "parts in sight",
+        "parts hidden before",
+        "parts hidden now",
+        "counts of parts",
+        "starts of parts",
+        "runs of listed parts",
+        "listed patches",
+    ];
+    let copies = |shape: Model, count: u32| {
+        let place = |n: u32| DAffine3::from_translation(DVec3::X * 9.0 * f64::from(n));
+        Model { instances: (0..count).map(|n| shapes::placed(place(n), None)).collect(), ..shape }
+    };
+    // a cube has six patches, a plate has one
+    let cases = [(shapes::cube(), 127, false), (shapes::cube(), 128, true), (shapes::plate(), 300, false)];
+    for (shape, count, is_asked) in cases {
+        let (renderer, objects) = objects(&copies(shape, count), Outputs::default());
+        let found: Vec<_> = of_parts.iter().filter(|name| objects.iter().any(|object| object == *name)).collect();
+        assert_eq!(found.len(), if is_asked { of_parts.len() } else { 0 }, "{count}: {found:?}");
+        assert_silent(renderer);
+    }
+}
+
 /// Occlusion culling exists only in scenes with many patches.
 #[test]
 fn only_a_scene_of_many_patches_knows_which_lie_behind_others() {

@@ -225,6 +225,8 @@ const TRIM_TABLE: &str = "trim table";
 fn gather(to: &mut Gathered, stats: &FrameStats) {
     to.push("triangles", "", stats.triangles as f64);
     to.push("sub-patches", "", stats.sub_patches as f64);
+    to.push("hidden parts", "", stats.hidden_parts as f64);
+    to.push("listed patches", "", stats.listed_patches as f64);
     to.push("hidden patches", "", stats.hidden_patches as f64);
     to.push("trim rows", "", stats.trim_rows as f64);
     to.push("trim intercepts", "", stats.trim_intercepts as f64);

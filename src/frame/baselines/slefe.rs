@@ -14,7 +14,7 @@
 //! `slefes`. Writes: `taus`, `counters`. The same in `f64`: `Way::Ipass` of `src/baselines/factors`.
 
 use crate::bindings::Bounded;
-use crate::frame::common::kernel::Kernel;
+use crate::frame::common::kernel::{Kernel, Threads};
 use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
 
@@ -37,9 +37,9 @@ impl BaselineSlefe {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of `patch_instances`.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, patch_instances: u32) {
+    /// One thread for each listed patch instance.
+    pub(crate) fn record<'t>(&self, cmd: &Commands<'_>, b: &Bindings<'_>, threads: impl Into<Threads<'t>>) {
         let resources = [b.bounded.resources().as_slice(), &[b.slefes.into()]].concat();
-        self.kernel.record(cmd, &resources, patch_instances);
+        self.kernel.record_threads(cmd, &resources, threads.into());
     }
 }

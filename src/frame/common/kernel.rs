@@ -1,10 +1,27 @@
 //! A compute pipeline whose bindings, workgroup size and constants come from its shader.
 
+use crate::abi::ListedPatches;
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Resource};
 use crate::shaders::Shader;
+use std::mem::offset_of;
 
 /// Most threads of a dispatch. The threads that fill the last row of workgroups have 32-bit numbers, too.
 pub(crate) const MOST_THREADS: u32 = 1 << 31;
+
+/// The number of threads of a pass over patch instances.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Threads<'a> {
+    /// Known on the CPU.
+    Host(u32),
+    /// Counted by an earlier pass, which wrote [`ListedPatches`].
+    Gpu(&'a Buffer),
+}
+
+impl From<u32> for Threads<'_> {
+    fn from(threads: u32) -> Self {
+        Self::Host(threads)
+    }
+}
 
 /// The pipeline of one compute shader.
 #[derive(Debug)]
@@ -47,6 +64,16 @@ impl Kernel {
     pub(crate) fn record(&self, cmd: &Commands<'_>, resources: &[Resource<'_>], threads: u32) {
         self.bind(cmd, resources, &[]);
         self.dispatch(cmd, threads);
+    }
+
+    /// As [`record`](Self::record), for a number of threads that may come from the GPU.
+    pub(crate) fn record_threads(&self, cmd: &Commands<'_>, resources: &[Resource<'_>], threads: Threads<'_>) {
+        match threads {
+            Threads::Host(threads) => self.record(cmd, resources, threads),
+            Threads::Gpu(listed) => {
+                self.record_indirect(cmd, resources, (listed, offset_of!(ListedPatches, threads) as u64));
+            }
+        }
     }
 
     /// As [`record`](Self::record), after [`bind`](Self::bind).

@@ -9,12 +9,14 @@ pub(crate) mod room;
 pub mod scan;
 
 use super::Frame;
-use crate::abi::Counters;
+use crate::abi::{Counters, ListedPatches};
 use crate::gpu::{Access, Buffer, Commands, Device, GpuError, barrier};
 use crate::picture::TakenWay;
 use crate::scene::SceneData;
 use ash::vk;
+use kernel::Threads;
 use room::Room;
+use std::mem::offset_of;
 use std::sync::Arc;
 
 /// The passes.
@@ -27,10 +29,21 @@ pub(crate) struct Passes {
 
 impl Passes {
     pub(super) fn new(device: &Device, data: &SceneData) -> Result<Self, GpuError> {
-        let scan = scan::Scan::new(device, data.trim_way() == Some(TakenWay::Table))?;
+        let counts_on_gpu = data.trim_way() == Some(TakenWay::Table) || data.hides_parts();
+        let scan = scan::Scan::new(device, counts_on_gpu)?;
         let gate = (!data.patch_instances.is_empty()).then(|| gate::Gate::new(device)).transpose()?;
         Ok(Self { reset: reset::Reset::new(device, false)?, scan, gate })
     }
+}
+
+/// The patch instances that passes over patches look at: those of the placed parts in sight, or of listed ones
+/// (`occlusion/parts.rs`).
+#[derive(Clone, Copy)]
+pub(crate) struct Listed<'a> {
+    /// Their [`PatchRun`](crate::abi::PatchRun)s.
+    pub runs: &'a Buffer,
+    /// One for each of them.
+    pub threads: Threads<'a>,
 }
 
 /// The passes, and the counters of all stages.
@@ -79,5 +92,33 @@ impl Common {
         cmd.after(w, w);
         let bindings = scan::Bindings { values: counts, offsets: starts, sums, total: starts, total_index: count };
         self.passes.scan.record(cmd, scan::Count::Host(count), &bindings);
+    }
+
+    /// Records one prefix sum of two elements for each listed patch instance; the total follows the last start. There
+    /// are at most `most` patch instances, and one element and two starts more.
+    pub(super) fn scan_listed(
+        &self,
+        cmd: &Commands<'_>,
+        (counts, starts): (&Buffer, &Buffer),
+        threads: Threads<'_>,
+        most: u32,
+    ) {
+        let listed = match threads {
+            Threads::Host(patch_instances) => return self.scan(cmd, counts, starts, 2 * patch_instances),
+            Threads::Gpu(listed) => listed,
+        };
+        let (sums, w) = (&self.sums, Access::COMPUTE_WRITE);
+        cmd.after(w, w);
+        // the start of one more element is the total; the sum that includes that element is not used
+        let count = scan::Count::Gpu {
+            counts: listed,
+            index: (offset_of!(ListedPatches, scanned) / size_of::<u32>()) as u32,
+            arguments: listed,
+            offset: offset_of!(ListedPatches, blocks) as u64,
+            capacity: 2 * most + 1,
+        };
+        let total_index = 2 * most + 1;
+        let bindings = scan::Bindings { values: counts, offsets: starts, sums, total: starts, total_index };
+        self.passes.scan.record(cmd, count, &bindings);
     }
 }

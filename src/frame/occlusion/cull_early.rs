@@ -3,9 +3,9 @@
 //!
 //! Reads: `frame`, `hidden`. Writes: `taus`, `counters`. Twin: `src/twin/occlusion.rs`.
 
-use crate::frame::common::kernel::Kernel;
+use crate::frame::common::kernel::{Kernel, Threads};
 use crate::gpu::{Buffer, Commands, Device, GpuError};
-use crate::shaders;
+use crate::shaders::{self, constant};
 
 /// The pass.
 pub(crate) struct CullEarly {
@@ -20,19 +20,22 @@ pub(crate) struct Bindings<'a> {
     pub taus: &'a Buffer,
     /// `hidden`.
     pub counters: &'a Buffer,
-    /// [`PatchRun`](crate::abi::PatchRun)s of the patch instances in sight.
+    /// [`PatchRun`](crate::abi::PatchRun)s of the listed patch instances.
     pub in_sight: &'a Buffer,
 }
 
 impl CullEarly {
-    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let kernel = Kernel::new(device, "cull early", &shaders::CULL_EARLY_COMP, &[])?;
+    /// `all`: all patches were hidden, whatever `hidden` says.
+    pub(crate) fn new(device: &Device, all: bool) -> Result<Self, GpuError> {
+        let name = if all { "cull early (all)" } else { "cull early" };
+        let constants = [(constant::ALL_WERE_HIDDEN, u32::from(all))];
+        let kernel = Kernel::new(device, name, &shaders::CULL_EARLY_COMP, &constants)?;
         Ok(Self { kernel })
     }
 
-    /// One thread for each of the `patch_instances` in sight.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, patch_instances: u32) {
+    /// One thread for each listed patch instance.
+    pub(crate) fn record<'t>(&self, cmd: &Commands<'_>, b: &Bindings<'_>, threads: impl Into<Threads<'t>>) {
         let resources = [b.frame, b.hidden, b.taus, b.counters, b.in_sight].map(Into::into);
-        self.kernel.record(cmd, &resources, patch_instances);
+        self.kernel.record_threads(cmd, &resources, threads.into());
     }
 }

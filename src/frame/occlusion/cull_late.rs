@@ -9,7 +9,7 @@
 //! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `points`, `patch_instances`, `farthest`,
 //! `outside`. Writes: `taus`, `hidden`, `counters`. Twin: `src/twin/occlusion.rs`.
 
-use crate::frame::common::kernel::Kernel;
+use crate::frame::common::kernel::{Kernel, Threads};
 use crate::gpu::{Buffer, Commands, Device, GpuError, TexelBuffer};
 use crate::shaders::{self, constant};
 
@@ -37,7 +37,7 @@ pub(crate) struct Bindings<'a> {
     pub outside: &'a Buffer,
     /// `hidden`.
     pub counters: &'a Buffer,
-    /// [`PatchRun`](crate::abi::PatchRun)s of the patch instances in sight.
+    /// [`PatchRun`](crate::abi::PatchRun)s of the listed patch instances.
     pub in_sight: &'a Buffer,
 }
 
@@ -52,8 +52,8 @@ impl CullLate {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of the `patch_instances` in sight.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, patch_instances: u32) {
+    /// One thread for each listed patch instance.
+    pub(crate) fn record<'t>(&self, cmd: &Commands<'_>, b: &Bindings<'_>, threads: impl Into<Threads<'t>>) {
         let resources = [
             b.frame.into(),
             b.views.into(),
@@ -70,6 +70,6 @@ impl CullLate {
             b.counters.into(),
             b.in_sight.into(),
         ];
-        self.kernel.record(cmd, &resources, patch_instances);
+        self.kernel.record_threads(cmd, &resources, threads.into());
     }
 }

@@ -1,4 +1,5 @@
-//! Occlusion culling: patches that other surfaces hide are not drawn.
+//! Occlusion culling: patches that other surfaces hide are not drawn. In scenes of many placed parts, nothing is
+//! computed for the patches of a part that is hidden as a whole ([`parts`]).
 //!
 //! ```text
 //!   bound ──taus──▶ cull_early: hidden in the previous frame ─▶ not drawn ─▶ … visibility
@@ -16,14 +17,19 @@
 
 pub(crate) mod cull_early;
 pub(crate) mod cull_late;
+pub(crate) mod cull_parts;
 pub(crate) mod depth_pyramid;
+pub(crate) mod part_counts;
+pub(crate) mod part_runs;
+mod parts;
 
-use super::common::reset;
 use super::common::room::Room;
+use super::common::{Listed, reset};
 use super::{Frame, WRITE_TO_READ};
-use crate::abi::{BLOCK, SQUARE, TILE};
+use crate::abi::{BLOCK, LIST_FIRST, SQUARE, TILE};
 use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, barrier};
 use crate::scene::SceneData;
+use parts::Parts;
 use std::sync::Arc;
 
 /// What a frame may take over from the previous frame.
@@ -45,6 +51,8 @@ pub(crate) struct Passes {
     depth_pyramid: depth_pyramid::DepthPyramid,
     cull_late: cull_late::CullLate,
     reset: reset::Reset,
+    /// In scenes of many placed parts.
+    parts: Option<Arc<parts::Passes>>,
 }
 
 impl Passes {
@@ -54,10 +62,11 @@ impl Passes {
             return Ok(None);
         }
         Ok(Some(Self {
-            cull_early: cull_early::CullEarly::new(device)?,
+            cull_early: cull_early::CullEarly::new(device, false)?,
             depth_pyramid: depth_pyramid::DepthPyramid::new(device)?,
             cull_late: cull_late::CullLate::new(device, data.has_rational)?,
             reset: reset::Reset::new(device, true)?,
+            parts: parts::Passes::new(device, data)?.map(Arc::new),
         }))
     }
 }
@@ -69,6 +78,7 @@ pub(crate) struct Occlusion {
     hidden: Buffer,
     /// One float a square of pixels, then one a tile, then one a block of tiles.
     farthest: Buffer,
+    parts: Option<Parts>,
 }
 
 impl Occlusion {
@@ -78,14 +88,28 @@ impl Occlusion {
             passes: Arc::clone(passes),
             hidden: room.words("hidden patches", room.counts.patch_instances)?,
             farthest: room.words("farthest depths", levels.into_iter().sum())?,
+            parts: passes.parts.as_ref().map(|passes| Parts::new(room, passes)).transpose()?,
         })
     }
 
-    /// Clears the input of `cull_early` in a first frame.
+    /// Clears the results of occlusion tests in a first frame.
     pub(super) fn begin(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         if frame.occlusion == OcclusionState::First {
             cmd.fill(&self.hidden, 0);
+            self.parts.iter().for_each(|parts| parts.begin(cmd));
         }
+    }
+
+    /// Before `bound`: lists the placed parts that were not hidden in the previous frame.
+    pub(super) fn list_parts(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        if let Some(parts) = &self.parts {
+            parts.list(frame, cmd, LIST_FIRST);
+        }
+    }
+
+    /// The patch instances of listed parts; `None` if all parts in sight count as listed.
+    pub(super) fn listed(&self) -> Option<Listed<'_>> {
+        self.parts.as_ref().map(Parts::listed)
     }
 
     /// After `bound`: removes patches that were hidden in the previous frame.
@@ -94,9 +118,9 @@ impl Occlusion {
         let (w, r) = WRITE_TO_READ;
         let cleared = Access::TRANSFER_WRITE;
         barrier::buffers(cmd, &[(taus, w, w), (&self.hidden, cleared | w, r), (counters, w, w)]);
-        let (in_sight, patch_instances) = (frame.in_sight, frame.patch_instances_in_sight);
+        let Listed { runs: in_sight, threads } = frame.listed();
         let bindings = cull_early::Bindings { frame: frame.constants, hidden: &self.hidden, taus, counters, in_sight };
-        self.passes.cull_early.record(cmd, &bindings, patch_instances);
+        self.passes.cull_early.record(cmd, &bindings, threads);
         cmd.after(w, w);
     }
 
@@ -115,7 +139,13 @@ impl Occlusion {
         let pyramid = depth_pyramid::Bindings { frame: frame.constants, depth: &v.depth, farthest: &self.farthest };
         self.passes.depth_pyramid.record(cmd, &pyramid);
         cmd.after(w | Access::INDIRECT_READ, r | w);
-        let (in_sight, patch_instances) = (frame.in_sight, frame.patch_instances_in_sight);
+        if let Some(parts) = &self.parts {
+            parts.cull(frame, cmd, &self.farthest);
+            if frame.occlusion == OcclusionState::Moved {
+                parts.appear(frame, cmd, &self.hidden);
+            }
+        }
+        let Listed { runs: in_sight, threads } = frame.listed();
         let bindings = cull_late::Bindings {
             frame: frame.constants,
             views: frame.views,
@@ -132,7 +162,7 @@ impl Occlusion {
             counters: &c.counters,
             in_sight,
         };
-        self.passes.cull_late.record(cmd, &bindings, patch_instances);
+        self.passes.cull_late.record(cmd, &bindings, threads);
         barrier::images(cmd, &[(&v.depth, r, Access::DEPTH_WRITE)]);
         if frame.occlusion != OcclusionState::Moved {
             cmd.after(w, Access::INDIRECT_READ);

@@ -14,7 +14,7 @@
 //! Twin: `src/twin/bound.rs`.
 
 use crate::bindings::Bounded;
-use crate::frame::common::kernel::Kernel;
+use crate::frame::common::kernel::{Kernel, Threads};
 use crate::gpu::{Commands, Device, GpuError};
 use crate::shaders;
 
@@ -30,8 +30,8 @@ impl Bound {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of `patch_instances`.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bounded<'_>, patch_instances: u32) {
-        self.kernel.record(cmd, &b.resources(), patch_instances);
+    /// One thread for each listed patch instance.
+    pub(crate) fn record<'t>(&self, cmd: &Commands<'_>, b: &Bounded<'_>, threads: impl Into<Threads<'t>>) {
+        self.kernel.record_threads(cmd, &b.resources(), threads.into());
     }
 }

@@ -4,6 +4,7 @@ use crate::bindings::Bounded;
 use crate::frame::Frame;
 #[cfg(feature = "baselines")]
 use crate::frame::baselines::slefe;
+use crate::frame::common::Listed;
 use crate::frame::tessellation::bound;
 use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::scene::{Division, SceneData};
@@ -28,6 +29,7 @@ impl DividePass {
     /// Writes `taus`, and counts clamps.
     pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, taus: &Buffer) {
         let s = frame.scene;
+        let Listed { runs, threads } = frame.listed();
         let bounded = Bounded {
             frame: frame.constants,
             views: frame.views,
@@ -40,14 +42,14 @@ impl DividePass {
             counters: &frame.stages.common.counters,
             cones: s.cones.as_ref(),
             points: &s.points,
-            in_sight: frame.in_sight,
+            in_sight: runs,
         };
         match self {
-            Self::Bound(pass) => pass.record(cmd, &bounded, frame.patch_instances_in_sight),
+            Self::Bound(pass) => pass.record(cmd, &bounded, threads),
             #[cfg(feature = "baselines")]
             Self::Slefe(pass) => {
                 let bindings = slefe::Bindings { bounded, slefes: s.slefes() };
-                pass.record(cmd, &bindings, frame.patch_instances_in_sight);
+                pass.record(cmd, &bindings, threads);
             }
         }
     }

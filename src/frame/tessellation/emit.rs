@@ -9,7 +9,7 @@
 //! Writes: `sub_patches`, `draws`, `counters`.
 //! Twin: `src/twin/emit.rs`.
 
-use crate::frame::common::kernel::Kernel;
+use crate::frame::common::kernel::{Kernel, Threads};
 use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
 
@@ -30,7 +30,7 @@ pub(crate) struct Bindings<'a> {
     pub sub_patches: &'a Buffer,
     pub draws: &'a Buffer,
     pub counters: &'a Buffer,
-    /// [`PatchRun`](crate::abi::PatchRun)s of the patch instances in sight.
+    /// [`PatchRun`](crate::abi::PatchRun)s of the listed patch instances.
     pub in_sight: &'a Buffer,
 }
 
@@ -40,10 +40,10 @@ impl Emit {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of the `patch_instances` in sight.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, patch_instances: u32) {
+    /// One thread for each listed patch instance.
+    pub(crate) fn record<'t>(&self, cmd: &Commands<'_>, b: &Bindings<'_>, threads: impl Into<Threads<'t>>) {
         let lists = [b.sub_patch_starts, b.vertex_starts, b.sub_patches, b.draws, b.counters, b.in_sight];
         let resources: Vec<_> = [b.frame, b.factors].into_iter().chain(lists).map(Into::into).collect();
-        self.kernel.record(cmd, &resources, patch_instances);
+        self.kernel.record_threads(cmd, &resources, threads.into());
     }
 }

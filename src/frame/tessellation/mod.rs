@@ -1,6 +1,8 @@
-//! Divides each patch of the placed parts in sight, and makes the sub-patches and draws.
+//! Divides each patch of the placed parts in sight, without those that are hidden as a whole, and makes the sub-patches
+//! and draws.
 //!
 //! ```text
+//!   occlusion::list_parts: parts that were not hidden, in scenes of many placed parts
 //!   bound    tau per patch ──occlusion::cull_early──▶ 0 for patches that were hidden
 //!   split    segments per side
 //!     │(scan) sub-patches, vertices
@@ -15,6 +17,7 @@ pub(crate) mod split;
 
 pub(crate) use capacities::Capacities;
 
+use super::common::Listed;
 use super::common::room::Room;
 use super::{Frame, WRITE_TO_READ};
 use crate::abi::{Factors, SubPatch};
@@ -65,18 +68,23 @@ impl Tessellation {
             taus: room.words("taus", n)?,
             factors: room.structs::<Factors>("factors", n)?,
             sub_patches: room.structs::<SubPatch>("sub-patches", room.capacities.tessellation.sub_patches)?,
-            sub_patch_counts: room.words("sub-patch counts", 2 * n)?,
-            sub_patch_starts: room.words("sub-patch starts", 2 * n + 1)?,
-            vertex_counts: room.words("vertex counts", 2 * n)?,
-            vertex_starts: room.words("vertex starts", 2 * n + 1)?,
+            sub_patch_counts: room.words("sub-patch counts", 2 * n + 1)?,
+            sub_patch_starts: room.words("sub-patch starts", 2 * n + 2)?,
+            vertex_counts: room.words("vertex counts", 2 * n + 1)?,
+            vertex_starts: room.words("vertex starts", 2 * n + 2)?,
         })
     }
 
     /// Divides every patch that may be visible.
     pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
-        let Some(passes) = &self.passes else { return };
+        if self.passes.is_none() {
+            return;
+        }
         let (w, r) = WRITE_TO_READ;
-        passes.divide.record(frame, cmd, &self.taus);
+        if let Some(occlusion) = &frame.stages.occlusion {
+            occlusion.list_parts(frame, cmd);
+        }
+        self.divide(frame, cmd);
         if let Some(occlusion) = &frame.stages.occlusion {
             occlusion.cull_early(frame, cmd);
         }
@@ -84,11 +92,19 @@ impl Tessellation {
         self.split(frame, cmd);
     }
 
+    /// Bounds how finely each listed patch must be divided: writes `taus`.
+    pub(super) fn divide(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        if let Some(passes) = &self.passes {
+            passes.divide.record(frame, cmd, &self.taus);
+        }
+    }
+
     /// Makes sub-patches and their draws.
     pub(super) fn split(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let Some(p) = &self.passes else { return };
         let (s, c) = (frame.scene, &frame.stages.common);
-        let (in_sight, patch_instances) = (frame.in_sight, frame.patch_instances_in_sight);
+        let Listed { runs: in_sight, threads } = frame.listed();
+        let most = frame.counts.patch_instances;
         let (w, r) = WRITE_TO_READ;
         let split = split::Bindings {
             frame: frame.constants,
@@ -103,11 +119,11 @@ impl Tessellation {
             in_sight,
             links: s.links.as_ref(),
         };
-        p.split.record(cmd, &split, patch_instances);
+        p.split.record(cmd, &split, threads);
         cmd.after(w, r);
 
-        c.scan(cmd, &self.sub_patch_counts, &self.sub_patch_starts, 2 * patch_instances);
-        c.scan(cmd, &self.vertex_counts, &self.vertex_starts, 2 * patch_instances);
+        c.scan_listed(cmd, (&self.sub_patch_counts, &self.sub_patch_starts), threads, most);
+        c.scan_listed(cmd, (&self.vertex_counts, &self.vertex_starts), threads, most);
         cmd.after(w, r | w);
 
         let emit = emit::Bindings {
@@ -120,7 +136,7 @@ impl Tessellation {
             counters: &c.counters,
             in_sight,
         };
-        p.emit.record(cmd, &emit, patch_instances);
+        p.emit.record(cmd, &emit, threads);
         cmd.after(w, Access::VERTEX_READ | Access::INDIRECT_READ | w);
     }
 

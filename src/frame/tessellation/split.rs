@@ -14,7 +14,7 @@
 //! Writes: `factors`, `sub_patch_counts`, `vertex_counts`.
 //! Twin: `src/twin/split.rs`.
 
-use crate::frame::common::kernel::Kernel;
+use crate::frame::common::kernel::{Kernel, Threads};
 use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
 
@@ -37,7 +37,7 @@ pub(crate) struct Bindings<'a> {
     pub sub_patch_counts: &'a Buffer,
     /// Vertices, likewise.
     pub vertex_counts: &'a Buffer,
-    /// [`PatchRun`](crate::abi::PatchRun)s of the patch instances in sight.
+    /// [`PatchRun`](crate::abi::PatchRun)s of the listed patch instances.
     pub in_sight: &'a Buffer,
     /// Sides that faces share; `None` without any.
     pub links: Option<&'a Buffer>,
@@ -55,8 +55,8 @@ impl Split {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of the `patch_instances` in sight.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, patch_instances: u32) {
+    /// One thread for each listed patch instance.
+    pub(crate) fn record<'t>(&self, cmd: &Commands<'_>, b: &Bindings<'_>, threads: impl Into<Threads<'t>>) {
         let resources = [
             b.frame,
             b.face_instances,
@@ -70,6 +70,6 @@ impl Split {
             b.in_sight,
         ];
         let resources: Vec<_> = resources.into_iter().chain(b.links).map(Into::into).collect();
-        self.kernel.record(cmd, &resources, patch_instances);
+        self.kernel.record_threads(cmd, &resources, threads.into());
     }
 }

@@ -2,20 +2,39 @@
 //! patch.
 
 use super::*;
-use crate::abi::Counters;
+use crate::abi::{BORDER_U0, BORDER_U1, BORDER_V0, BORDER_V1, Counters, Side};
 use crate::fixtures::{Case, Random};
-use crate::model::{Instance, Model, Projection};
+use crate::model::{Face, Instance, Model, Projection, TrimLoop};
 use crate::parity::{placed, untrimmed};
-use crate::spline::Surface;
+use crate::spline::{Bezier, Patch, Surface};
 use crate::twin;
+use glam::DVec2;
 
 /// A hill over the square `[-1, 1] x [-1, 1]`, of four patches.
 fn hill() -> Model {
+    placed(vec![untrimmed(hill_surface())], DAffine3::IDENTITY)
+}
+
+fn hill_surface() -> Surface {
     let knots = || vec![0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0];
     let at = |k: usize| [-1.0, -0.5, 0.5, 1.0][k];
     let height = |i: usize, j: usize| if (1..3).contains(&i) && (1..3).contains(&j) { 1.0 } else { 0.0 };
     let points = (0..4).flat_map(|j| (0..4).map(move |i| DVec4::new(at(i), at(j), height(i, j), 1.0)));
-    placed(vec![untrimmed(Surface::new((2, 2), knots(), knots(), points.collect()).unwrap())], DAffine3::IDENTITY)
+    Surface::new((2, 2), knots(), knots(), points.collect()).unwrap()
+}
+
+/// A quarter of a cylinder: one rational patch.
+fn quarter() -> Surface {
+    let arc = [(1.0, 0.0, 1.0), (1.0, 1.0, std::f64::consts::FRAC_1_SQRT_2), (0.0, 1.0, 1.0)];
+    let points = [-1.0, 1.0].iter().flat_map(|&z| arc.map(|(x, y, w)| DVec4::new(x * w, y * w, z * w, w)));
+    Surface::new((2, 1), vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0], points.collect()).unwrap()
+}
+
+/// The surface over `[0, 1] x [0, 1]` with a loop beside its borders, so that every patch has skirts.
+fn beside_its_borders(surface: Surface) -> Face {
+    let corners = [(0.05, 0.05), (0.95, 0.05), (0.95, 0.95), (0.05, 0.95)].map(DVec2::from);
+    let sides = (0..4).map(|k| Bezier::line(corners[k], corners[(k + 1) % 4])).collect();
+    Face { loops: vec![TrimLoop::new(sides, DVec2::ZERO).unwrap()], ..untrimmed(surface) }
 }
 
 /// Some thousand hills of all sizes: around the eye, beside the picture, before the near plane and behind the far one.
@@ -107,4 +126,57 @@ fn what_is_hidden_is_out_of_sight_and_what_moves_is_where_it_is() {
     assert_eq!((in_sight(&data).parts, in_sight(&data).runs), (vec![1, 2], vec![run(0, n)]));
     data.hidden = vec![true; 3];
     assert_eq!(in_sight(&data), InSight::default());
+}
+
+/// The surface is continued beyond the borders as far as skirts reach, and sampled.
+#[test]
+fn nothing_is_drawn_beside_the_rectangle_or_before_the_depth() {
+    let model = hills(&mut Random::new(5));
+    let faces = [hill_surface(), quarter()].map(beside_its_borders).to_vec();
+    let model = Model { parts: placed(faces, DAffine3::IDENTITY).parts, ..model };
+    let (mut checked, mut beyond) = (0, 0);
+    for camera in cameras() {
+        let data = Case::new(&model, &camera, 0.5).data;
+        assert!(data.hides_parts());
+        assert!(data.patches.iter().all(|patch| patch.side() == Side::Boundary), "every patch has skirts");
+        let in_sight = data.in_sight(&camera, Reach { beside_px: 1.0, beyond_px: 1.0 });
+        let parts = data.parts_in_sight(&camera, &in_sight.parts);
+        for part in parts.iter().filter(|part| part.depth < 1.0) {
+            checked += 1;
+            let own = data.boxes[part.instance as usize].patches;
+            let rows = camera.pixel_matrix() * DMat4::from(data.placements[part.instance as usize]);
+            let [left, top, right, bottom] =
+                [part.low & 0xffff, part.low >> 16, part.high & 0xffff, part.high >> 16].map(f64::from);
+            for point in data.patches.iter().flat_map(|patch| continued(&data, patch)) {
+                beyond += usize::from(((point - own.centre).abs() - own.half).max_element() > 0.01);
+                let q = rows * point.extend(1.0);
+                let (x, y) = ((q.x / q.w).floor(), (q.y / q.w).floor());
+                let [width, height] = [camera.size.0, camera.size.1].map(f64::from);
+                let is_in_picture = x >= 0.0 && y >= 0.0 && x < width && y < height;
+                let is_in_rectangle = x >= left && x <= right && y >= top && y <= bottom;
+                assert!(!is_in_picture || is_in_rectangle, "({x}, {y}) beside {part:?}");
+                let (near, far) = camera.depth_range;
+                let scale = if camera.is_perspective() { near / q.z } else { 1.0 };
+                let reversed = (far - q.z) / (far - near) * scale;
+                assert!(q.z > near && reversed <= f64::from(part.depth), "{reversed} before {part:?}");
+            }
+        }
+    }
+    assert!(checked > 30 && beyond > 1000, "{checked} parts, {beyond} points beyond the boxes of their patches");
+}
+
+/// Points of a patch, and of its surface beyond the borders.
+fn continued(data: &SceneData, patch: &abi::Patch) -> Vec<DVec3> {
+    let (degree_u, degree_v) = patch.degrees();
+    let points = &data.points[patch.first as usize..][..(degree_u + 1) * (degree_v + 1)];
+    let points = points.iter().map(|p| DVec4::from(p.map(f64::from))).collect();
+    let surface = Patch { degree_u, degree_v, points };
+    let reach = f64::from(twin::MAX_PUSH);
+    let range = |[low, high]: [u32; 2]| {
+        let beyond = |border: u32| if patch.borders() & border != 0 { reach } else { 0.0 };
+        (-beyond(low), 1.0 + beyond(high))
+    };
+    let (u, v) = (range([BORDER_U0, BORDER_U1]), range([BORDER_V0, BORDER_V1]));
+    let at = |(low, high): (f64, f64), k: usize| low + (high - low) * k as f64 / 8.0;
+    (0..9).flat_map(|j| (0..9).map(move |i| (i, j))).map(|(i, j)| surface.point(at(u, i), at(v, j))).collect()
 }

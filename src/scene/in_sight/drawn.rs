@@ -1,0 +1,169 @@
+//! Where a placed part may be drawn: a rectangle of pixels and a depth, for occlusion culling of whole parts.
+//!
+//! ```text
+//!        eye                       a trimmed patch has skirts: vertices on the surface continued beyond its borders,
+//!         │     skirt              by at most MAX_PUSH of its width. The part of the surface from a border to there is
+//!         ▼    ╱                   a Bézier patch, too, and lies in the hull of its control points, if all weights are
+//!     ┌───────╱───┐                above 0
+//!     │ ╭────╯    │ box of patches and skirts ─▶ its corners' pixels, and a little more; its nearest depth
+//!     └───────────┘
+//! ```
+//!
+//! Every vertex of a triangle lies on the surface or on such a continuation. So every triangle lies in the box, its
+//! pixels within those of the corners, and its depths behind the nearest. Errors of single precision are covered by
+//! [`SINGLE_ROUNDING`], those of the rasteriser by a pixel on each side and by `DEPTH_ROUNDING`, as for patches
+//! (`twin::occlusion`).
+//!
+//! Source of the continuation: G. Farin, *Curves and Surfaces for CAGD*, 2002, section 5.4 (extrapolation by
+//! subdivision).
+
+use super::{CHUNK, Extent, PlacedBox, SINGLE_ROUNDING, SceneData};
+use crate::abi::constants::behind::DEPTH_ROUNDING;
+use crate::abi::constants::push::MAX_PUSH;
+use crate::abi::{self, BORDER_U0, BORDER_U1, BORDER_V0, BORDER_V1, PartInSight, Side};
+use crate::model::{Bounds, Camera};
+use crate::spline::Patch;
+use glam::{DAffine3, DMat4, DVec3, DVec4};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Scenes of fewer placed parts have no occlusion culling of whole parts: it costs more than it saves.
+const FEWEST_PARTS: usize = 128;
+/// The same of scenes with fewer patches a placed part.
+const FEWEST_PATCHES_OF_A_PART: usize = 4;
+
+impl SceneData {
+    /// Parts that are hidden as a whole are culled before their patches.
+    pub(crate) fn hides_parts(&self) -> bool {
+        self.hides_parts_with([0; 2])
+    }
+
+    /// The same with so many more placed parts and patch instances.
+    pub(in crate::scene) fn hides_parts_with(&self, [parts, patch_instances]: [usize; 2]) -> bool {
+        let all = self.instances.len() + parts;
+        let enough = self.patch_instances.len() + patch_instances >= FEWEST_PATCHES_OF_A_PART * all;
+        self.hides_with(patch_instances) && all >= FEWEST_PARTS && enough
+    }
+
+    /// Finds the boxes around all that is drawn of each placed part. Needs the arrays that the GPU gets.
+    pub(in crate::scene) fn find_drawn(&mut self) {
+        let mut boxes = std::mem::take(&mut self.boxes);
+        // copies of a part share their patches
+        let mut known: HashMap<(u32, usize), Option<Extent>> = HashMap::new();
+        for faces in self.face_instances.chunk_by(|a, b| a.instance == b.instance) {
+            let (first, last) = (faces[0], faces[faces.len() - 1]);
+            let from = self.faces[first.face as usize].first_patch as usize;
+            let to =
+                self.faces.get(last.face as usize + 1).map_or(self.patches.len(), |next| next.first_patch as usize);
+            let drawn = *known.entry((first.face, faces.len())).or_insert_with(|| self.drawn(&self.patches[from..to]));
+            boxes[first.instance as usize].drawn = drawn;
+        }
+        self.boxes = boxes;
+    }
+
+    /// The box around all that may be drawn of these patches.
+    fn drawn(&self, patches: &[abi::Patch]) -> Option<Extent> {
+        let of_patches = patches.par_iter().map(|patch| self.drawn_of(patch));
+        let bounds = of_patches.try_reduce(|| Bounds::EMPTY, |a, b| Some(a.union(b)))?;
+        (!bounds.is_empty()).then(|| Extent::between(bounds.min, bounds.max))
+    }
+
+    /// The same of one patch: empty if it is never drawn.
+    fn drawn_of(&self, patch: &abi::Patch) -> Option<Bounds> {
+        // an edit may change on which side of the loops a patch lies
+        let is_editable = self.edit.is_some();
+        if patch.side() == Side::Outside && !is_editable {
+            return Some(Bounds::EMPTY);
+        }
+        let [min, max] = [patch.box_min, patch.box_max].map(|p| DVec3::from(p.map(f64::from)));
+        let own = Bounds { min, max };
+        let borders = if is_editable || patch.side() == Side::Boundary { patch.borders() } else { 0 };
+        if borders == 0 {
+            return Some(own);
+        }
+        let (degree_u, degree_v) = patch.degrees();
+        let points = &self.points[patch.first as usize..][..(degree_u + 1) * (degree_v + 1)];
+        let points = points.iter().map(|p| DVec4::from(p.map(f64::from))).collect();
+        let skirts = skirts(&Patch { degree_u, degree_v, points }, borders);
+        skirts.iter().try_fold(own, |all, skirt| {
+            let is_bounded = skirt.points.iter().all(|p| p.w > 0.0);
+            let (min, max) = skirt.bounds();
+            is_bounded.then(|| all.union(Bounds { min, max }))
+        })
+    }
+
+    /// Where the placed parts of these numbers may be drawn, in their order.
+    pub(crate) fn parts_in_sight(&self, camera: &Camera, parts: &[u32]) -> Vec<PartInSight> {
+        let pixels = camera.pixel_matrix();
+        let of = |&n: &u32| {
+            let placed = &self.boxes[n as usize];
+            let (depth, [low, high]) =
+                placed.in_picture(pixels, self.placements[n as usize], camera).unwrap_or((NEVER_HIDDEN, [0; 2]));
+            PartInSight {
+                instance: n,
+                first_patch_instance: placed.first,
+                patch_instances: placed.count,
+                depth,
+                low,
+                high,
+            }
+        };
+        if parts.len() < CHUNK { parts.iter().map(of).collect() } else { parts.par_iter().map(of).collect() }
+    }
+}
+
+/// No reversed depth exceeds it.
+const NEVER_HIDDEN: f32 = 1.0;
+
+/// The surface from each of these borders on, as far as skirts reach, and beyond the corners between two of them.
+fn skirts(patch: &Patch, borders: u32) -> Vec<Patch> {
+    let reach = f64::from(MAX_PUSH);
+    let has = |border: u32| borders & border != 0;
+    let beyond_u =
+        [has(BORDER_U0).then(|| patch.split_u(-reach).0), has(BORDER_U1).then(|| patch.split_u(1.0 + reach).1)];
+    let along_u: Vec<Patch> = beyond_u.into_iter().flatten().collect();
+    let of_row = |row: &Patch| {
+        [has(BORDER_V0).then(|| row.split_v(-reach).0), has(BORDER_V1).then(|| row.split_v(1.0 + reach).1)]
+    };
+    let beyond_v: Vec<Patch> = std::iter::once(patch).chain(&along_u).flat_map(of_row).flatten().collect();
+    along_u.into_iter().chain(beyond_v).collect()
+}
+
+impl PlacedBox {
+    /// A reversed depth that nothing drawn of the part exceeds, and the first and last pixel of a rectangle with all
+    /// that is drawn, column and row in 16 bits each. `None` if the part reaches the near plane or is beside the
+    /// picture, or if its box is not known.
+    fn in_picture(&self, pixels: DMat4, placement: DAffine3, camera: &Camera) -> Option<(f32, [u32; 2])> {
+        let drawn = self.drawn?;
+        let rows = (pixels * DMat4::from(placement)).transpose();
+        let [x, y, depth, w] = [rows.x_axis, rows.y_axis, rows.z_axis, rows.w_axis];
+        let rounding = f64::from(DEPTH_ROUNDING);
+        let (near, far) = camera.depth_range;
+        let of_depth = drawn.range(depth);
+        let nearest = of_depth.middle - of_depth.reach - SINGLE_ROUNDING * of_depth.terms;
+        let of_w = drawn.range(w);
+        // in a parallel view W is 1
+        let least_w = of_w.middle - of_w.reach;
+        if nearest < near * (1.0 + rounding) || least_w <= 0.0 {
+            return None;
+        }
+        let sign = |k: usize, axis: usize| if k >> axis & 1 == 0 { -1.0 } else { 1.0 };
+        let corners: [DVec4; 8] = std::array::from_fn(|k| {
+            (drawn.centre + drawn.half * DVec3::new(sign(k, 0), sign(k, 1), sign(k, 2))).extend(1.0)
+        });
+        let across = |row: DVec4, size: u32| {
+            let at = corners.map(|corner| row.dot(corner) / w.dot(corner));
+            let low = at.into_iter().fold(f64::INFINITY, f64::min);
+            let high = at.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            let beyond = 1.0 + SINGLE_ROUNDING * drawn.range(row).terms / least_w;
+            let first = (low - beyond).floor().max(0.0);
+            let last = (high + beyond).ceil().min(f64::from(size) - 1.0);
+            (first <= last).then_some([first as u32, last as u32])
+        };
+        let ([left, right], [top, bottom]) = (across(x, camera.size.0)?, across(y, camera.size.1)?);
+        let scale = if camera.is_perspective() { near / nearest } else { 1.0 };
+        let reversed = (far - nearest) / (far - near) * scale * (1.0 + rounding);
+        let depth = (reversed.max(0.0) as f32).next_up().min(NEVER_HIDDEN);
+        Some((depth, [left | top << 16, right | bottom << 16]))
+    }
+}
