@@ -83,6 +83,10 @@ fn no_output_replaces_an_input() {
     {
         refused(call, "the same file as the input");
     }
+    // also those that a file of OpenSCAD's names, even where they are left out
+    let csg = path("relief.csg");
+    fs::write(&csg, "cube(size = 1); surface(file = \"in.png\");").unwrap();
+    refused(&["render", &csg, "-o", &picture], "the same file as the input");
     assert_eq!(fs::read(&ours).unwrap(), fs::read(source).unwrap());
     assert!(!Path::new(&free).exists(), "refused before the work");
 }

@@ -36,6 +36,7 @@ mod twist;
 
 use super::colour::linear;
 use super::solid::{Assembly, Placed};
+use super::source::OtherFiles;
 use super::{Import, ImportError, ImportReport, Place, Warnings};
 use crate::csg::Op;
 use crate::model::{Colour, Model};
@@ -46,7 +47,6 @@ use flat::Lift;
 use frame::{Frame, Made, Outcome};
 use glam::{DAffine2, DAffine3, DMat3, DVec3};
 use lex::{Lexer, Token};
-use std::path::Path;
 
 /// Whether round solids are round.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -112,13 +112,12 @@ const UNIONS: [&str; 5] = ["group", "union", "color", "multmatrix", "render"];
 /// Other nodes with children.
 const OTHERS: [&str; 4] = ["difference", "intersection", "linear_extrude", "rotate_extrude"];
 
-/// Reads flattened text; `name` is the file's name in messages.
-/// Files that it names are looked for in `folder`.
-pub(super) fn read(text: &str, name: &str, facets: Facets, folder: Option<&Path>) -> Result<Import, ImportError> {
+/// Reads flattened text, and the files that it names; `name` is its own name in messages.
+pub(super) fn read(text: &str, name: &str, facets: Facets, files: OtherFiles<'_>) -> Result<Import, ImportError> {
     let mut reader = Reader {
         lexer: Lexer::new(text),
         facets,
-        folder,
+        files,
         assembly: Assembly::default(),
         warnings: Warnings::new(name),
         report: ImportReport { format: "OpenSCAD csg".to_owned(), ..ImportReport::default() },
@@ -144,7 +143,7 @@ pub(super) fn read(text: &str, name: &str, facets: Facets, folder: Option<&Path>
 struct Reader<'a> {
     lexer: Lexer<'a>,
     facets: Facets,
-    folder: Option<&'a Path>,
+    files: OtherFiles<'a>,
     assembly: Assembly,
     warnings: Warnings,
     report: ImportReport,
