@@ -214,7 +214,7 @@ fn read(bytes: &[u8], name: &str, folder: Option<&Path>, options: &Options<'_>) 
     let mut import = match format {
         Some(Format::Native) => native(bytes, name)?,
         Some(Format::Rhino) => rhino(bytes, name)?,
-        Some(Format::Iges) => iges(bytes, name)?,
+        Some(Format::Iges) => iges::read(bytes, name, options)?,
         Some(Format::Step) => {
             let import;
             (import, mentions) = step::read(utf8, name, options)?;
@@ -374,7 +374,7 @@ pub fn rhino(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
 /// # Errors
 /// [`ImportError`] when the text is not IGES, is in compressed or binary form, or holds no entity.
 pub fn iges(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
-    iges::read(bytes, name)
+    iges::read(bytes, name, &Options::default())
 }
 
 /// Reads OpenSCAD's flattened solids (`openscad -o x.csg`); `name` is the file's name in messages.
