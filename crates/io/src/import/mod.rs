@@ -220,7 +220,7 @@ fn read(bytes: &[u8], name: &str, folder: Option<&Path>, options: &Options<'_>) 
             (import, mentions) = step::read(utf8, name, options)?;
             import
         }
-        Some(Format::Scad) => scad::read(&text.text, name, options.facets, OtherFiles::new(folder, options))?,
+        Some(Format::Scad) => scad::read(&text.text, name, options, OtherFiles::new(folder, options))?,
         Some(Format::Brlcad) => brlcad(utf8, name)?,
         Some(Format::Bv) => bv(utf8, name)?,
         Some(Format::Scene) => read_scene(bytes, name, folder, options)?,
@@ -391,7 +391,7 @@ pub fn scad(bytes: &[u8], name: &str, facets: Facets) -> Result<Import, ImportEr
 /// As [`scad`].
 pub fn scad_with(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Import, ImportError> {
     let files = OtherFiles::new(Path::new(name).parent(), options);
-    decoded(bytes, name, |text| scad::read(text, name, options.facets, files))
+    decoded(bytes, name, |text| scad::read(text, name, options, files))
 }
 
 /// Reads BRL-CAD's text of solids (`g2asc`, version 5 and the older 4); `name` is the file's name in messages.

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //!   Read ──▶ Parse ──▶ Records b/n … n/n ──▶ Bodies 0/n … ──▶ Faces 0/n ──▶ ... ──▶ Faces n/n
-//!            from one thread; both of STEP alone                  from any thread, in any order; of STEP and IGES
+//!            from one thread: records of STEP and OpenSCAD,       from any thread, in any order: of STEP and IGES
+//!            bodies of STEP alone
 //! ```
 
 use super::{Facets, Files};
@@ -133,6 +134,25 @@ mod tests {
         built.sort_by_key(|stage| if let Stage::Faces { built, .. } = stage { *built } else { 0 });
         assert_eq!(built, (1..=total).map(|built| Stage::Faces { built, total }).collect::<Vec<_>>());
         assert_eq!(import.model, open(&path).unwrap().model);
+    }
+
+    /// Each hull, and a place in every so many bytes of text.
+    #[test]
+    fn the_text_of_openscad_is_reported() {
+        let stages = Mutex::new(Vec::new());
+        let tell = |stage| stages.lock().unwrap().push(stage);
+        let options = Options { progress: Some(&tell), ..Options::default() };
+        let text = format!("{}cube(size = 1);", "cube(size = 1);\n".repeat(10_000));
+        crate::import::scad_with(text.as_bytes(), "t.csg", &options).unwrap();
+        let long = stages.lock().unwrap().split_off(0);
+        assert!((2..4).contains(&long.len()), "{long:?}");
+        let all = text.len() as u64;
+        assert!(long.iter().all(|s| matches!(s, Stage::Records { read, bytes } if read <= bytes && *bytes == all)));
+        if cfg!(feature = "scad-facets") {
+            let hull = "hull() { cube(size = 1); }\n".repeat(5);
+            crate::import::scad_with(hull.as_bytes(), "t.csg", &options).unwrap();
+            assert_eq!(stages.lock().unwrap().len(), 5);
+        }
     }
 
     /// IGES has no bodies that are mapped first.
