@@ -5,7 +5,7 @@
 //! ```
 
 use anyhow::{Context, Result, bail};
-use selvedge_io::import::{self, Import, Options};
+use selvedge_io::import::{self, Facets, Import};
 use std::io::ErrorKind;
 use std::path::{Path, absolute};
 use std::process::{Command, Stdio};
@@ -15,9 +15,8 @@ pub fn is_program(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("scad"))
 }
 
-/// Runs a program and reads its output; OpenSCAD's warnings are passed on. The limits of `options` count for the files
-/// that the output names.
-pub fn open(path: &Path, options: &Options<'_>) -> Result<Import> {
+/// Runs a program and reads its output; OpenSCAD's warnings are passed on.
+pub fn open(path: &Path, facets: Facets) -> Result<Import> {
     let name = path.display().to_string();
     // an absolute path is not taken for an option
     let mut command = Command::new("openscad");
@@ -40,5 +39,5 @@ pub fn open(path: &Path, options: &Options<'_>) -> Result<Import> {
         bail!("{name}: openscad failed ({}): {}", run.status, errors.first().unwrap_or(&last));
     }
     told(&["WARNING", "ERROR", "DEPRECATED"]).iter().for_each(|line| tracing::warn!("{name}: openscad: {line}"));
-    Ok(import::scad_with(&run.stdout, &name, options)?)
+    Ok(import::scad(&run.stdout, &name, facets)?)
 }

@@ -28,9 +28,7 @@ pub fn described(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs) -> Res
     let start = Instant::now();
     let name = named(path);
     let import = if openscad::is_program(path) {
-        let (most_bytes, facets) = (Some(read.most_bytes()), facets(subdivide));
-        let options = Options { most_bytes, facets, ..Options::default() };
-        during("running openscad", || openscad::open(path, &options))?
+        during("running openscad", || openscad::open(path, facets(subdivide)))?
     } else {
         importing(&name, |tell| imported(path, &name, read, subdivide, tell))?
     };

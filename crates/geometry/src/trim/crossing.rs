@@ -225,7 +225,8 @@ fn change_sides(a: &Chain<'_>, b: &Chain<'_>, margin: DVec2) -> Option<DVec2> {
 /// What is known of two chains between two ends of pieces.
 #[derive(Clone, Copy, PartialEq)]
 enum Compare {
-    /// Which is on which side. Where the boxes of their pieces, or of parts of these, overlap nowhere, one place decides.
+    /// Which is on which side. Where the boxes of their pieces, or of parts of these, overlap nowhere, one place
+    /// decides.
     Sides,
     /// The sides at all places.
     Places,
