@@ -12,7 +12,7 @@ use crate::args::{BenchArgs, Motion, Size};
 use crate::progress::during;
 use crate::series::{Gathered, Row};
 use crate::session::{self, FirstFrame, Session};
-use crate::target::{self, CSV, JSON};
+use crate::target::{self, CSV, JSON, Target};
 use crate::{Outcome, camera, edit, output, path, verdict};
 use anyhow::Result;
 use comfy_table::CellAlignment;
@@ -75,14 +75,15 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     if args.edit {
         return edit::run(args);
     }
+    let mut outputs = Vec::new();
     if let Some(dir) = &args.out {
         let files = [("bench.json", JSON), ("bench.csv", CSV)];
-        target::folder(&inputs(args), dir, files.map(|(name, form)| (name.to_owned(), form)))?;
+        outputs = target::folder(&inputs(args), dir, files.map(|(name, form)| (name.to_owned(), form)))?;
     }
     let mut reports = Vec::new();
     let mut outcome = Outcome::Good;
     for model in &args.models {
-        let (report, complained) = measure(args, model)?;
+        let (report, complained) = measure(args, model, &outputs)?;
         output::print(&report.text())?;
         let clamped = report.rows.iter().any(|r| r.name == CLAMPS && r.largest > 0.0);
         if complained || clamped || report.error.wrong_pixels > 0 {
@@ -103,8 +104,9 @@ pub fn inputs(args: &BenchArgs) -> Vec<&Path> {
 }
 
 /// One model along the path; true when the validation layer complained.
-fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
+fn measure(args: &BenchArgs, model: &Path, outputs: &[Target]) -> Result<(Report, bool)> {
     let mut import = session::open(model, &args.read, &Default::default())?;
+    target::check_read(&import, outputs)?;
     args.cut.apply(&mut import.model, &args.read)?;
     let bounds = camera::bounds(&import.model);
     let Size(width, height) = args.size;

@@ -77,8 +77,9 @@ type Renderers = BTreeMap<Option<usize>, HeadlessRenderer>;
 /// Sweeps every model.
 pub fn run(args: &SweepArgs) -> Result<Outcome> {
     let inputs: Vec<&Path> = args.models.iter().map(PathBuf::as_path).collect();
-    target::check(&inputs, &args.out.iter().map(|path| Target::new(path, CSV)).collect::<Vec<_>>())?;
-    let models = models(args)?;
+    let outputs: Vec<_> = args.out.iter().map(|path| Target::new(path, CSV)).collect();
+    target::check(&inputs, &outputs)?;
+    let models = models(args, &outputs)?;
     if args.against_fixed {
         return against::run(args, &models);
     }
@@ -115,10 +116,11 @@ pub fn run(args: &SweepArgs) -> Result<Outcome> {
 }
 
 /// The models of the files, and the sheets, by name.
-fn models(args: &SweepArgs) -> Result<Vec<(String, Model)>> {
+fn models(args: &SweepArgs, outputs: &[Target]) -> Result<Vec<(String, Model)>> {
     let mut models = Vec::new();
     for file in &args.models {
         let import = session::open(file, &args.read, &SubdivideArgs::default())?;
+        target::check_read(&import, outputs)?;
         if import.model.trim.is_some() {
             bail!("{}: a volume trims it, and would not go with the copies", file.display());
         }

@@ -210,14 +210,15 @@ pub fn check_read(import: &Import, outputs: &[Target]) -> Result<()> {
     check(&files, outputs)
 }
 
-/// Makes the folder of outputs, and checks their places in it.
-pub fn folder(inputs: &[&Path], folder: &Path, files: impl IntoIterator<Item = (String, Form)>) -> Result<()> {
+/// Makes the folder of outputs, and checks their places in it, which it returns.
+pub fn folder(inputs: &[&Path], folder: &Path, files: impl IntoIterator<Item = (String, Form)>) -> Result<Vec<Target>> {
     if is_standard(folder) {
         bail!("a folder is wanted for several files, and `-` is standard output");
     }
     fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let files: Vec<_> = files.into_iter().map(|(name, form)| Target::new(folder.join(name), form)).collect();
-    check(inputs, &files)
+    check(inputs, &files)?;
+    Ok(files)
 }
 
 #[cfg(test)]

@@ -34,9 +34,10 @@ use way::Contender;
 /// Measures everything; prints and writes it.
 pub fn run(args: &TrimsArgs) -> Result<Outcome> {
     let paths = models(args);
+    let mut outputs = Vec::new();
     if let Some(dir) = &args.out {
         let tables = [("trims.json".to_owned(), JSON), ("trims.csv".to_owned(), CSV)];
-        target::folder(&paths.iter().map(PathBuf::as_path).collect::<Vec<_>>(), dir, tables)?;
+        outputs = target::folder(&paths.iter().map(PathBuf::as_path).collect::<Vec<_>>(), dir, tables)?;
     }
     let mut rows = Vec::new();
     if args.holes > 0 {
@@ -45,7 +46,9 @@ pub fn run(args: &TrimsArgs) -> Result<Outcome> {
     }
     for path in &paths {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        rows.extend(measured(args, &name, session::open(path, &args.read, &Default::default())?.model)?);
+        let import = session::open(path, &args.read, &Default::default())?;
+        target::check_read(&import, &outputs)?;
+        rows.extend(measured(args, &name, import.model)?);
     }
     output::print(&report::table(&rows))?;
     output::print(&fit::text(&rows))?;

@@ -83,6 +83,18 @@ fn no_output_replaces_an_input() {
     {
         refused(call, "the same file as the input");
     }
+    // also those that a file of OpenSCAD's names, even where they are left out
+    let csg = path("relief.csg");
+    fs::write(&csg, "cube(size = 1); surface(file = \"in.png\");").unwrap();
+    refused(&["render", &csg, "-o", &picture], "the same file as the input");
+    // and the points of a scene's surface
+    let (grid, points) = (path("grid.toml"), path("out/bench.csv"));
+    fs::remove_file(&points).unwrap();
+    let row = |j: u32| (0..5).map(|i| format!("{i},{j},{}", i * j)).collect::<Vec<_>>().join(",");
+    fs::write(&points, (0..5).map(row).collect::<Vec<_>>().join("\n")).unwrap();
+    fs::write(&grid, "selvedge = 1\n[surface.a]\nshape = \"grid\"\nfile = \"out/bench.csv\"\n").unwrap();
+    refused(&["sweep", &grid, "--out", &points], "the same file as the input");
+    refused(&["bench", &grid, "--out", &out], "the same file as the input");
     assert_eq!(fs::read(&ours).unwrap(), fs::read(source).unwrap());
     assert!(!Path::new(&free).exists(), "refused before the work");
 }

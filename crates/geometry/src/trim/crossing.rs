@@ -24,6 +24,8 @@ const PLACE: f64 = 1e-12;
 const SHARES: [f64; 5] = [0.02, 0.25, 0.5, 0.75, 0.98];
 /// The same, first the one at which two curves are mostly farthest apart.
 const MIDDLE_FIRST: [f64; 5] = [0.5, 0.02, 0.25, 0.75, 0.98];
+/// Bisections of a piece to the ends of a part of it: few holes are nearer to a border than a sixty-fourth of it.
+const PART: u32 = 6;
 /// Bisections to the place where two chains meet: it only serves a message.
 const BISECTIONS: u32 = 40;
 /// Pairs of overlapping boxes that are compared: more would take longer than reading the face.
@@ -155,6 +157,33 @@ impl Chain<'_> {
         (lo[1 - self.axis], hi[1 - self.axis])
     }
 
+    /// Bounds of the other coordinate between two values along the axis, both within one piece: those of little more of
+    /// the piece than lies between them.
+    fn part(&self, from: f64, to: f64) -> (f64, f64) {
+        let (axis, across) = (self.axis, 1 - self.axis);
+        let piece = &self.pieces[self.index(0.5 * (from + to))];
+        let [mut low, mut high] = [(piece.t.0, piece.start), (piece.t.1, piece.end)];
+        if low.1[axis] > high.1[axis] {
+            std::mem::swap(&mut low, &mut high);
+        }
+        let curve = &self.curves[piece.curve as usize];
+        let reached = |value: f64, is_upper: bool| {
+            let (mut below, mut above) = (low, high);
+            for _ in 0..PART {
+                let t = 0.5 * (below.0 + above.0);
+                let p = curve.point(t);
+                let is_below = p[axis] < value || (p[axis] == value && !is_upper);
+                if is_below { below = (t, p) } else { above = (t, p) }
+            }
+            if is_upper { above.1[across] } else { below.1[across] }
+        };
+        let ends = match from <= low.1[axis] && high.1[axis] <= to {
+            true => [low.1[across], high.1[across]],
+            false => [reached(from, false), reached(to, true)],
+        };
+        (ends[0].min(ends[1]), ends[0].max(ends[1]))
+    }
+
     /// The other coordinate at a value along the axis between the chain's ends.
     fn place(&self, value: f64) -> f64 {
         let (axis, across) = (self.axis, 1 - self.axis);
@@ -196,7 +225,8 @@ fn change_sides(a: &Chain<'_>, b: &Chain<'_>, margin: DVec2) -> Option<DVec2> {
 /// What is known of two chains between two ends of pieces.
 #[derive(Clone, Copy, PartialEq)]
 enum Compare {
-    /// Which is on which side. Where the boxes of their pieces overlap nowhere, one place decides.
+    /// Which is on which side. Where the boxes of their pieces, or of parts of these, overlap nowhere, one place
+    /// decides.
     Sides,
     /// The sides at all places.
     Places,
@@ -214,7 +244,11 @@ fn compared(a: &Chain<'_>, b: &Chain<'_>, margin: DVec2, what: Compare) -> Optio
     for pair in ends.windows(2) {
         let line = |share: f64| pair[0] + share * (pair[1] - pair[0]);
         // one piece of each: mostly their boxes lie apart
-        let ((a_lo, a_hi), (b_lo, b_hi)) = (a.range(line(0.5)), b.range(line(0.5)));
+        let ((mut a_lo, mut a_hi), (mut b_lo, mut b_hi)) = (a.range(line(0.5)), b.range(line(0.5)));
+        if what == Compare::Sides && a_lo < b_hi && b_lo < a_hi {
+            // a long piece's box may hold all of a hole beside it
+            ((a_lo, a_hi), (b_lo, b_hi)) = (a.part(pair[0], pair[1]), b.part(pair[0], pair[1]));
+        }
         let sides = (a_lo - b_hi, b_lo - a_hi);
         let beside = what == Compare::Sides && sides.0.max(sides.1) >= 0.0;
         let as_before = if sides.0 >= 0.0 { before > 0.0 } else { before < 0.0 };
@@ -401,5 +435,21 @@ mod tests {
         assert_eq!(crossing(&loops), Crossing::No);
         loops.push(polygon(&[(41.5, 73.0), (41.9, 73.5), (41.5, 74.5), (41.4, 73.5)]));
         near(&loops, (41.5, 73.8), 1.0);
+    }
+
+    /// The boxes of a round border's quarters hold nearly all holes.
+    #[test]
+    fn many_loops_within_a_round_border() {
+        let turned = |(x, y): (f64, f64), k: usize| [(x, y), (-y, x), (-x, -y), (y, -x)][k];
+        let quarter = |k: usize| [(60.0, 0.0), (60.0, 33.1), (33.1, 60.0), (0.0, 60.0)].map(|p| turned(p, k));
+        let hole = |(x, y): (f64, f64)| polygon(&[(x - 0.3, y), (x, y + 0.3), (x + 0.3, y), (x, y - 0.3)]);
+        let places = (0..120 * 120).map(|k| (f64::from(k % 120) - 59.5, f64::from(k / 120) - 59.5));
+        let inside = places.filter(|(x, y)| x.hypot(*y) < 59.5);
+        let mut loops: Vec<TrimLoop> = inside.map(hole).collect();
+        assert!(loops.len() > 10_000);
+        loops.push(cubics(&[0, 1, 2, 3].map(quarter)));
+        assert_eq!(crossing(&loops), Crossing::No);
+        loops.push(hole((59.9, 0.0)));
+        near(&loops, (60.0, 0.0), 0.5);
     }
 }

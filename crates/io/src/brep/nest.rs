@@ -108,16 +108,31 @@ fn share_inside(support: &Support, loops: &[Loop]) -> f64 {
     let polygons: Vec<Vec<DVec2>> = loops.iter().map(|l| closed(l.polygon(support))).collect();
     let [Some(u), Some(v)] = support.natural else { return 0.0 };
     let at = |(a, b): (f64, f64), i: u32| a + (b - a) * (f64::from(i) + 0.5) / f64::from(STEPS);
+    // the samples of a range, and one more at each end
+    let samples = |(a, b): (f64, f64), lo: f64, hi: f64| {
+        let step = |x: f64| (x - a) / (b - a) * f64::from(STEPS);
+        (step(lo).floor() - 1.0).max(0.0) as u32..(step(hi).ceil() + 1.0).clamp(0.0, f64::from(STEPS)) as u32
+    };
     let copies = |axis: usize| if support.periods[axis].is_some() { -1..=1 } else { 0..=0 };
     let by = |axis: usize, k: i32| f64::from(k) * support.periods[axis].unwrap_or(0.0);
+    let mut odd = vec![false; (STEPS * STEPS) as usize];
+    for polygon in &polygons {
+        let (lo, hi) = bounds(polygon);
+        for by in copies(0).flat_map(|k| copies(1).map(move |l| DVec2::new(by(0, k), by(1, l)))) {
+            let (lo, hi) = (lo - by, hi - by);
+            for i in samples(u, lo.x, hi.x) {
+                for j in samples(v, lo.y, hi.y) {
+                    odd[(i * STEPS + j) as usize] ^= encloses(polygon, DVec2::new(at(u, i), at(v, j)) + by);
+                }
+            }
+        }
+    }
     let (mut all, mut inside) = (0.0, 0.0);
-    for p in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| DVec2::new(at(u, i), at(v, j)))) {
-        let jet = support.jet(p);
+    for (i, odd) in (0..STEPS * STEPS).zip(odd) {
+        let jet = support.jet(DVec2::new(at(u, i / STEPS), at(v, i % STEPS)));
         let area = jet.du.cross(jet.dv).length();
-        let moved = copies(0).flat_map(|k| copies(1).map(move |l| p + DVec2::new(by(0, k), by(1, l))));
-        let within = moved.flat_map(|p| polygons.iter().filter(move |polygon| encloses(polygon, p))).count();
         all += area;
-        inside += if within % 2 == 1 { area } else { 0.0 };
+        inside += if odd { area } else { 0.0 };
     }
     inside / all
 }

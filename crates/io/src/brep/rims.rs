@@ -17,11 +17,13 @@ pub(super) fn choose_cut(support: &Support, loops: &[Loop], axis: usize, period:
         })
         .collect();
     let margin = 1e-6 * period;
+    let covered = Covered::new(&holes, period, SURELY * margin);
     let clear = |c: f64| {
-        holes.iter().all(|(lo, hi)| {
-            let ahead = (c - lo).rem_euclid(period);
-            ahead > hi - lo + margin && ahead < period - margin
-        })
+        !covered.holds(c)
+            && holes.iter().all(|(lo, hi)| {
+                let ahead = (c - lo).rem_euclid(period);
+                ahead > hi - lo + margin && ahead < period - margin
+            })
     };
     let rims = loops.iter().filter(|l| l.winding[axis] != 0);
     let vertices: Vec<f64> = rims.flat_map(|l| l.strands.iter().map(|s| s.start[axis])).collect();
@@ -45,6 +47,44 @@ pub(super) fn choose_cut(support: &Support, loops: &[Loop], axis: usize, period:
     let strands = loops.iter().flat_map(|l| &l.strands);
     let mut all: Vec<f64> = strands.map(|s| s.start[axis]).chain(holes.iter().flat_map(|h| [h.0, h.1])).collect();
     (middle_of_widest(&mut all, &|_| true).unwrap_or(0.0), false)
+}
+
+/// Share of the margin around holes within which a coordinate is surely too near: the rest is for rounding.
+const SURELY: f64 = 0.99;
+
+/// The coordinates of a period that intervals cover.
+struct Covered {
+    period: f64,
+    /// Apart from each other, in order, each from within the period.
+    spans: Vec<(f64, f64)>,
+}
+
+impl Covered {
+    /// By intervals that are widened by `margin` at both ends.
+    fn new(intervals: &[(f64, f64)], period: f64, margin: f64) -> Self {
+        let wide = |(lo, hi): &(f64, f64)| {
+            let start = (lo - margin).rem_euclid(period);
+            (start, start + (hi - lo) + 2.0 * margin)
+        };
+        let mut all: Vec<(f64, f64)> = intervals.iter().map(wide).filter(|(start, end)| start <= end).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut spans: Vec<(f64, f64)> = Vec::new();
+        for (start, end) in all {
+            match spans.last_mut() {
+                Some(last) if start <= last.1 => last.1 = last.1.max(end),
+                _ => spans.push((start, end)),
+            }
+        }
+        Self { period, spans }
+    }
+
+    fn holds(&self, c: f64) -> bool {
+        let c = c.rem_euclid(self.period);
+        let before = self.spans.partition_point(|(start, _)| *start <= c);
+        // the last one may reach beyond the period's end, and so around
+        self.spans[..before].last().is_some_and(|(_, end)| c <= *end)
+            || self.spans.last().is_some_and(|(_, end)| c + self.period <= *end)
+    }
 }
 
 /// The rim along a pole that closes an odd number of rims: the pole that a bound names, else the
@@ -138,4 +178,37 @@ pub(super) fn natural_rims(support: &Support, loops: &[Loop]) -> Option<[Loop; 2
     let rim = |height: f64| rim(support, axis, support.natural[axis].map_or(0.0, |n| n.0), height);
     let (low, high) = (rim(lo), rim(hi));
     Some(if axis == 0 { [low, high.reversed()] } else { [low.reversed(), high] })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against a test of each interval, for few and many, some across the period's end and some as long as the period.
+    #[test]
+    fn what_intervals_cover_is_looked_up() {
+        let mut state = 3_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as f64 / f64::from(1_u32 << 31)
+        };
+        let (period, margin) = (7.0, 0.01);
+        let mut counts = [0; 2];
+        for (number, longest) in [(0, 1.0), (1, 3.0), (1, 8.0), (5, 2.0), (40, 0.2), (300, 0.02)] {
+            for _ in 0..20 {
+                let interval = |lo: f64, length: f64| (20.0 * lo - 10.0, 20.0 * lo - 10.0 + longest * length);
+                let all: Vec<(f64, f64)> = (0..number).map(|_| interval(random(), random())).collect();
+                let covered = Covered::new(&all, period, margin);
+                for _ in 0..50 {
+                    let c = 30.0 * random() - 15.0;
+                    let within =
+                        |(lo, hi): &(f64, f64)| (c - (lo - margin)).rem_euclid(period) <= hi - lo + 2.0 * margin;
+                    let expected = all.iter().any(within);
+                    assert_eq!(covered.holds(c), expected, "{c} in {all:?}");
+                    counts[usize::from(expected)] += 1;
+                }
+            }
+        }
+        assert!(counts.iter().all(|count| *count > 500), "{counts:?}");
+    }
 }

@@ -24,11 +24,12 @@ pub trait Files: Sync {
     /// The file that `from` calls `name`, by a name that is the same for the same file; `None` if there is none.
     fn find(&self, name: &str, from: &str) -> Option<String>;
 
-    /// The bytes of a file that was found; they may be compressed by gzip.
+    /// The bytes of a file that was found; they may be compressed by gzip. A file of more than `most` bytes is refused:
+    /// one byte more than `most` suffices.
     ///
     /// # Errors
     /// What the file system says.
-    fn read(&self, found: &str) -> std::io::Result<Vec<u8>>;
+    fn read(&self, found: &str, most: u64) -> std::io::Result<Vec<u8>>;
 }
 
 /// A part that stands in another file.
@@ -73,6 +74,8 @@ pub(super) type Reader<'r> = &'r dyn Fn(Vec<u8>, &str) -> Result<Read, ImportErr
 struct Library<'r> {
     finder: Option<&'r dyn Files>,
     read: Reader<'r>,
+    /// Bytes of a file, at most.
+    most: u64,
     all: Vec<Loaded>,
     /// By their own names; none for those that cannot be read.
     known: HashMap<String, Option<usize>>,
@@ -88,7 +91,8 @@ pub(super) fn follow((mut import, mentions): Read, name: &str, options: &Options
     let bare = Path::new(name).file_name().map_or(name.into(), |n| n.to_string_lossy());
     let own = options.files.and_then(|files| files.find(&bare, name));
     let known = own.into_iter().map(|own| (own, Some(0))).collect();
-    let mut library = Library { finder: options.files, read, all: vec![first], known, import };
+    let most = options.most_bytes();
+    let mut library = Library { finder: options.files, read, most, all: vec![first], known, import };
     let mut next = 0;
     while next < library.all.len() {
         library.load_mentions(next);
@@ -150,7 +154,7 @@ impl Library<'_> {
                 }
                 None => {}
             }
-            let bytes = finder.read(&own).map_err(|source| ImportError::Read { file: own.clone(), source });
+            let bytes = finder.read(&own, self.most).map_err(|source| ImportError::Read { file: own.clone(), source });
             match bytes.and_then(|bytes| (self.read)(bytes, &own)) {
                 Ok(read) => return Ok(self.add(own, read)),
                 Err(error) => {

@@ -61,6 +61,7 @@ pub use subdivided::open_subdivided;
 pub use summary::{Summary, Tally};
 
 use crate::model::Model;
+use source::OtherFiles;
 use std::io::Read;
 use std::path::Path;
 
@@ -102,10 +103,11 @@ pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportErr
     Ok(external::follow(first, &name, options, &|bytes, found| found_file(bytes, found, options)))
 }
 
-/// Reads a file that another one names.
+/// Reads a file that another one names. If it is a scene, the files that it names are read without their own
+/// references: a scene and an assembly cannot name each other without end.
 fn found_file(bytes: Vec<u8>, found: &str, options: &Options<'_>) -> Result<external::Read, ImportError> {
     let bytes = source::inflated(bytes, found, options.most_bytes())?;
-    read(&bytes, found, Path::new(found).parent(), options)
+    read(&bytes, found, Path::new(found).parent(), &Options { files: None, ..*options })
 }
 
 /// Reads a stream to its end, as [`open_with`]; `name` is its name in messages, and its ending gives the format where
@@ -212,18 +214,18 @@ fn read(bytes: &[u8], name: &str, folder: Option<&Path>, options: &Options<'_>) 
     let mut import = match format {
         Some(Format::Native) => native(bytes, name)?,
         Some(Format::Rhino) => rhino(bytes, name)?,
-        Some(Format::Iges) => iges(bytes, name)?,
+        Some(Format::Iges) => iges::read(bytes, name, options)?,
         Some(Format::Step) => {
             let import;
             (import, mentions) = step::read(utf8, name, options)?;
             import
         }
-        Some(Format::Scad) => scad::read(&text.text, name, options.facets, folder)?,
+        Some(Format::Scad) => scad::read(&text.text, name, options, OtherFiles::new(folder, options))?,
         Some(Format::Brlcad) => brlcad(utf8, name)?,
         Some(Format::Bv) => bv(utf8, name)?,
-        Some(Format::Scene) => scene(bytes, name, folder)?,
-        Some(Format::Obj) => obj(utf8, name, folder)?,
-        Some(Format::Mesh(ending)) => mesh(bytes, name, ending, folder)?,
+        Some(Format::Scene) => read_scene(bytes, name, folder, options)?,
+        Some(Format::Obj) => obj::read(utf8, name, OtherFiles::new(folder, options))?,
+        Some(Format::Mesh(ending)) => read_mesh(bytes, name, ending, OtherFiles::new(folder, options))?,
         None => return Err(ImportError::Format { file: name.to_owned() }),
     };
     if !matches!(format, Some(Format::Mesh(_))) {
@@ -248,11 +250,19 @@ fn decoded(
 const MESHES: [&str; 7] = ["stl", "off", "ply", "3mf", "amf", "gltf", "glb"];
 
 #[cfg(feature = "meshes")]
-use meshes::recognise as recognise_mesh;
+use meshes::{read as read_mesh, recognise as recognise_mesh};
 
 #[cfg(not(feature = "meshes"))]
 fn recognise_mesh(_: &[u8]) -> Option<&'static str> {
     None
+}
+
+#[cfg(not(feature = "meshes"))]
+fn read_mesh(bytes: &[u8], name: &str, ending: &str, files: OtherFiles<'_>) -> Result<Import, ImportError> {
+    let place = files.folder.map(|f| format!(" in {}", f.display())).unwrap_or_default();
+    let what = format!("{} bytes of .{ending}{place}", bytes.len());
+    let message = format!("{what}, for which the feature `meshes` is not built in");
+    Err(ImportError::Mesh { file: name.to_owned(), message })
 }
 
 /// Reads a file of triangles: `ending` is one of `stl`, `off`, `ply`, `3mf`, `amf`, `gltf`, `glb`; buffers of glTF are
@@ -261,17 +271,7 @@ fn recognise_mesh(_: &[u8]) -> Option<&'static str> {
 /// # Errors
 /// [`ImportError::Mesh`] says where the file is damaged, or that the library was built without the feature `meshes`.
 pub fn mesh(bytes: &[u8], name: &str, ending: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
-    #[cfg(feature = "meshes")]
-    return meshes::read(bytes, name, ending, folder);
-    #[cfg(not(feature = "meshes"))]
-    return Err(ImportError::Mesh {
-        file: name.to_owned(),
-        message: format!(
-            "{} bytes of .{ending}{}, for which the feature `meshes` is not built in",
-            bytes.len(),
-            folder.map(|f| format!(" in {}", f.display())).unwrap_or_default()
-        ),
-    });
+    read_mesh(bytes, name, ending, OtherFiles::new(folder, &Options::default()))
 }
 
 /// Reads ISO 10303-21 text (STEP AP203, AP214, AP242); `name` is the file's name in messages.
@@ -307,19 +307,17 @@ pub fn native(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
 /// [`ImportError::Scene`] names the line and column of the first thing that is wrong, or says that the library was
 /// built without the feature `scene`.
 pub fn scene(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
-    #[cfg(feature = "scene")]
-    return scene::read(bytes, name, folder);
-    #[cfg(not(feature = "scene"))]
-    return Err(ImportError::Scene {
-        file: name.to_owned(),
-        line: 1,
-        column: 1,
-        message: format!(
-            "{} bytes of a scene{}, for which the feature `scene` is not built in",
-            bytes.len(),
-            folder.map(|f| format!(" in {}", f.display())).unwrap_or_default()
-        ),
-    });
+    read_scene(bytes, name, folder, &Options::default())
+}
+
+#[cfg(feature = "scene")]
+use scene::read as read_scene;
+
+#[cfg(not(feature = "scene"))]
+fn read_scene(bytes: &[u8], name: &str, folder: Option<&Path>, _: &Options<'_>) -> Result<Import, ImportError> {
+    let place = folder.map(|f| format!(" in {}", f.display())).unwrap_or_default();
+    let message = format!("{} bytes of a scene{place}, for which the feature `scene` is not built in", bytes.len());
+    Err(ImportError::Scene { file: name.to_owned(), line: 1, column: 1, message })
 }
 
 /// Reads Wavefront OBJ text; materials are looked for in `folder`, if there is one.
@@ -327,7 +325,8 @@ pub fn scene(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, 
 /// # Errors
 /// [`ImportError::Nothing`] when the text holds no vertex.
 pub fn obj(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
-    decoded(bytes, name, |text| obj::read(text.as_bytes(), name, folder))
+    let files = OtherFiles::new(folder, &Options::default());
+    decoded(bytes, name, |text| obj::read(text.as_bytes(), name, files))
 }
 
 /// Reads the polygons of Wavefront OBJ text as control meshes, for subdivision; one an object.
@@ -375,7 +374,7 @@ pub fn rhino(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
 /// # Errors
 /// [`ImportError`] when the text is not IGES, is in compressed or binary form, or holds no entity.
 pub fn iges(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
-    iges::read(bytes, name)
+    iges::read(bytes, name, &Options::default())
 }
 
 /// Reads OpenSCAD's flattened solids (`openscad -o x.csg`); `name` is the file's name in messages.
@@ -383,7 +382,16 @@ pub fn iges(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
 /// # Errors
 /// [`ImportError::Solid`] names the line of the fault. A node that cannot be made is left out with a warning.
 pub fn scad(bytes: &[u8], name: &str, facets: Facets) -> Result<Import, ImportError> {
-    decoded(bytes, name, |text| scad::read(text, name, facets, Path::new(name).parent()))
+    scad_with(bytes, name, &Options { facets, ..Options::default() })
+}
+
+/// As [`scad`], with the limits of `options` for the files that it names.
+///
+/// # Errors
+/// As [`scad`].
+pub fn scad_with(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Import, ImportError> {
+    let files = OtherFiles::new(Path::new(name).parent(), options);
+    decoded(bytes, name, |text| scad::read(text, name, options, files))
 }
 
 /// Reads BRL-CAD's text of solids (`g2asc`, version 5 and the older 4); `name` is the file's name in messages.

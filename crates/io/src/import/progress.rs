@@ -2,7 +2,8 @@
 //!
 //! ```text
 //!   Read ──▶ Parse ──▶ Records b/n … n/n ──▶ Bodies 0/n … ──▶ Faces 0/n ──▶ ... ──▶ Faces n/n
-//!            from one thread; both of STEP alone                  from any thread, in any order
+//!            from one thread: records of STEP and OpenSCAD,       from any thread, in any order: of STEP and IGES
+//!            bodies of STEP alone
 //! ```
 
 use super::{Facets, Files};
@@ -49,7 +50,7 @@ pub enum Stage {
 #[derive(Clone, Copy, Default)]
 pub struct Options<'a> {
     /// Called at the beginning of each stage, before every body, after every face and some bytes of text, from several
-    /// threads: it should return at once.
+    /// threads: it should return at once. Files that a file names have stages of their own.
     pub progress: Option<&'a (dyn Fn(Stage) + Sync)>,
     /// Most bytes of a file, before and after gzip is undone. Offsets are 32 bits wide: the limit is 4 GiB at most, and
     /// by default.
@@ -133,5 +134,38 @@ mod tests {
         built.sort_by_key(|stage| if let Stage::Faces { built, .. } = stage { *built } else { 0 });
         assert_eq!(built, (1..=total).map(|built| Stage::Faces { built, total }).collect::<Vec<_>>());
         assert_eq!(import.model, open(&path).unwrap().model);
+    }
+
+    /// Each hull, and a place in every so many bytes of text.
+    #[test]
+    fn the_text_of_openscad_is_reported() {
+        let stages = Mutex::new(Vec::new());
+        let tell = |stage| stages.lock().unwrap().push(stage);
+        let options = Options { progress: Some(&tell), ..Options::default() };
+        let text = format!("{}cube(size = 1);", "cube(size = 1);\n".repeat(10_000));
+        crate::import::scad_with(text.as_bytes(), "t.csg", &options).unwrap();
+        let long = stages.lock().unwrap().split_off(0);
+        assert!((2..4).contains(&long.len()), "{long:?}");
+        let all = text.len() as u64;
+        assert!(long.iter().all(|s| matches!(s, Stage::Records { read, bytes } if read <= bytes && *bytes == all)));
+        if cfg!(feature = "scad-facets") {
+            let hull = "hull() { cube(size = 1); }\n".repeat(5);
+            crate::import::scad_with(hull.as_bytes(), "t.csg", &options).unwrap();
+            assert_eq!(stages.lock().unwrap().len(), 5);
+        }
+    }
+
+    /// IGES has no bodies that are mapped first.
+    #[test]
+    fn faces_of_iges_are_reported() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/import/iges/tests/cylinder.igs");
+        let stages = Mutex::new(Vec::new());
+        let tell = |stage| stages.lock().unwrap().push(stage);
+        let import = open_with(&path, &Options { progress: Some(&tell), ..Options::default() }).unwrap();
+        let total = import.report.faces;
+        let mut built: Vec<_> = stages.into_inner().unwrap()[2..].to_vec();
+        built.sort_by_key(|stage| if let Stage::Faces { built, .. } = stage { *built } else { usize::MAX });
+        assert_eq!(built, (0..=total).map(|built| Stage::Faces { built, total }).collect::<Vec<_>>());
+        assert!(total > 1);
     }
 }

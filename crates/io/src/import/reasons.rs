@@ -13,6 +13,9 @@ use std::collections::BTreeMap;
 /// Replaces numbers that differ.
 const OTHERS: &str = "…";
 
+/// Letters of the ending of a file's name, at most.
+const LONGEST_ENDING: usize = 8;
+
 /// How often each message was given.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Reasons {
@@ -81,7 +84,17 @@ fn words(message: &str) -> Vec<String> {
 }
 
 fn is_number(word: &str) -> bool {
-    word == OTHERS || word.contains(|c: char| c.is_ascii_digit())
+    word == OTHERS || (word.contains(|c: char| c.is_ascii_digit()) && !is_file(word))
+}
+
+/// Whether a word is a file's name by its ending: such names are kept, whatever digits they have.
+fn is_file(word: &str) -> bool {
+    let word = word.trim_end_matches(['.', ',', ':', ';']);
+    let ending = word.rsplit_once('.').map_or("", |(_, ending)| ending);
+    let is_ending = ending.starts_with(|c: char| c.is_ascii_alphabetic())
+        && ending.len() <= LONGEST_ENDING
+        && ending.chars().all(|c| c.is_ascii_alphanumeric());
+    is_ending && word.parse::<f64>().is_err()
 }
 
 #[cfg(test)]
@@ -104,6 +117,14 @@ mod tests {
         assert_eq!(said(&edges), [("edge … lies … mm off".to_owned(), 2)]);
         assert_eq!(said(&["2 of 4 sides", "3 of 4 sides", "2 of 4 sides"]), [("… of 4 sides".to_owned(), 3)]);
         assert_eq!(said(&["no loop", "no area"]).len(), 2);
+    }
+
+    #[test]
+    fn names_of_files_are_kept() {
+        let one = "surface: example010.dat: no such file";
+        let other = "surface: example011.dat: no such file";
+        assert_eq!(said(&[one, other, one]), [(one.to_owned(), 2), (other.to_owned(), 1)]);
+        assert_eq!(said(&["a1.stp, at 1.e3 mm", "a1.stp, at 2.5 mm"]), [("a1.stp, at … mm".to_owned(), 2)]);
     }
 
     #[test]

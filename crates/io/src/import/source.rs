@@ -16,6 +16,21 @@ const FREE_EXPANSION: u64 = 1 << 20;
 /// How much of a stream is read before its format must be recognised: no format begins later.
 const BEGINNING: u64 = 1 << 20;
 
+/// Where other files stand that a file names, and how much of one is read.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OtherFiles<'a> {
+    /// The folder of the file that names them, if it has one.
+    pub folder: Option<&'a Path>,
+    /// Bytes of one of them, at most.
+    pub most: u64,
+}
+
+impl<'a> OtherFiles<'a> {
+    pub fn new(folder: Option<&'a Path>, options: &Options<'_>) -> Self {
+        Self { folder, most: options.most_bytes() }
+    }
+}
+
 /// The bytes of a file, gzip undone.
 pub(super) fn load(path: &Path, name: &str, options: &Options<'_>) -> Result<Vec<u8>, ImportError> {
     let unreadable = |source| ImportError::Read { file: name.to_owned(), source };
@@ -52,9 +67,6 @@ pub(super) fn drain(
             return Err(ImportError::Format { file: name.to_owned() });
         }
         stream.take(limit + 1 - BEGINNING.min(limit)).read_to_end(&mut bytes).map_err(unreadable)?;
-    }
-    if bytes.len() as u64 > limit {
-        return Err(ImportError::TooLarge { file: name.to_owned(), limit });
     }
     inflated(bytes, name, limit)
 }
@@ -113,8 +125,12 @@ fn is_gzip(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }
 
-/// Undoes gzip, if the bytes are compressed; output is bounded by [`MAX_EXPANSION`] and by `limit`.
+/// Undoes gzip, if the bytes are compressed. `limit` bounds the bytes before and after, [`MAX_EXPANSION`] their
+/// expansion.
 pub(super) fn inflated(bytes: Vec<u8>, name: &str, limit: u64) -> Result<Vec<u8>, ImportError> {
+    if bytes.len() as u64 > limit {
+        return Err(ImportError::TooLarge { file: name.to_owned(), limit });
+    }
     if !is_gzip(&bytes) {
         return Ok(bytes);
     }
@@ -153,6 +169,7 @@ mod tests {
     fn gzip_bomb_is_an_error() {
         let bomb = gzip(&vec![b' '; 1 << 24]);
         assert!(matches!(inflated(bomb, "bomb.gz", ALL), Err(ImportError::Expansion { .. })));
+        assert!(matches!(inflated(vec![b' '; 11], "b.stp", 10), Err(ImportError::TooLarge { limit: 10, .. })));
         // less than a bomb, but more than the limit
         assert!(matches!(inflated(gzip(&[b' '; 5000]), "b.gz", 4000), Err(ImportError::Expansion { limit: 4000, .. })));
     }

@@ -11,7 +11,8 @@
 
 use super::Files;
 use std::collections::HashMap;
-use std::io;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
@@ -76,8 +77,10 @@ impl Files for Folders {
         Some(own.to_string_lossy().into_owned())
     }
 
-    fn read(&self, found: &str) -> io::Result<Vec<u8>> {
-        std::fs::read(found)
+    fn read(&self, found: &str, most: u64) -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        File::open(found)?.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+        Ok(bytes)
     }
 }
 
@@ -201,6 +204,11 @@ mod tests {
             ("gone.stp", None),
         ] {
             assert_eq!(found(name).as_deref(), path, "{name}");
+        }
+        // as much as shows that it is too long
+        std::fs::write(&main, [7; 100]).unwrap();
+        for (most, length) in [(0, 1), (99, 100), (100, 100), (u64::MAX, 100)] {
+            assert_eq!(folders.read(&main, most).unwrap(), vec![7; length], "{most}");
         }
         std::fs::remove_dir_all(&root).unwrap();
     }

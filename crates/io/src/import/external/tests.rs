@@ -39,7 +39,7 @@ impl Files for Shelf {
         self.files.iter().find(|f| f.0 == name).map(|f| f.0.to_owned())
     }
 
-    fn read(&self, found: &str) -> io::Result<Vec<u8>> {
+    fn read(&self, found: &str, _: u64) -> io::Result<Vec<u8>> {
         self.read.lock().unwrap().push(found.to_owned());
         let file = self.files.iter().find(|f| f.0 == found).unwrap();
         if file.1.is_empty() { Err(io::Error::other("worn out")) } else { Ok(file.1.clone().into_bytes()) }
@@ -67,6 +67,21 @@ fn parts_of_another_file_stand_in_their_places() {
     assert_eq!(report.occurrences, ["o0", "o1"]);
     assert_eq!((report.external_files.as_slice(), report.missing_files.len()), (&["t8_bolt.stp".to_owned()][..], 0));
     assert_eq!((found.model.unit.as_str(), found.model.name.as_str()), ("mm", "assembly"));
+}
+
+/// The limit on a file counts for each of them.
+#[test]
+fn a_file_beyond_the_limit_is_left_out_by_name() {
+    let shelf = Shelf::new(&[("a.stp", ASSEMBLY), ("t8_bolt.stp", BOLT)]);
+    let read = |most: usize| {
+        let options = Options { files: Some(&shelf), most_bytes: Some(most as u64), ..Options::default() };
+        step_with(ASSEMBLY.as_bytes(), "a.stp", &options).unwrap()
+    };
+    assert_eq!(read(BOLT.len()).model.instances.len(), 2);
+    let (most, short) = (BOLT.len() - 1, read(BOLT.len() - 1));
+    let why = format!("external file not read: t8_bolt.stp: larger than {most} bytes, the most that is read");
+    assert_eq!(told(&short), [format!("a.stp:28: #21: {why}")]);
+    assert_eq!((short.model.instances.len(), short.report.missing_files), (0, vec!["t8_bolt.stp".to_owned()]));
 }
 
 #[test]

@@ -39,7 +39,7 @@ mod tree;
 mod trim;
 mod value;
 
-use super::{FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Place, Warnings, text};
+use super::{FaceCount, FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Options, Place, Warnings, text};
 use crate::brep::{build_face, settle};
 use crate::model::{Instance, Model, Part};
 use file::File;
@@ -55,7 +55,7 @@ pub(super) fn recognise(bytes: &[u8]) -> bool {
 }
 
 /// Reads IGES text; `name` is the file's name in messages.
-pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Import, ImportError> {
     let wide = text::utf16(bytes);
     let bytes = wide.as_ref().map_or(bytes, |(text, _)| text.as_bytes());
     let form = |form| ImportError::IgesForm { file: name.to_owned(), form };
@@ -98,7 +98,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
         ..ImportReport::default()
     };
     settled(&geometry, &mut bodies, &mut report);
-    build(&geometry, &bodies, &mut model, &mut report);
+    build(&geometry, &bodies, &mut model, &mut report, options);
     let faces = model.face_count();
     if !solids.is_empty() {
         place_solids(&geometry, &bodies, &solids, &mut model, &mut report);
@@ -154,7 +154,18 @@ fn settled(geometry: &Geometry<'_>, bodies: &mut [Body], report: &mut ImportRepo
 }
 
 /// Builds all faces, in parallel; results are taken in file order.
-fn build(geometry: &Geometry<'_>, bodies: &[Body], model: &mut Model, report: &mut ImportReport) {
+fn build(
+    geometry: &Geometry<'_>,
+    bodies: &[Body],
+    model: &mut Model,
+    report: &mut ImportReport,
+    options: &Options<'_>,
+) {
+    let count = FaceCount::new(options, bodies.iter().map(|b| b.shells.faces.len() + b.sheets.len()).sum());
+    let counted = |built| {
+        count.one();
+        built
+    };
     let tolerance = geometry.file.global.resolution;
     let record = |id, part| FaceRecord { id, part, tolerance, ..FaceRecord::default() };
     for (part, body) in bodies.iter().enumerate() {
@@ -166,7 +177,7 @@ fn build(geometry: &Geometry<'_>, bodies: &[Body], model: &mut Model, report: &m
         model.parts[part].stated_edges = shared.sources();
         let solid = shared.faces.par_iter().map(|(f, colour)| (f.id, *colour, build_face(f, &shared.edges, tolerance)));
         let free = body.sheets.par_iter().map(|(sheet, colour)| (sheet.id, *colour, sheet.build(tolerance)));
-        let built: Vec<_> = solid.chain(free).collect();
+        let built: Vec<_> = solid.chain(free).map(counted).collect();
         for (id, colour, result) in built {
             match result {
                 Ok(mut built) => {

@@ -11,21 +11,22 @@
 //! Source: Khronos Group, *glTF 2.0 Specification*.
 
 use super::{Found, MOST_PLACED, Piece, Placement, Wrong};
+use crate::import::source::{self, OtherFiles};
 use crate::model::Colour;
 use base64::Engine;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use gltf::accessor::{Accessor, DataType, Dimensions};
 use gltf::mesh::{Mode, Primitive};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Nodes within nodes.
 const MOST_NESTED: usize = 256;
 
-pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Found, Wrong> {
+pub(super) fn read(bytes: &[u8], files: OtherFiles<'_>) -> Result<Found, Wrong> {
     let file = ::gltf::Gltf::from_slice(bytes).map_err(|e| Wrong::new(e.to_string()))?;
-    let buffers: Vec<Vec<u8>> =
-        file.buffers().map(|b| buffer(&b, file.blob.as_deref(), folder)).collect::<Result<_, _>>()?;
     let mut found = Found { format: "glTF", unit: "metre".to_owned(), ..Found::default() };
+    let buffers: Vec<Vec<u8>> =
+        file.buffers().map(|b| buffer(&b, file.blob.as_deref(), files, &mut found.files)).collect::<Result<_, _>>()?;
     // pieces of a mesh, by its number
     let mut pieces = Vec::new();
     for mesh in file.meshes() {
@@ -81,8 +82,13 @@ pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Found, Wrong> 
     Ok(found)
 }
 
-/// The bytes of a buffer: within the file, as text in it, or beside it.
-fn buffer(buffer: &gltf::Buffer<'_>, blob: Option<&[u8]>, folder: Option<&Path>) -> Result<Vec<u8>, Wrong> {
+/// The bytes of a buffer: within the file, as text in it, or beside it, a file that `opened` then has.
+fn buffer(
+    buffer: &gltf::Buffer<'_>,
+    blob: Option<&[u8]>,
+    files: OtherFiles<'_>,
+    opened: &mut Vec<PathBuf>,
+) -> Result<Vec<u8>, Wrong> {
     let wrong = |what: String| Wrong::new(format!("buffer {}: {what}", buffer.index()));
     let bytes = match buffer.source() {
         gltf::buffer::Source::Bin => blob.ok_or_else(|| wrong("is not in the file".to_owned()))?.to_vec(),
@@ -94,12 +100,10 @@ fn buffer(buffer: &gltf::Buffer<'_>, blob: Option<&[u8]>, folder: Option<&Path>)
             }
             None => {
                 let name = uri.replace("%20", " ");
-                let path = folder.map_or_else(|| Path::new(&name).to_path_buf(), |f| f.join(&name));
-                let found = std::fs::metadata(&path).map_err(|e| wrong(format!("{name}: {e}")))?;
-                if !found.is_file() || found.len() > u64::from(u32::MAX) {
-                    return Err(wrong(format!("{name}: no file below 4 GiB")));
-                }
-                std::fs::read(&path).map_err(|e| wrong(format!("{name}: {e}")))?
+                let path = files.folder.map_or_else(|| Path::new(&name).to_path_buf(), |f| f.join(&name));
+                let bytes = source::beside(&path, files.most).map_err(|why| wrong(format!("{name}: {why}")))?;
+                opened.push(path);
+                bytes
             }
         },
     };

@@ -19,11 +19,12 @@ mod threemf;
 mod xml;
 
 use super::facets::{closed, triangulate};
+use super::source::OtherFiles;
 use super::{Import, ImportError, ImportReport, Place, Warnings, stem};
 use crate::model::{Colour, Instance, Mesh, Model, Part};
 use glam::{DAffine3, DVec3};
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::PathBuf;
 
 /// Colours of one object, each of which is a mesh of its own.
 const MOST_COLOURS: usize = 256;
@@ -61,6 +62,8 @@ struct Found {
     placements: Vec<Placement>,
     /// Things left out, by kind.
     notes: Vec<(&'static str, String)>,
+    /// Files that were read, too.
+    files: Vec<PathBuf>,
 }
 
 /// Why a file is refused: the line, if it is text, and the fault.
@@ -158,15 +161,15 @@ impl Shared {
     }
 }
 
-/// The objects in the bytes. `ending` gives the format, `folder` holds other files.
-fn found(bytes: &[u8], ending: &str, folder: Option<&Path>) -> Result<Found, Wrong> {
+/// The objects in the bytes, and in other files that they name. `ending` gives the format.
+fn found(bytes: &[u8], ending: &str, files: OtherFiles<'_>) -> Result<Found, Wrong> {
     match ending {
         "stl" => stl::read(bytes),
         "off" => off::read(bytes),
         "ply" => ply::read(bytes),
         "3mf" => threemf::read(bytes),
         "amf" => amf::read(bytes),
-        _ => gltf::read(bytes, folder),
+        _ => gltf::read(bytes, files),
     }
 }
 
@@ -186,7 +189,7 @@ pub(super) fn recognise(bytes: &[u8]) -> Option<&'static str> {
 }
 
 /// Reads a file of triangles.
-pub(super) fn read(bytes: &[u8], name: &str, ending: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
+pub(super) fn read(bytes: &[u8], name: &str, ending: &str, files: OtherFiles<'_>) -> Result<Import, ImportError> {
     let wrong = |w: Wrong| ImportError::Mesh {
         file: match w.line {
             Some(line) => format!("{name}:{line}"),
@@ -194,13 +197,14 @@ pub(super) fn read(bytes: &[u8], name: &str, ending: &str, folder: Option<&Path>
         },
         message: w.message,
     };
-    let Found { format, unit, pieces, mut placements, mut notes } = found(bytes, ending, folder).map_err(wrong)?;
+    let Found { format, unit, pieces, mut placements, mut notes, files } =
+        found(bytes, ending, files).map_err(wrong)?;
     if pieces.iter().all(|p| p.triangles.is_empty()) {
         return Err(ImportError::Mesh { file: name.to_owned(), message: format!("{format} without a triangle") });
     }
     let mut model = Model { name: stem(name), unit: unit.clone(), ..Model::default() };
     let units = if unit.is_empty() { Vec::new() } else { vec![unit] };
-    let mut report = ImportReport { format: format.to_owned(), units, ..ImportReport::default() };
+    let mut report = ImportReport { format: format.to_owned(), units, files_read: files, ..ImportReport::default() };
     if placements.is_empty() {
         let all =
             |(piece, p): (usize, &Piece)| Placement { piece, transform: DAffine3::IDENTITY, name: p.name.clone() };
@@ -244,7 +248,8 @@ pub(super) fn pieces(bytes: &[u8], ending: &str) -> Result<Vec<Triangles>, Strin
         Some(line) => format!("line {line}: {}", w.message),
         None => w.message,
     };
-    let Found { pieces, placements, .. } = found(bytes, ending, None).map_err(wrong)?;
+    let alone = OtherFiles { folder: None, most: 0 };
+    let Found { pieces, placements, .. } = found(bytes, ending, alone).map_err(wrong)?;
     if let Some(piece) = pieces.iter().find(|p| p.points.iter().any(|x| !x.is_finite())) {
         return Err(format!("{}: a coordinate is not finite", piece.name));
     }

@@ -7,7 +7,8 @@
 //! The format names no colour space; programs store the values of their screen, sRGB.
 
 use super::lines::lines;
-use crate::import::{Place, Warnings, colour, source, text};
+use crate::import::source::{self, OtherFiles};
+use crate::import::{Place, Warnings, colour, text};
 use crate::model::Colour;
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -35,13 +36,13 @@ impl Materials {
         self.colours.get(name).copied()
     }
 
-    /// Reads one file of `folder`.
-    pub fn open(&mut self, folder: Option<&Path>, name: &str, line: usize, warnings: &mut Warnings) {
+    /// Reads one file.
+    pub fn open(&mut self, files: OtherFiles<'_>, name: &str, line: usize, warnings: &mut Warnings) {
         self.files += 1;
-        let result = match folder {
+        let result = match files.folder {
             _ if self.files > MAX_FILES => Err("too many files of materials".into()),
             None => Err("the model was not read from a folder".into()),
-            Some(folder) => load(folder, name),
+            Some(folder) => load(folder, name, files.most),
         };
         match result {
             Ok((path, bytes)) => {
@@ -101,13 +102,13 @@ pub(super) fn brief(text: &str) -> String {
     words
 }
 
-/// Path and bytes of `folder/name`, which must not leave the folder.
-fn load(folder: &Path, name: &str) -> Result<(PathBuf, Vec<u8>), String> {
+/// Path and bytes of `folder/name`, which must not leave the folder; `most` bytes at most.
+fn load(folder: &Path, name: &str, most: u64) -> Result<(PathBuf, Vec<u8>), String> {
     let inside = |c| matches!(c, Component::Normal(_) | Component::CurDir);
     let name = name.replace('\\', "/");
     if name.is_empty() || !Path::new(&name).components().all(inside) {
         return Err("not beside the model".into());
     }
     let path = folder.join(name);
-    source::beside(&path, MAX_BYTES).map(|text| (path, text))
+    source::beside(&path, MAX_BYTES.min(most)).map(|text| (path, text))
 }

@@ -23,8 +23,8 @@ mod read;
 
 pub(super) use lines::lines;
 
+use super::source::OtherFiles;
 use super::{Import, ImportError};
-use std::path::Path;
 
 /// Words with which statements begin.
 const KEYWORDS: [&str; 22] = [
@@ -50,9 +50,9 @@ pub(super) fn recognise(bytes: &[u8]) -> bool {
     vertex
 }
 
-/// Reads the text; materials are looked for in `folder`.
-pub(super) fn read(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
-    let mut reader = read::Reader::new(name, folder, bytes.len());
+/// Reads the text, and the materials that it names.
+pub(super) fn read(bytes: &[u8], name: &str, files: OtherFiles<'_>) -> Result<Import, ImportError> {
+    let mut reader = read::Reader::new(name, files, bytes.len());
     for (line, text) in lines(bytes) {
         reader.statement(line, &text);
     }

@@ -6,11 +6,11 @@ use super::index;
 use super::material::{Materials, brief};
 use super::polygons::{Look, Polygons};
 use crate::import::parts::{self, Stated};
+use crate::import::source::OtherFiles;
 use crate::import::{FACE_LOST, Import, ImportError, ImportReport, Place, Warnings};
 use crate::model::Face;
 use glam::{DVec3, DVec4};
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// The element between its first statement and its `end`.
 enum Open {
@@ -24,7 +24,7 @@ enum Open {
 /// A file while it is read.
 pub(super) struct Reader<'f> {
     name: &'f str,
-    folder: Option<&'f Path>,
+    files: OtherFiles<'f>,
     warnings: Warnings,
     report: ImportReport,
     vertices: Vec<DVec4>,
@@ -50,11 +50,11 @@ const WORK_PER_BYTE: usize = 16;
 const MAX_UNUSED: usize = 64;
 
 impl<'f> Reader<'f> {
-    pub fn new(name: &'f str, folder: Option<&'f Path>, bytes: usize) -> Self {
+    pub fn new(name: &'f str, files: OtherFiles<'f>, bytes: usize) -> Self {
         let report = ImportReport { format: "Wavefront OBJ".into(), ..ImportReport::default() };
         Self {
             name,
-            folder,
+            files,
             report,
             warnings: Warnings::new(name),
             vertices: Vec::new(),
@@ -128,7 +128,7 @@ impl<'f> Reader<'f> {
             "mtllib" => {
                 // several names, or one with spaces in it
                 let names = if rest().matches(".mtl").count() > 1 { words.collect() } else { vec![rest()] };
-                names.into_iter().for_each(|n| self.materials.open(self.folder, n, line, &mut self.warnings));
+                names.into_iter().for_each(|n| self.materials.open(self.files, n, line, &mut self.warnings));
             }
             _ => {
                 if let Err(why) = self.free_form(keyword, words, line) {

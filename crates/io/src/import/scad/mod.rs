@@ -36,7 +36,8 @@ mod twist;
 
 use super::colour::linear;
 use super::solid::{Assembly, Placed};
-use super::{Import, ImportError, ImportReport, Place, Warnings};
+use super::source::OtherFiles;
+use super::{Import, ImportError, ImportReport, Options, Place, Stage, Warnings};
 use crate::csg::Op;
 use crate::model::{Colour, Model};
 use args::{Args, Value};
@@ -46,7 +47,6 @@ use flat::Lift;
 use frame::{Frame, Made, Outcome};
 use glam::{DAffine2, DAffine3, DMat3, DVec3};
 use lex::{Lexer, Token};
-use std::path::Path;
 
 /// Whether round solids are round.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -112,13 +112,20 @@ const UNIONS: [&str; 5] = ["group", "union", "color", "multmatrix", "render"];
 /// Other nodes with children.
 const OTHERS: [&str; 4] = ["difference", "intersection", "linear_extrude", "rotate_extrude"];
 
-/// Reads flattened text; `name` is the file's name in messages.
-/// Files that it names are looked for in `folder`.
-pub(super) fn read(text: &str, name: &str, facets: Facets, folder: Option<&Path>) -> Result<Import, ImportError> {
+/// Reads flattened text, and the files that it names; `name` is its own name in messages.
+pub(super) fn read(
+    text: &str,
+    name: &str,
+    options: &Options<'_>,
+    files: OtherFiles<'_>,
+) -> Result<Import, ImportError> {
     let mut reader = Reader {
         lexer: Lexer::new(text),
-        facets,
-        folder,
+        options: *options,
+        bytes: text.len() as u64,
+        reported: 0,
+        facets: options.facets,
+        files,
         assembly: Assembly::default(),
         warnings: Warnings::new(name),
         report: ImportReport { format: "OpenSCAD csg".to_owned(), ..ImportReport::default() },
@@ -143,8 +150,13 @@ pub(super) fn read(text: &str, name: &str, facets: Facets, folder: Option<&Path>
 
 struct Reader<'a> {
     lexer: Lexer<'a>,
+    options: Options<'a>,
+    /// Length of the text.
+    bytes: u64,
+    /// Place in it that was reported last.
+    reported: usize,
     facets: Facets,
-    folder: Option<&'a Path>,
+    files: OtherFiles<'a>,
     assembly: Assembly,
     warnings: Warnings,
     report: ImportReport,
@@ -161,6 +173,8 @@ struct Reader<'a> {
     again: usize,
 }
 
+/// Bytes after which the place in the text is reported again.
+const REPORTED: usize = 1 << 16;
 /// Characters that are read twice, to find the box of a resized node.
 const MOST_AGAIN: usize = 1 << 30;
 
@@ -188,7 +202,9 @@ impl<'a> Reader<'a> {
                         self.lexer.expect(b'{')?;
                         stack.push(frame);
                     } else {
+                        let is_slow = done.gather.is_some();
                         self.close(done, stack.last_mut().expect("the file's own frame"));
+                        self.tell(is_slow);
                     }
                     continue;
                 }
@@ -216,7 +232,17 @@ impl<'a> Reader<'a> {
             } else {
                 self.lexer.expect(b';')?;
                 self.close(made, stack.last_mut().expect("the file's own frame"));
+                self.tell(false);
             }
+        }
+    }
+
+    /// Reports the place in the text: every so often, and after a node that is made of facets.
+    fn tell(&mut self, is_slow: bool) {
+        let read = self.lexer.place();
+        if is_slow || read >= self.reported + REPORTED {
+            self.reported = read;
+            self.options.tell(Stage::Records { read: read as u64, bytes: self.bytes });
         }
     }
 

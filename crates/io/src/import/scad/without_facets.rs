@@ -49,7 +49,8 @@ impl Gather {
 
 impl Reader<'_> {
     pub(super) fn facet_leaf(&mut self, args: &Args<'_>) -> Result<Made<Shape>, Fault> {
-        let place = self.folder.map(|f| format!(" (files would be those of {})", f.display())).unwrap_or_default();
+        let place =
+            self.files.folder.map(|f| format!(" (files would be those of {})", f.display())).unwrap_or_default();
         Err(args.fault(format!("{NEEDED}{place}")))
     }
 

@@ -6,7 +6,7 @@
 use super::items::Scene;
 use super::text::{Outcome, Value, shortened};
 use crate::construct::subdivide::Scheme;
-use crate::import::{Import, Options, source};
+use crate::import::{Import, source};
 use std::path::{Component, Path, PathBuf};
 
 /// Largest file of data, bytes.
@@ -34,7 +34,8 @@ fn path(scene: &Scene<'_>, value: Value<'_>) -> Outcome<PathBuf> {
 pub(super) fn data(scene: &Scene<'_>, value: Value<'_>) -> Outcome<(Vec<u8>, String)> {
     let path = path(scene, value)?;
     let shown = path.display().to_string();
-    let bytes = source::beside(&path, MOST_BYTES).map_err(|why| value.fault(format!("{shown}: {why}")))?;
+    let most = MOST_BYTES.min(scene.options.most_bytes());
+    let bytes = source::beside(&path, most).map_err(|why| value.fault(format!("{shown}: {why}")))?;
     Ok((bytes, shown))
 }
 
@@ -44,11 +45,11 @@ pub(super) fn model(scene: &Scene<'_>, value: Value<'_>) -> Outcome<Import> {
     if super::named(&path) {
         return Err(value.fault("a scene within a scene is not read"));
     }
-    crate::import::open(&path).map_err(|e| value.fault(e))
+    crate::import::open_with(&path, &scene.options).map_err(|e| value.fault(e))
 }
 
 /// The polygons of a file as the control meshes of smooth surfaces, within `tolerance` millimetres.
 pub(super) fn subdivided(scene: &Scene<'_>, value: Value<'_>, scheme: Scheme, tolerance: f64) -> Outcome<Import> {
     let path = path(scene, value)?;
-    crate::import::open_subdivided(&path, scheme, Some(tolerance), &Options::default()).map_err(|e| value.fault(e))
+    crate::import::open_subdivided(&path, scheme, Some(tolerance), &scene.options).map_err(|e| value.fault(e))
 }

@@ -11,7 +11,7 @@ use super::text::{Fault, Outcome, Table, Value, shortened};
 use super::{VERSION, cameras, cuts, place};
 use crate::import::camera::PictureSettings;
 use crate::import::solid::Assembly;
-use crate::import::{FaceRecord, Import, ImportReport, Warning};
+use crate::import::{FaceRecord, Import, ImportReport, Options, Warning};
 use crate::model::{Colour, Face, Instance, Model, Part, Primitive, Solid, SurfaceTable};
 use glam::DAffine3;
 use std::collections::{BTreeSet, HashMap};
@@ -30,7 +30,7 @@ const UNITS: [(&str, f64); 7] =
 const MOST_COPIES: usize = 1 << 16;
 
 /// Reads the text.
-pub(super) fn read(text: &str, file: &str, folder: Option<&Path>) -> Outcome<Import> {
+pub(super) fn read(text: &str, file: &str, folder: Option<&Path>, options: &Options<'_>) -> Outcome<Import> {
     let parsed = DeTable::parse(text).map_err(|e| {
         let at = e.span().map_or(0, |s| s.start);
         Fault::new(at, e.message().trim_end().to_owned())
@@ -39,7 +39,7 @@ pub(super) fn read(text: &str, file: &str, folder: Option<&Path>) -> Outcome<Imp
     let root = Spanned::new(span, DeValue::Table(parsed.into_inner()));
     let mut table = Value::new("", &root).table()?;
     table.at = 0;
-    let mut scene = Scene::new(text, folder);
+    let mut scene = Scene::new(text, folder, options);
     let mut model = settings(&mut scene, &mut table, file)?;
     scene.list(&mut table)?;
     let (instances, named) = (table.get("instance"), table.get("camera"));
@@ -296,6 +296,7 @@ impl<'a> Builder<'a> {
             own.left_out.entry(kind.clone()).or_default().extend(why);
         }
         own.external_files.extend(of.external_files.iter().cloned());
+        own.missing_files.extend(of.missing_files.iter().cloned());
         self.warnings.extend(import.warnings.iter().cloned());
     }
 

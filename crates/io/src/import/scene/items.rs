@@ -11,7 +11,7 @@ use super::solid::{self, Body};
 use super::surface::{self, Made};
 use super::text::{Fault, Outcome, Table, Value, shortened};
 use crate::construct::subdivide::Scheme;
-use crate::import::Import;
+use crate::import::{Import, Options};
 use crate::model::{Colour, Part};
 use glam::DAffine3;
 use std::cell::{OnceCell, RefCell};
@@ -90,6 +90,8 @@ pub(super) struct File {
 pub(super) struct Scene<'a> {
     pub text: &'a str,
     pub folder: Option<&'a Path>,
+    /// How other files are read.
+    pub options: Options<'a>,
     /// Millimetres of the file's unit.
     pub unit: f64,
     /// Of approximations, in the file's unit.
@@ -111,10 +113,11 @@ pub(super) struct Scene<'a> {
 }
 
 impl<'a> Scene<'a> {
-    pub fn new(text: &'a str, folder: Option<&'a Path>) -> Self {
+    pub fn new(text: &'a str, folder: Option<&'a Path>, options: &Options<'a>) -> Self {
         Self {
             text,
             folder,
+            options: *options,
             unit: 1.0,
             tolerance: 1e-3,
             items: Vec::new(),

@@ -30,7 +30,7 @@ mod tests;
 mod text;
 mod trim;
 
-use super::{Import, ImportError};
+use super::{Import, ImportError, Options};
 use std::path::Path;
 use text::Fault;
 
@@ -45,8 +45,13 @@ pub(super) fn named(path: &Path) -> bool {
     [".toml", ".toml.gz"].iter().any(|e| file.ends_with(e))
 }
 
-/// Reads the text; other files are looked for in `folder`, if there is one.
-pub(super) fn read(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
+/// Reads the text; other files are looked for in `folder`, if there is one, and read as `options` say.
+pub(super) fn read(
+    bytes: &[u8],
+    name: &str,
+    folder: Option<&Path>,
+    options: &Options<'_>,
+) -> Result<Import, ImportError> {
     let placed = |text: &[u8], fault: Fault| {
         let before = &text[..fault.at.min(text.len())];
         let line = 1 + before.iter().filter(|b| **b == b'\n').count();
@@ -62,5 +67,5 @@ pub(super) fn read(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Im
         Ok(text) => text.strip_prefix('\u{feff}').unwrap_or(text),
         Err(e) => return Err(placed(bytes, Fault::new(e.valid_up_to(), "not UTF-8 text"))),
     };
-    instances::read(text, name, folder).map_err(|fault| placed(text.as_bytes(), fault))
+    instances::read(text, name, folder, options).map_err(|fault| placed(text.as_bytes(), fault))
 }

@@ -90,6 +90,17 @@ impl Walk<'_> {
         self.placed.len() >= MAX_INSTANCES || self.visits >= MAX_VISITS
     }
 
+    /// Counts a group that is nested too deep, and all below it, as seen: none of them is a root.
+    fn pass_over(&mut self, id: u32) {
+        let mut open = vec![id];
+        while let Some(id) = open.pop() {
+            if self.visited.insert(id) {
+                let placements = self.assembly.groups.get(&id).into_iter().flat_map(|group| &group.placements);
+                open.extend(placements.map(|placement| self.assembly.group(placement.child)));
+            }
+        }
+    }
+
     fn visit(&mut self, id: u32, transform: DAffine3, path: &mut Vec<u32>, name: &str) {
         self.visits += 1;
         if self.trail.contains(&id) {
@@ -98,6 +109,7 @@ impl Walk<'_> {
         }
         if self.trail.len() >= MAX_LEVELS {
             self.ledger.note("occurrence left out", id, format!("it is nested deeper than {MAX_LEVELS} levels"));
+            self.pass_over(id);
             return;
         }
         let Some(group) = self.assembly.groups.get(&id) else { return };

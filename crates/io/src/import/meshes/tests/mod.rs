@@ -3,17 +3,16 @@
 mod archives;
 mod scenes;
 
-use super::read;
-use crate::import::Import;
+use crate::import::{Import, mesh};
 use crate::model::{Mesh, Model};
 use glam::DVec3;
 
 fn import(bytes: &[u8], ending: &str) -> Import {
-    read(bytes, "t.x", ending, None).expect("a mesh")
+    mesh(bytes, "t.x", ending, None).expect("a mesh")
 }
 
 fn refusal(bytes: &[u8], ending: &str) -> String {
-    read(bytes, "t.x", ending, None).expect_err("no mesh").to_string()
+    mesh(bytes, "t.x", ending, None).expect_err("no mesh").to_string()
 }
 
 /// The volume within all placed meshes.

@@ -1,6 +1,7 @@
 //! glTF.
 
 use super::{CORNERS, FACES, import, refusal, volume};
+use crate::import::{Options, open_with};
 use base64::Engine;
 use glam::DVec3;
 
@@ -57,6 +58,27 @@ fn metres_and_y_up_become_millimetres_and_z_up() {
         assert!(part.closed && part.name == "tetra" && part.meshes[0].colour == Some([0.25, 0.5, 0.75, 0.5]));
     }
     assert_eq!(super::super::recognise(&binary(&text(""), &data())), Some("glb"));
+}
+
+/// The limit on a file counts for its buffers, too; those that are read are inputs.
+#[test]
+fn buffers_beside_the_file() {
+    let folder = std::env::temp_dir().join(format!("selvedge-gltf-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let (file, beside) = (folder.join("t.gltf"), folder.join("my data.bin"));
+    // longer than the text
+    std::fs::write(&beside, [data(), vec![0; 4000]].concat()).unwrap();
+    let named = text(",\"uri\":\"my%20data.bin\"");
+    std::fs::write(&file, &named).unwrap();
+    let read = |most: Option<u64>| open_with(&file, &Options { most_bytes: most, ..Options::default() });
+    let (whole, short) = (read(None), read(Some(named.len() as u64)));
+    std::fs::remove_dir_all(&folder).unwrap();
+    let whole = whole.expect("a mesh");
+    assert!((volume(&whole.model) - 27e9 / 6.0).abs() < 1e-3, "{}", volume(&whole.model));
+    assert_eq!(whole.report.files_read, [beside]);
+    let told = short.expect_err("too long").to_string();
+    let most = format!("buffer 0: my data.bin: larger than {} bytes, the most that is read", named.len());
+    assert!(named.len() < 4000 && told.ends_with(&most), "{told}");
 }
 
 #[test]

@@ -5,29 +5,33 @@ use super::{Body, Region, Shape, dxf, relief, svg};
 use crate::import::meshes;
 use crate::import::scad::Fault;
 use crate::import::scad::args::{Args, Value};
+use crate::import::source::{self, OtherFiles};
 use glam::{DAffine2, DVec2};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Bytes of a file that is taken in.
 const MOST_BYTES: u64 = 1 << 30;
 
-/// The shape in a file, and notes on what is left out.
-pub(super) fn read(args: &Args<'_>, folder: Option<&Path>) -> Result<(Shape, Vec<String>), Fault> {
+/// The shape in a file, which `opened` then has, and notes on what is left out.
+pub(super) fn read(
+    args: &Args<'_>,
+    files: OtherFiles<'_>,
+    opened: &mut Vec<PathBuf>,
+) -> Result<(Shape, Vec<String>), Fault> {
     let Some(Value::Text(file)) = args.get("file").filter(|v| !matches!(v, Value::Text(t) if t.is_empty())) else {
         return Err(args.fault("no file is named"));
     };
-    let path = folder.map_or_else(|| Path::new(file).to_path_buf(), |f| f.join(file));
+    let path = files.folder.map_or_else(|| Path::new(file).to_path_buf(), |f| f.join(file));
     let wrong = |what: String| args.fault(format!("{file}: {what}"));
-    let found = std::fs::metadata(&path).map_err(|e| wrong(e.to_string()))?;
-    if !found.is_file() || found.len() > MOST_BYTES {
-        return Err(wrong(format!("no file of at most {MOST_BYTES} bytes")));
+    let bytes = source::beside(&path, MOST_BYTES.min(files.most)).map_err(wrong)?;
+    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    if !opened.contains(&path) {
+        opened.push(path);
     }
-    let bytes = std::fs::read(&path).map_err(|e| wrong(e.to_string()))?;
     if args.node == "surface" {
         let relief = relief::read(&bytes, args.flag("invert")).map_err(wrong)?;
         return Ok((Shape::Solid(Body::mesh(relief.mesh(args.flag("center")))), Vec::new()));
     }
-    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     match ending.as_str() {
         "svg" => {
             let dpi = args.number("dpi", 72.0)?;

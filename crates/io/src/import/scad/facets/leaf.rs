@@ -26,7 +26,7 @@ impl Reader<'_> {
                 Shape::Flat(region)
             }
             "import" | "surface" => {
-                let (shape, notes) = file::read(args, self.folder)?;
+                let (shape, notes) = file::read(args, self.files, &mut self.report.files_read)?;
                 notes.into_iter().for_each(|note| self.warn("part of a file left out", args, || note));
                 shape
             }

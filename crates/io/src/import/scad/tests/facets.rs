@@ -1,6 +1,7 @@
 //! Nodes that depend on facets, against closed forms.
 
 use super::{block, import, polygon, same};
+use crate::import::Options;
 use crate::model::Shape;
 use glam::DVec3;
 
@@ -168,5 +169,14 @@ fn imported_files() {
         let told = read(text).warnings;
         assert!(told.len() == 1 && told[0].message.contains(message), "{text}: {told:?}");
     }
+    // inputs of their own, each once, under the limit on a file
+    let both = "import(file = \"t.off\"); resize(newsize = [4, 0, 0]) { import(file = \"t.off\"); } \
+                surface(file = \"h.dat\");";
+    assert_eq!(read(both).report.files_read, [folder.join("t.off"), folder.join("h.dat")]);
+    let options = Options { most_bytes: Some(20), ..Options::default() };
+    let short = crate::import::scad_with(both.as_bytes(), &name, &options).unwrap();
+    let why = "left out: import: t.off: larger than 20 bytes, the most that is read";
+    assert!(short.warnings[0].message.contains(why), "{:?}", short.warnings);
+    assert_eq!(short.report.files_read, [folder.join("h.dat")]);
     std::fs::remove_dir_all(&folder).unwrap();
 }

@@ -1,6 +1,6 @@
 //! Other files: where they may lie, and what the scene takes from them.
 
-use crate::import::{open, scene};
+use crate::import::{Files, Folders, Options, open, open_with, scene};
 use std::path::PathBuf;
 
 /// A folder of its own, with a scene.
@@ -84,6 +84,55 @@ fn polygons_are_control_meshes_where_the_scene_says_so() {
     );
     assert!(no_scheme.starts_with("t.toml:4:13: `subdivide`: `doo-sabin` is none of"), "{no_scheme}");
     assert!(no_scheme_at_all.starts_with("t.toml:4:1: `tolerance` is not known here"), "{no_scheme_at_all}");
+}
+
+/// An assembly whose part stands in a file of its own; the limit on a file counts for each of them.
+#[test]
+fn files_are_read_as_the_options_say() {
+    const ASSEMBLY: &[u8] = include_bytes!("../../external/tests/assembly.stp");
+    const BOLT: &[u8] = include_bytes!("../../external/tests/bolt.stp");
+    let folder = folder("options");
+    let path = folder.join("a.toml");
+    std::fs::write(&path, "selvedge = 1\n[file.f]\npath = \"sub/a.stp\"\n").unwrap();
+    std::fs::write(folder.join("sub/a.stp"), ASSEMBLY).unwrap();
+    std::fs::write(folder.join("sub/t8_bolt.stp"), BOLT).unwrap();
+    let beside = Folders::default();
+    let read = |files: Option<&dyn Files>, most: Option<usize>| {
+        let most_bytes = most.map(|most| most as u64);
+        open_with(&path, &Options { files, most_bytes, ..Options::default() })
+    };
+    let (whole, alone) = (read(Some(&beside), None), read(None, None));
+    let (no_bolt, nothing) = (read(Some(&beside), Some(BOLT.len() - 1)), read(Some(&beside), Some(ASSEMBLY.len() - 1)));
+    std::fs::remove_dir_all(&folder).unwrap();
+    let whole = whole.unwrap();
+    assert_eq!((whole.model.face_instance_count(), whole.report.files_read.len()), (12, 2));
+    for (missing, why) in [(alone, "external file not followed"), (no_bolt, "larger than 6353 bytes")] {
+        let missing = missing.unwrap();
+        assert_eq!(missing.report.missing_files, ["t8_bolt.stp"]);
+        assert_eq!(missing.model.face_instance_count(), 0);
+        assert!(missing.warnings.iter().any(|w| w.message.contains(why)), "{:?}", missing.warnings);
+    }
+    let told = nothing.expect_err("too long").to_string();
+    assert!(told.contains("a.stp: larger than 3150 bytes"), "{told}");
+}
+
+/// An assembly and a scene that name each other: the references of files within a scene within a file are not followed.
+#[test]
+fn an_assembly_and_a_scene_that_name_each_other_end() {
+    let folder = folder("circle");
+    let assembly = include_str!("../../external/tests/assembly.stp").replace("t8_bolt.stp", "a.toml");
+    std::fs::write(folder.join("a.stp"), assembly).unwrap();
+    std::fs::write(folder.join("a.toml"), "selvedge = 1\n[file.f]\npath = \"a.stp\"\n").unwrap();
+    let beside = Folders::default();
+    let options = Options { files: Some(&beside), ..Options::default() };
+    let read = ["a.stp", "a.toml"].map(|name| open_with(&folder.join(name), &options));
+    std::fs::remove_dir_all(&folder).unwrap();
+    for import in read {
+        let import = import.unwrap();
+        assert_eq!(import.model.face_instance_count(), 0);
+        let told = import.warnings.iter().any(|w| w.message.contains("external file not followed: a.toml"));
+        assert!(told, "{:?}", import.warnings);
+    }
 }
 
 #[test]

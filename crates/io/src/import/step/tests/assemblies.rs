@@ -180,8 +180,8 @@ fn exponential_assemblies_are_bounded() {
 /// A hundred thousand levels of one child each: no cycle, and not called one.
 #[test]
 fn deep_assemblies_are_reported_as_deep() {
-    let chain = |levels: u32| {
-        let mut data = TRIANGLE.to_owned();
+    let chain = |levels: u32, more: &str| {
+        let mut data = format!("{TRIANGLE}{more}");
         data += "#100=MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#18),#1);";
         for level in 1..=levels {
             let [below, rep, map, item] = [100 + 3 * (level - 1), 100 + 3 * level, 101 + 3 * level, 102 + 3 * level];
@@ -194,12 +194,16 @@ fn deep_assemblies_are_reported_as_deep() {
         }
         import(&data)
     };
-    let whole = chain(255);
+    let whole = chain(255, "");
     assert_eq!((whole.model.instances.len(), whole.warnings.len()), (1, 0), "{:?}", whole.warnings);
     for levels in [256, 100_000] {
-        let deep = chain(levels).summary().to_string();
-        let why = "it is nested deeper than 256 levels";
-        // the body, which nothing places then, is drawn once where it stands in its own representation
-        assert!(deep.starts_with("drawn 1 face; ") && deep.contains(why), "{deep}");
+        let (deep, why) = (chain(levels, ""), "1 x it is nested deeper than 256 levels");
+        let told = deep.summary().to_string();
+        assert!(told.starts_with("nothing of it can be drawn; ") && told.contains(why), "{told}");
+        assert_eq!(deep.model.instances.len(), 0, "no part of the chain is a root");
+        // placed by a chain of one level, too
+        let shallow = "#9000000=SHAPE_REPRESENTATION('',(#9000001),#1);#9000001=MAPPED_ITEM('',#104,#24);";
+        let both = chain(levels, shallow);
+        assert_eq!(both.model.instances.len(), 1, "{}", both.summary());
     }
 }
