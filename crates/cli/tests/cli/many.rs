@@ -196,6 +196,33 @@ fn a_file_has_its_memory() {
     assert!(output.status.code() == Some(1) && told.contains("reading it takes more than --limit-mib"), "{told}");
 }
 
+/// A file whose picture exceeds the limit leaves nothing of what it took: the next one is drawn as by itself.
+#[test]
+fn a_file_after_a_large_one_is_what_it_is_alone() {
+    let (folder, _) = files();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (large, small) = (path("large.toml"), path("small.toml"));
+    for (scene, size) in [(&large, 12_000), (&small, 48)] {
+        let text = format!("selvedge = 1\n[picture]\nsize = [{size}, {size}]\n[file.model]\npath = 'c.csg'\n");
+        fs::write(scene, text).expect("written");
+    }
+    let draw = |models: &[&String], output: &str| {
+        let models = models.iter().map(|model| model.as_str());
+        let all: Vec<&str> =
+            ["render"].into_iter().chain(models).chain(["-o", output, "--limit-mib", "1024"]).collect();
+        let output = selvedge(&all);
+        (output.status.code(), text(&output.stderr))
+    };
+    let (status, told) = draw(&[&small], &path("alone.png"));
+    assert_eq!(status, Some(0), "{told}");
+    let (status, told) = draw(&[&large, &small], &path("{stem}.png"));
+    assert!(status == Some(1) && told.contains("1 of 2 files drawn, 0 skipped, 1 failed"), "{told}");
+    assert!(told.contains("large.toml") && told.contains("more than --limit-mib allows"), "{told}");
+    let read = |name: &str| fs::read(path(name)).expect("a picture");
+    assert_eq!(read("small.png"), read("alone.png"));
+    assert!(!Path::new(&path("large.png")).exists());
+}
+
 #[test]
 fn two_files_do_not_go_to_one_place() {
     let (folder, names) = files();
