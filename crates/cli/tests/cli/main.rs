@@ -230,8 +230,8 @@ fn pixel(path: &str, x: u32, y: u32) -> ((u32, u32), [u8; 4]) {
     ((info.width, info.height), bytes[at..at + 4].try_into().unwrap())
 }
 
-/// The `openscad` on the path runs an OpenSCAD program: here a missing one, one that fails, one that writes a solid, and
-/// one that never ends.
+/// The `openscad` on the path runs an OpenSCAD program: here a missing one, one that fails, one that writes a solid, one
+/// that never ends, and one that starts another and ends.
 #[test]
 #[cfg(unix)]
 fn openscad_runs_its_programs() {
@@ -262,5 +262,23 @@ fn openscad_runs_its_programs() {
         status == Some(2) && told.contains("a.scad: reading it takes more seconds than --limit-s allows"),
         "{told}"
     );
+    // a script that has ended, and whose own program holds the pipes
+    let pid = folder.join("pid");
+    let script = format!("/bin/sleep 120 & echo $! > '{}'; echo 'cube(2);'", pid.display());
+    let begun = std::time::Instant::now();
+    let (status, _, told) = run_with(Some(&script), &["--limit-s", "0.5"]);
+    assert!(status == Some(2) && told.contains("more seconds than --limit-s allows"), "{told}");
+    assert!(begun.elapsed().as_secs() < 60, "it did not wait for the program");
+    #[cfg(target_os = "linux")]
+    {
+        // killed, its number may stay, without a command, until someone waits for it
+        let pid = std::fs::read_to_string(&pid).unwrap();
+        let lives = || std::fs::read(format!("/proc/{}/cmdline", pid.trim())).is_ok_and(|line| !line.is_empty());
+        let ended = (0..100).any(|_| {
+            std::thread::sleep(std::time::Duration::from_millis(50));
+            !lives()
+        });
+        assert!(ended, "the script's program lives on");
+    }
     std::fs::remove_dir_all(&folder).unwrap();
 }
