@@ -6,8 +6,8 @@
 //!          ─ begin(Drawing)   ─▶ Step: test, test      ─▶ drop
 //! ```
 //!
-//! The work tests them itself: between two faces, between two frames, and before and after a picture. A frame that the
-//! device has begun is drawn to its end.
+//! The work tests them itself: where reading reports progress, between two faces of an upload, between two frames, and
+//! before and after a picture. A frame that the device has begun is drawn to its end.
 
 use std::fmt;
 use std::panic::resume_unwind;

@@ -48,8 +48,9 @@ pub enum Stage {
 /// How to import.
 #[derive(Clone, Copy, Default)]
 pub struct Options<'a> {
-    /// Called at the beginning of each stage, before every body, after every face and some bytes of text, from several
-    /// threads: it should return at once.
+    /// Called at the beginning of each stage, and of STEP files before every body, after every face and some bytes of
+    /// text, from several threads: it should return at once. Other formats have the stages [`Stage::Read`] and
+    /// [`Stage::Parse`] alone.
     pub progress: Option<&'a (dyn Fn(Stage) + Sync)>,
     /// Most bytes of a file, before and after gzip is undone. Offsets are 32 bits wide: the limit is 4 GiB at most, and
     /// by default.
