@@ -84,8 +84,8 @@ fn a_watch_ends_a_picture_between_two_steps() {
     }
 }
 
-/// The same of a sequence, with frames in flight. What further flights had is freed, and the pixel to be read back waits
-/// for the next picture.
+/// The same of a sequence, with frames in flight. What further flights had is freed, and the pixel to be read back
+/// waits for the next picture.
 #[test]
 fn a_watch_ends_a_sequence() {
     let model = shapes::plate();

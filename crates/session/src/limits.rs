@@ -9,7 +9,6 @@
 //! The work tests them itself: where reading reports progress, between two faces of an upload, between two frames, and
 //! before and after a picture. A frame that the device has begun is drawn to its end.
 
-use std::fmt;
 use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -30,14 +29,14 @@ pub enum Work {
     Drawing,
 }
 
-impl fmt::Display for Work {
+impl Work {
     /// The work so far, with its verb.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+    fn words(self) -> &'static str {
+        match self {
             Self::Reading => "reading it takes",
             Self::Preparing => "reading and preparing it take",
             Self::Drawing => "reading, preparing and drawing it take",
-        })
+        }
     }
 }
 
@@ -55,12 +54,14 @@ pub enum Bound {
     },
 }
 
-impl fmt::Display for Bound {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Bound {
+    /// What the work takes beyond it.
+    fn words(self) -> String {
         match self {
-            Self::Time(most) => write!(f, "longer than the limit of {most:?}"),
+            Self::Time(most) => format!("longer than the limit of {most:?}"),
             Self::Memory { most, held } => {
-                write!(f, "more memory than the limit of {most} bytes: the process holds {held}")
+                let [most, held] = [most, held].map(|bytes| bytes as f64 / f64::from(1 << 20));
+                format!("more memory than the limit of {most:.1} MiB: the process holds {held:.1} MiB")
             }
         }
     }
@@ -68,7 +69,7 @@ impl fmt::Display for Bound {
 
 /// The work on a file exceeds a limit.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{file}: {work} {bound}")]
+#[error("{file}: {} {}", .work.words(), .bound.words())]
 pub struct Exceeded {
     /// The file.
     pub file: String,

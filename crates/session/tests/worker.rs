@@ -161,7 +161,7 @@ fn a_file_beyond_its_limits_costs_itself_only() {
             (3, answer) => {
                 let (file, work, bound) = exceeded(answer);
                 let is_memory = matches!(bound, Bound::Memory { most: 1, held: 2.. });
-                assert!(file == "large.step" && work == Work::Drawing && is_memory, "{file}: {work} {bound}");
+                assert!(file == "large.step" && work == Work::Drawing && is_memory, "{file}: {work:?} {bound:?}");
             }
             (_, answer) => assert_same(&answer.expect("a picture"), expected, &format!("picture {nth}")),
         }
