@@ -126,7 +126,10 @@ impl HeadlessRenderer {
         if let Some((x, y)) = pick {
             self.renderer.pick(x, y);
         }
-        drawn.unwrap_or_else(|cause| resume_unwind(cause))?;
+        match drawn {
+            Ok(drawn) => drawn?,
+            Err(cause) => resume_unwind(cause),
+        }
         Ok(landed?)
     }
 
