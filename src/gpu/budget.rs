@@ -1,8 +1,8 @@
-//! Refuses an object that exceeds the memory budget: the host's budget, or else the driver's budget of each heap.
+//! Refuses an object that exceeds the memory budget: the host's budget, or the driver's budget of each heap.
 //!
 //! ```text
 //!   the host's budget      all of the engine's memory on this device  + the new object  <=  budget
-//!   else, of the heap with the most room among those of the object's memory types:
+//!   and, of the heap with the most room among those of the object's memory types:
 //!     VK_EXT_memory_budget   the process's memory in that heap        + the new object  <=  heapBudget
 //!     without it             all of the engine's memory               + the new object  <=  size of the heap
 //! ```
@@ -55,18 +55,26 @@ impl Heaps {
     pub(super) fn check(&self, device: &Device, request: &MemoryRequest<'_>) -> Result<u64, GpuError> {
         let taken = device.pool_bytes().iter().map(|(_, bytes)| bytes).sum();
         let (bytes, types) = (request.requirements.size, request.requirements.memory_type_bits);
-        let (room, of) = match self.most {
-            Some(most) => (Room { left: most.saturating_sub(taken), most }, BudgetOwner::Host),
-            None => match self.of_heaps(types, request.location, taken) {
-                Some(room) => (room, BudgetOwner::Heap),
-                None => return Ok(u64::MAX), // no such memory type: the allocator returns the error
-            },
+        let over = |room: Room, of| {
+            let (resource, Room { left, most }) = (request.name.to_owned(), room);
+            Err(GpuError::OverBudget { resource, bytes, left, most, of })
         };
-        if bytes <= room.left || of == BudgetOwner::Heap && device.allocator().fits(request) {
-            return Ok(room.left);
+        let mut least = u64::MAX;
+        if let Some(most) = self.most {
+            let own = Room { left: most.saturating_sub(taken), most };
+            if bytes > own.left {
+                return over(own, BudgetOwner::Host);
+            }
+            least = own.left;
         }
-        let (resource, Room { left, most }) = (request.name.to_owned(), room);
-        Err(GpuError::OverBudget { resource, bytes, left, most, of })
+        // without such a memory type the allocator returns the error
+        if let Some(heap) = self.of_heaps(types, request.location, taken) {
+            if bytes > heap.left && !device.allocator().fits(request) {
+                return over(heap, BudgetOwner::Heap);
+            }
+            least = least.min(heap.left);
+        }
+        Ok(least)
     }
 
     /// The heap with the most room, among those of an object's memory types.

@@ -27,7 +27,7 @@ pub struct HostDevice {
     /// The cache for all pipelines; null for none. It must outlive everything made from the device, and meanwhile the
     /// host must not merge into it.
     pub pipeline_cache: vk::PipelineCache,
-    /// Most bytes of the engine's buffers and images on this device; `None`: no limit but the heaps.
+    /// Most bytes of the engine's buffers and images on this device. What its heaps have left bounds them in any case.
     pub memory_budget: Option<u64>,
 }
 

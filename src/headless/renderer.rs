@@ -241,8 +241,8 @@ impl HeadlessRenderer {
     }
 
     /// Lets `watch` be called between two frames of a picture that needs several, and between two faces of a model that
-    /// a picture prepares anew. To end the picture it unwinds, as by a panic; the renderer is as it was before, and draws
-    /// the next one. A frame that the device has begun is drawn to its end.
+    /// a picture prepares anew. To end the picture, or the sequence of pictures, it unwinds, as by a panic; the renderer
+    /// is as it was before, and draws the next one. Frames that the device has begun are drawn to their ends.
     pub fn set_watch(&mut self, watch: Option<Watch>) {
         self.watch = watch;
     }

@@ -19,6 +19,7 @@ use crate::model::Camera;
 use crate::picture::{FrameSettings, FrameStats, Outputs};
 use crate::renderer::RenderError;
 use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
 /// A frame is recorded again when a buffer was too small; each time they grow to what was needed, so
 /// more than a few rounds mean that something else is wrong.
@@ -111,7 +112,7 @@ impl HeadlessRenderer {
         self.fly(MOST_FLIGHTS, (settings, outputs), next, take)
     }
 
-    /// Draws pictures with so many flights. Then frees all but one.
+    /// Draws pictures with so many flights. Then frees all but one; also if the watch, `next` or `take` unwinds.
     fn fly<E: From<HeadlessError>>(
         &mut self,
         flights: usize,
@@ -120,12 +121,15 @@ impl HeadlessRenderer {
         take: impl FnMut(usize, &PictureView<'_>) -> Result<(), E>,
     ) -> Result<(), E> {
         let pick = self.renderer.take_pick();
-        let drawn = self.sequence(flights, (settings, outputs), next, take);
+        let drawn = catch_unwind(AssertUnwindSafe(|| self.sequence(flights, (settings, outputs), next, take)));
         let landed = self.land();
         if let Some((x, y)) = pick {
             self.renderer.pick(x, y);
         }
-        drawn?;
+        match drawn {
+            Ok(drawn) => drawn?,
+            Err(cause) => resume_unwind(cause),
+        }
         Ok(landed?)
     }
 

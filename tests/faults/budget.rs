@@ -28,3 +28,26 @@ fn what_has_room_in_a_block_is_not_refused() {
     drop(device);
     assert!(driver.living().is_empty(), "{:?}", driver.living());
 }
+
+/// A host's budget above what the heaps have left does not let more through: the smaller of both holds.
+#[test]
+fn a_hosts_budget_holds_beside_the_heaps() {
+    const MIB: u64 = 1 << 20;
+    let driver = Driver::new(true);
+    driver.tell_heaps(false);
+    let options = HeadlessOptions { memory_budget: Some(256 * MIB), ..HeadlessOptions::default() };
+    let device = HeadlessDevice::of_entry(driver.entry(), &options, LowerLimits::NONE).unwrap();
+    let make = |name, bytes| Buffer::storage(device.device(), Pool::Transient, name, bytes);
+    let first = make("first", MIB).unwrap();
+    let taken = device.device().memory_report().taken;
+    assert!(2 * taken + MIB < 256 * MIB, "{taken} bytes: the next objects are within the budget");
+    driver.tell_heaps(true);
+    driver.plan(None);
+    let second = make("second", MIB).expect("its block has room");
+    let refused = make("third", taken).unwrap_err();
+    assert!(matches!(&refused, GpuError::OverBudget { of: BudgetOwner::Heap, left: 0, .. }), "{refused}");
+    assert_eq!(driver.calls().get("vkAllocateMemory"), None, "refused before it is allocated");
+    drop((first, second));
+    drop(device);
+    assert!(driver.living().is_empty(), "{:?}", driver.living());
+}

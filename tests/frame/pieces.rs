@@ -84,6 +84,56 @@ fn a_watch_ends_a_picture_between_two_steps() {
     }
 }
 
+/// The same of a sequence, with frames in flight. What further flights had is freed, and the pixel to be read back
+/// waits for the next picture.
+#[test]
+fn a_watch_ends_a_sequence() {
+    let model = shapes::plate();
+    let camera = camera(&model);
+    let mut whole = watched(&model);
+    let expected = draw(&mut whole, &camera);
+    let seen = expected.face.iter().position(|face| *face != 0).expect("something is seen") as u32;
+    let (x, y) = (seen % SIZE.0, seen / SIZE.0);
+    whole.pick(x, y);
+    draw(&mut whole, &camera);
+    let hit = whole.picked();
+    assert!(hit.is_some(), "nothing was picked");
+    assert_silent(whole);
+    // draws with a watch that ends the sequence at this call, and counts the calls and the pictures
+    let draw_until = |last: usize| {
+        let mut renderer = with_staging(256, &model, SceneSettings::default());
+        renderer.pick(x, y);
+        let calls = Arc::new(AtomicUsize::new(0));
+        let counted = Arc::clone(&calls);
+        renderer.set_watch(Some(Arc::new(move || {
+            if counted.fetch_add(1, Ordering::Relaxed) + 1 == last {
+                resume_unwind(Box::new("ended"));
+            }
+        })));
+        let mut taken = 0;
+        let drawn = catch_unwind(AssertUnwindSafe(|| {
+            renderer.render_sequence(&[camera; 5], &FrameSettings::default(), Outputs::ALL, |_, _| {
+                taken += 1;
+                Ok::<_, HeadlessError>(())
+            })
+        }));
+        renderer.set_watch(None);
+        (renderer, drawn, calls.load(Ordering::Relaxed), taken)
+    };
+    let (renderer, drawn, calls, taken) = draw_until(usize::MAX);
+    assert!(drawn.is_ok_and(|drawn| drawn.is_ok()) && taken == 5 && calls > 2, "{taken} pictures, {calls} calls");
+    assert_silent(renderer);
+    for last in [1, calls] {
+        let (mut renderer, drawn, called, taken) = draw_until(last);
+        assert!(drawn.is_err() && called == last && taken < 5, "ended at call {called} of {last}, {taken} pictures");
+        let flights = renderer.objects().iter().filter(|name| *name == "colour (read back)").count();
+        assert!(flights <= 1, "{flights} flights");
+        assert_all_identical(&draw(&mut renderer, &camera), &expected, "the next picture");
+        assert_eq!(renderer.picked(), hit, "its pixel");
+        assert_silent(renderer);
+    }
+}
+
 /// Changes of many instances, and models that join a scene, so that buffers grow.
 #[test]
 fn edits_in_pieces_draw_the_same() {

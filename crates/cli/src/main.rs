@@ -25,6 +25,7 @@ mod device;
 mod draw;
 mod edit;
 mod export;
+mod heap;
 mod info;
 mod npy;
 mod openscad;

@@ -49,18 +49,23 @@ pub fn open(path: &Path, facets: Facets, step: &Step) -> Result<Import> {
     Ok(import::scad(&run.stdout, &name, facets)?)
 }
 
-/// Runs a command to its end, or kills it when a limit is exceeded.
+/// Runs a command until it and all that writes to its output have ended, or kills them when a limit is exceeded.
 fn ran(command: &mut Command, step: &Step) -> io::Result<Result<Output, Exceeded>> {
+    if step.is_bounded() {
+        group::lead(command);
+    }
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
     let stdout = gathered(child.stdout.take().expect("piped"));
     let stderr = gathered(child.stderr.take().expect("piped"));
     let all = |of: JoinHandle<io::Result<Vec<u8>>>| of.join().expect("a read does not panic");
     loop {
-        if let Some(status) = child.try_wait()? {
+        // a wrapper may end before its program; its status is read last, since its number is the group's until then
+        let has_told = stdout.is_finished() && stderr.is_finished();
+        if has_told && let Some(status) = child.try_wait()? {
             return Ok(Ok(Output { status, stdout: all(stdout)?, stderr: all(stderr)? }));
         }
         if let Err(exceeded) = step.test() {
-            child.kill()?;
+            group::kill(&mut child)?;
             child.wait()?;
             return Ok(Err(exceeded));
         }
@@ -75,4 +80,36 @@ fn gathered(mut pipe: impl Read + Send + 'static) -> JoinHandle<io::Result<Vec<u
         pipe.read_to_end(&mut all)?;
         Ok(all)
     })
+}
+
+/// A program with all that it starts: the `openscad` on the path may be a script that runs another program.
+#[cfg(unix)]
+mod group {
+    use rustix::process::{Pid, Signal, kill_process_group};
+    use std::io;
+    use std::os::unix::process::CommandExt;
+    use std::process::{Child, Command};
+
+    /// The program leads a group. A terminal's Ctrl-C does not reach it there.
+    pub fn lead(command: &mut Command) {
+        command.process_group(0);
+    }
+
+    /// Kills the group that a program leads, which was not waited for.
+    pub fn kill(leader: &mut Child) -> io::Result<()> {
+        Ok(kill_process_group(Pid::from_child(leader), Signal::KILL)?)
+    }
+}
+
+/// A program alone.
+#[cfg(not(unix))]
+mod group {
+    use std::io;
+    use std::process::{Child, Command};
+
+    pub fn lead(_: &mut Command) {}
+
+    pub fn kill(child: &mut Child) -> io::Result<()> {
+        child.kill()
+    }
 }

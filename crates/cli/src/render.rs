@@ -12,7 +12,7 @@ use crate::session::{self, Measured, Session};
 use crate::sheet::Sheet;
 use crate::{Outcome, output, target};
 use anyhow::{Error, Result};
-use selvedge::gpu::GpuError;
+use selvedge::gpu::{BudgetOwner, GpuError};
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::Camera;
 use selvedge::picture::{Outputs, Picture};
@@ -61,9 +61,9 @@ fn drawn(
     device: impl FnOnce() -> Result<HeadlessRenderer>,
     record: &mut dyn FnMut(&Drawn) -> Result<()>,
 ) -> Result<Session> {
-    pictures(args, task, (import, limits), device, record).map_err(|error| match args.read.limit_mib {
-        Some(_) if is_out_of_memory(&error) => error.context("more than --limit-mib allows"),
-        _ => error,
+    pictures(args, task, (import, limits), device, record).map_err(|error| {
+        let is_over = gpu(&error).is_some_and(is_over_limit);
+        if is_over { error.context("more than --limit-mib allows") } else { error }
     })
 }
 
@@ -155,9 +155,18 @@ impl fmt::Display for Alone {
 
 impl std::error::Error for Alone {}
 
+/// The error of Vulkan or of memory on the device.
+fn gpu(error: &Error) -> Option<&GpuError> {
+    error.downcast_ref::<HeadlessError>().and_then(HeadlessError::gpu)
+}
+
 fn is_out_of_memory(error: &Error) -> bool {
-    let error = error.downcast_ref::<HeadlessError>().and_then(HeadlessError::gpu);
-    error.is_some_and(GpuError::is_out_of_memory)
+    gpu(error).is_some_and(GpuError::is_out_of_memory)
+}
+
+/// Whether an object exceeds what `--limit-mib` lets the engine take, and not what the device has.
+fn is_over_limit(error: &GpuError) -> bool {
+    matches!(error, GpuError::OverBudget { of: BudgetOwner::Host, .. })
 }
 
 /// Where the pictures of a file go, one after the other.
@@ -220,4 +229,22 @@ fn tell(args: &RenderArgs, picture: &Picture) {
 
 fn wanted(aovs: &[Aov]) -> Outputs {
     Image::outputs(aovs.iter().map(|aov| aov.image))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A device that is full is not told as the user's limit.
+    #[test]
+    fn only_the_users_limit_is_told_as_such() {
+        let resource = || "colour".to_owned();
+        let over = |of| GpuError::OverBudget { resource: resource(), bytes: 3, left: 2, most: 4, of };
+        let too_large = GpuError::TooLarge { resource: resource(), bytes: 3, limit: 2 };
+        assert!([over(BudgetOwner::Heap), over(BudgetOwner::Host)].iter().all(GpuError::is_out_of_memory));
+        assert!(is_over_limit(&over(BudgetOwner::Host)));
+        assert!(!is_over_limit(&over(BudgetOwner::Heap)) && !is_over_limit(&too_large));
+        let error = Error::from(HeadlessError::Gpu(too_large)).context("a.step");
+        assert!(is_out_of_memory(&error), "found below the file's name");
+    }
 }

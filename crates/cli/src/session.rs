@@ -3,7 +3,7 @@
 use crate::args::{EdgeArgs, FrameArgs, LookArgs, ReadArgs, SubdivideArgs};
 use crate::progress::{advancing, during, importing};
 use crate::{camera, device, openscad, output, target};
-use anyhow::{Error, Result, anyhow, bail};
+use anyhow::{Error, Result, bail};
 use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer, PictureView};
 use selvedge::model::{Camera, Colour, LoopAt, Model, TrimLoop};
@@ -107,13 +107,12 @@ fn failure(error: SessionError, what: &str) -> Error {
 }
 
 /// The same of a limit.
-pub fn beyond(Exceeded { file, work, bound }: Exceeded) -> Error {
-    match bound {
-        Bound::Time(_) => anyhow!("{file}: {work} more seconds than --limit-s allows"),
-        Bound::Memory { held, .. } => {
-            anyhow!("{file}: {work} more than --limit-mib allows: the process holds {} MiB", held >> 20)
-        }
-    }
+pub fn beyond(exceeded: Exceeded) -> Error {
+    let option = match exceeded.bound {
+        Bound::Time(_) => "--limit-s",
+        Bound::Memory { .. } => "--limit-mib",
+    };
+    Error::from(exceeded).context(format!("more than {option} allows"))
 }
 
 /// Refuses a file without anything to draw. `--strict` refuses a file that lost anything; without it, the losses are printed.

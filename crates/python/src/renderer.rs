@@ -24,7 +24,8 @@ const MOST_PIXELS: i64 = 16_384;
 /// A device, and a thread that draws on it; see ``selvedge.Renderer``.
 #[pyclass(frozen, module = "selvedge._native")]
 pub struct Renderer {
-    /// Nothing once it is closed.
+    /// Nothing once it is closed. No code of Python's runs while it is locked: it may let another thread have the
+    /// interpreter's lock, which waits for this one then.
     worker: RwLock<Option<Worker>>,
 }
 
@@ -172,9 +173,11 @@ impl Chosen {
 impl Renderer {
     fn order(&self, py: Python<'_>, job: Job) -> PyResult<Pending> {
         let (outputs, camera) = (job.outputs, job.camera);
-        let worker = self.worker.read().unwrap_or_else(PoisonError::into_inner);
-        let ticket = worker.as_ref().ok_or(SessionError::Closed).and_then(|worker| worker.submit(job));
-        let ticket = ticket.map_err(|error| raised(py, &error))?;
+        let submitted = {
+            let worker = self.worker.read().unwrap_or_else(PoisonError::into_inner);
+            worker.as_ref().ok_or(SessionError::Closed).and_then(|worker| worker.submit(job))
+        };
+        let ticket = submitted.map_err(|error| raised(py, &error))?;
         Ok(Pending { ticket: Mutex::new(Some(ticket)), outputs, camera })
     }
 }
@@ -206,8 +209,10 @@ impl Renderer {
 
     /// Frees the device once the pictures sent before are drawn.
     fn close(&self, py: Python<'_>) {
-        let worker = self.worker.write().unwrap_or_else(PoisonError::into_inner).take();
-        py.detach(|| drop(worker));
+        py.detach(|| {
+            let worker = self.worker.write().unwrap_or_else(PoisonError::into_inner).take();
+            drop(worker);
+        });
     }
 
     /// Whether it was closed.

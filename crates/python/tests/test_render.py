@@ -240,6 +240,41 @@ def test_a_closed_renderer_says_so(block):
         renderer.render(block, size=SIZE)
 
 
+CLOSED = """
+import selvedge, sys, threading
+
+model = selvedge.open(b"v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n", name="triangle.obj")
+renderer = selvedge.Renderer()
+renderer.close()
+sys.setswitchinterval(1e-6)
+
+def close():
+    for _ in range(1000):
+        renderer.close()
+
+def draw():
+    for _ in range(1000):
+        try:
+            renderer.render(model, size=(16, 16))
+        except selvedge.ClosedError:
+            continue
+        raise AssertionError("it is closed")
+
+threads = [threading.Thread(target=work) for work in (close, draw, close, draw)]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join()
+print("done")
+"""
+
+
+def test_threads_close_a_renderer_while_others_are_refused():
+    """While an exception is made, another thread runs: it must not wait for a lock of the first one."""
+    child = [sys.executable, "-c", CLOSED]
+    assert subprocess.run(child, capture_output=True, text=True, timeout=300, check=True).stdout == "done\n"
+
+
 def test_many_pictures_come_in_order_from_a_generator(renderer, block):
     views = ["front", "right", "top", "front", "iso"]
     opened = []

@@ -9,7 +9,7 @@
 use crate::backdrop::Backdrop;
 use crate::error::{SessionError, Stop};
 use crate::limits::{Limits, Step, Work};
-use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
+use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer, Watch};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
 use std::sync::Arc;
@@ -38,7 +38,7 @@ pub struct Job {
     /// The background.
     pub backdrop: Backdrop,
     /// Bounds of the work on the model's file, which its jobs share. They are tested where [`Stop`] is, and after the
-    /// picture.
+    /// picture; of pictures in flight, those of the first one.
     pub limits: Limits,
 }
 
@@ -175,16 +175,19 @@ impl Drawer {
     }
 
     /// Draws pictures like that of `job`, whose model is [loaded](Self::load), with frames in flight: see
-    /// [`HeadlessRenderer::render_stream`].
+    /// [`HeadlessRenderer::render_stream`]. `watch` may unwind to [`guarded`](crate::guarded) between two frames of a
+    /// picture.
     ///
     /// # Errors
     /// [`SessionError::Draw`]; pictures in flight are not taken.
     pub(crate) fn draw_stream(
         &mut self,
         (job, upload_s): (&Job, f64),
+        watch: Watch,
         next: impl FnMut() -> Option<Camera>,
         mut take: impl FnMut(Drawn),
     ) -> Result<(), SessionError> {
+        self.renderer.set_watch(Some(watch));
         let mut begun = Instant::now();
         self.renderer.render_stream(&job.frame_settings(), job.outputs, next, |_, view| {
             let mut picture = view.to_picture();

@@ -69,7 +69,8 @@ pub enum SessionError {
     Panicked(String),
 }
 
-/// A flag that ends an import or an upload: set from any thread, tested between two faces.
+/// A flag that ends an import or an upload: set from any thread, tested where an import reports progress, and between
+/// two faces of an upload.
 #[derive(Clone, Debug, Default)]
 pub struct Stop {
     set: Arc<AtomicBool>,

@@ -7,8 +7,8 @@
 //! ```
 //!
 //! A [`Worker`] draws the pictures of its jobs in order, and pictures of one model with frames in flight. Its caller
-//! may wait for each, and read the next file meanwhile. A flag ends an import or an upload between two faces, and so do
-//! [`Limits`] of time and memory.
+//! may wait for each, and read the next file meanwhile. A flag ends an import where it reports progress, and an upload
+//! between two faces; so do [`Limits`] of time and memory.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 

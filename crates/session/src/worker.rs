@@ -8,14 +8,18 @@
 //! Jobs are drawn in the order in which they came, whichever threads sent them. Jobs that wait and differ in the camera
 //! alone have frames in flight together: the GPU draws the next ones while this one is copied. The caller's wait is
 //! independent of the driver, so a caller may handle signals while a frame is drawn.
+//!
+//! A stop or a limit ends the first of the pictures in flight between two of its frames. Those behind it are drawn
+//! anew, each alone.
 
 use crate::drawer::{DeviceOptions, Drawer, Drawn, Job};
 use crate::error::{SessionError, Stop, guarded};
-use crate::limits::Work;
+use crate::limits::{Step, Work};
 use selvedge::gpu::GpuError;
-use std::cell::RefCell;
 use std::collections::VecDeque;
+use std::mem::take;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
@@ -42,9 +46,8 @@ impl Order {
         self.answer(drawn)
     }
 
-    /// Answers it with a picture that was drawn while others were in flight.
+    /// Answers it with a picture that was drawn while others were in flight, and whose time is spent.
     fn with_others(self, drawn: Drawn) {
-        self.job.limits.spend(Duration::from_secs_f64(drawn.draw_s));
         let tested = self.tested().map(|()| drawn);
         self.answer(tested);
     }
@@ -61,6 +64,57 @@ impl Order {
         }
         self.tested().err().or_else(|| self.job.camera.check().err().map(SessionError::from))
     }
+}
+
+/// Orders whose frames are in flight, the first one first.
+struct Begun {
+    orders: VecDeque<Order>,
+    /// What may end the first picture. Its time runs from the picture before, as pictures in flight share the device.
+    first: Option<(Stop, Step)>,
+}
+
+impl Begun {
+    /// Before the first order is begun, which may prepare its model for other images.
+    fn before(first: &Order) -> Self {
+        Self { orders: VecDeque::new(), first: Some(Self::bounds(first)) }
+    }
+
+    fn bounds(order: &Order) -> (Stop, Step) {
+        (order.stop.clone(), order.job.limits.begin(Work::Drawing))
+    }
+
+    fn push(&mut self, order: Order) {
+        if self.orders.is_empty() {
+            self.first = Some(Self::bounds(&order));
+        }
+        self.orders.push_back(order);
+    }
+
+    /// The first order; its time ends.
+    fn pop(&mut self) -> Option<Order> {
+        let order = self.orders.pop_front();
+        self.first = self.orders.front().map(Self::bounds);
+        order
+    }
+
+    /// All orders, after an error.
+    fn end(&mut self) -> VecDeque<Order> {
+        self.first = None;
+        take(&mut self.orders)
+    }
+
+    /// Unwinds to [`guarded`] if the first picture is stopped or exceeds a limit.
+    fn check(&self) {
+        if let Some((stop, step)) = &self.first {
+            stop.check();
+            step.check();
+        }
+    }
+}
+
+/// The orders in flight; [`Begun::check`] unwinds while they are locked, and changes nothing.
+fn locked(begun: &Mutex<Begun>) -> MutexGuard<'_, Begun> {
+    begun.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Orders that are not begun.
@@ -100,8 +154,10 @@ fn in_flight(drawer: &mut Drawer, [first, second]: [Order; 2], waiting: &mut Wai
     };
     let (job, most_in_flight) = (Job::clone(&first.job), drawer.most_in_flight());
     let is_alike = |other: &Job| other.goes_with(&job) && other.pixels() <= most_in_flight;
+    let begun = Arc::new(Mutex::new(Begun::before(&first)));
     let mut early = VecDeque::from([first, second]);
-    let begun = RefCell::new(VecDeque::new());
+    let watched = Arc::downgrade(&begun);
+    let watch = move || watched.upgrade().iter().for_each(|begun| locked(begun).check());
     let next = || {
         loop {
             let order: Order = early.pop_front().or_else(|| waiting.next_if(is_alike))?;
@@ -110,18 +166,19 @@ fn in_flight(drawer: &mut Drawer, [first, second]: [Order; 2], waiting: &mut Wai
                 continue;
             }
             let camera = order.job.camera;
-            begun.borrow_mut().push_back(order);
+            locked(&begun).push(order);
             return Some(camera);
         }
     };
-    let take = |drawn| {
-        if let Some(order) = begun.borrow_mut().pop_front() {
+    let answer = |drawn| {
+        let order = locked(&begun).pop();
+        if let Some(order) = order {
             order.with_others(drawn);
         }
     };
-    let ended = guarded(|| drawer.draw_stream((&job, upload_s), next, take));
+    let ended = guarded(|| drawer.draw_stream((&job, upload_s), Arc::new(watch), next, answer));
     // after an error: each is drawn alone, and has a picture or an error of its own
-    let mut left = begun.into_inner();
+    let mut left = locked(&begun).end();
     left.append(&mut early);
     match ended {
         Ok(()) => true,
@@ -177,8 +234,8 @@ impl Ticket {
         }
     }
 
-    /// The job is not begun, or ends between two faces of its upload or between two of its frames. A frame that the
-    /// device draws is drawn to its end.
+    /// The job is not begun, or ends between two faces of its upload or between two of its frames; of jobs with frames
+    /// in flight, once it is the first one. A frame that the device draws is drawn to its end.
     pub fn stop(&self) {
         self.stop.set();
     }
@@ -237,5 +294,68 @@ impl Worker {
 impl Drop for Worker {
     fn drop(&mut self) {
         self.close();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::backdrop::Backdrop;
+    use crate::limits::{Bound, Exceeded, Limits};
+    use selvedge::glam::DVec3;
+    use selvedge::model::{Camera, Model};
+    use selvedge::picture::{FrameSettings, Outputs, SceneSettings};
+
+    fn order(limits: &Limits) -> Order {
+        let model = Arc::new(Model::default());
+        let camera = Camera::around(model.control_bounds(), DVec3::X, DVec3::Z, 0.6, (16, 16));
+        let (scene, frame, outputs) = (SceneSettings::default(), FrameSettings::default(), Outputs::default());
+        let job = Job { model, camera, scene, frame, outputs, backdrop: Backdrop::Gradient, limits: limits.clone() };
+        Order { job: Box::new(job), stop: Stop::default(), answer: mpsc::channel().0 }
+    }
+
+    fn checked(begun: &Mutex<Begun>) -> Result<(), SessionError> {
+        guarded(|| {
+            locked(begun).check();
+            Ok(())
+        })
+    }
+
+    /// What stops a picture that is not the first one waits until it is.
+    #[test]
+    fn the_first_picture_in_flight_may_be_ended() {
+        let unlimited = Limits::default();
+        let none = Limits::new("none.step", Some(Duration::ZERO), None);
+        let orders = [order(&unlimited), order(&unlimited), order(&none)];
+        let stop = orders[1].stop.clone();
+        let begun = Mutex::new(Begun::before(&orders[0]));
+        assert!(checked(&begun).is_ok());
+        orders.into_iter().for_each(|order| locked(&begun).push(order));
+        stop.set();
+        assert!(checked(&begun).is_ok(), "the second one is stopped, the third one has no time");
+        drop(locked(&begun).pop());
+        assert!(matches!(checked(&begun), Err(SessionError::Stopped)));
+        drop(locked(&begun).pop());
+        thread::sleep(Duration::from_millis(1));
+        let late = checked(&begun);
+        assert!(matches!(late, Err(SessionError::Limit(Exceeded { bound: Bound::Time(_), .. }))), "{late:?}");
+        assert_eq!(locked(&begun).end().len(), 1);
+        assert!(checked(&begun).is_ok());
+    }
+
+    /// Whether the picture is answered, or drawn alone after an error of another one.
+    #[test]
+    fn the_first_picture_in_flight_spends_its_time() {
+        let brief = || Limits::new("brief.step", Some(Duration::from_millis(50)), None);
+        let wait = || thread::sleep(Duration::from_millis(100));
+        let (first, second) = (order(&brief()), order(&brief()));
+        let mut begun = Begun::before(&first);
+        begun.push(first);
+        begun.push(second);
+        wait();
+        assert!(begun.pop().expect("the first one").tested().is_err());
+        assert!(begun.orders[0].tested().is_ok(), "its time begins now");
+        wait();
+        assert!(begun.end()[0].tested().is_err());
     }
 }

@@ -137,6 +137,8 @@ fn a_file_beyond_its_limits_costs_itself_only() {
     let none = Limits::new("none.step", Some(Duration::ZERO), None);
     let shared = Limits::new("shared.step", Some(hour), None);
     jobs[1].limits = none.clone();
+    // enough to be begun, and too little for a picture: it ends while others are in flight
+    jobs[2].limits = Limits::new("brief.step", Some(Duration::from_micros(50)), None);
     jobs[3].limits = Limits::new("large.step", None, Some(1));
     jobs[4].limits = shared.clone();
     jobs[5].limits = shared.clone();
@@ -152,10 +154,14 @@ fn a_file_beyond_its_limits_costs_itself_only() {
                 let late = ("none.step".to_owned(), Work::Drawing, Bound::Time(Duration::ZERO));
                 assert_eq!(exceeded(answer), late);
             }
+            (2, answer) => {
+                let late = ("brief.step".to_owned(), Work::Drawing, Bound::Time(Duration::from_micros(50)));
+                assert_eq!(exceeded(answer), late);
+            }
             (3, answer) => {
                 let (file, work, bound) = exceeded(answer);
                 let is_memory = matches!(bound, Bound::Memory { most: 1, held: 2.. });
-                assert!(file == "large.step" && work == Work::Drawing && is_memory, "{file}: {work} {bound}");
+                assert!(file == "large.step" && work == Work::Drawing && is_memory, "{file}: {work:?} {bound:?}");
             }
             (_, answer) => assert_same(&answer.expect("a picture"), expected, &format!("picture {nth}")),
         }

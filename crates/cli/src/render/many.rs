@@ -6,7 +6,7 @@
 //! ```
 //!
 //! A file that fails is reported, and the others are drawn; a device that fails ends the run. With a limit of memory no
-//! file is read ahead: what the process holds is one file's then.
+//! file is read ahead, and each has a device of its own: the process holds what one file takes, whatever came before.
 
 use super::manifest::{Known, Manifest};
 use super::task::Task;
@@ -14,12 +14,12 @@ use super::{Drawn, drawn};
 use crate::args::RenderArgs;
 use crate::progress::{Files, files};
 use crate::session::{self, Session};
-use crate::{Outcome, explained, target};
+use crate::{Outcome, explained, heap, target};
 use anyhow::{Error, Result};
 use selvedge::gpu::GpuError;
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge_io::import::Import;
-use selvedge_session::{Limits, resident};
+use selvedge_session::Limits;
 use std::path::Path;
 use std::sync::mpsc;
 use std::thread;
@@ -47,7 +47,7 @@ pub fn run(args: &RenderArgs, tasks: &[Task]) -> Result<Outcome> {
 struct Run<'a> {
     args: &'a RenderArgs,
     manifest: Option<Manifest>,
-    /// `None` after a file that failed on the device: the next file opens it again.
+    /// `None` after a file that failed on the device, and after each file with a limit of memory: the next opens it.
     device: Option<HeadlessRenderer>,
     failed: usize,
     complained: bool,
@@ -61,10 +61,11 @@ impl Run<'_> {
         let args = self.args;
         let bar = files(todo.len());
         let hashed = self.manifest.is_some();
-        if let Some(most) = args.read.most_memory() {
+        if args.read.most_memory().is_some() {
             for task in todo {
-                self.one(task, imported(args, task, hashed), &bar)?;
-                self.release(most);
+                let opened = self.open().and_then(|()| imported(args, task, hashed));
+                self.one(task, opened, &bar)?;
+                self.free();
             }
             return Ok(());
         }
@@ -84,12 +85,18 @@ impl Run<'_> {
         })
     }
 
-    /// Frees the device, and with it the model that was drawn, if the process holds more than half of the memory that
-    /// the next file may have.
-    fn release(&mut self, most: u64) {
-        if resident().is_some_and(|held| held > most / 2) {
-            self.complained |= self.device.take().is_some_and(session::close);
+    /// Opens the device, if it is not open.
+    fn open(&mut self) -> Result<()> {
+        if self.device.is_none() {
+            self.device = Some(session::device(&self.args.frame, self.args.read.most_memory())?);
         }
+        Ok(())
+    }
+
+    /// Frees the device, and with it the model that was drawn.
+    fn free(&mut self) {
+        self.complained |= self.device.take().is_some_and(session::close);
+        heap::trim();
     }
 
     /// Draws one file; an error ends the run.

@@ -141,8 +141,9 @@ fn a_file_has_its_time_to_be_read() {
     let told = text(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{told}");
     for name in ["a.step", "c.csg"] {
-        assert!(told.contains(&format!("{name}: reading it takes more seconds than --limit-s allows")), "{told}");
+        assert!(told.contains(&format!("{name}: reading it takes longer than the limit of 1ns")), "{told}");
     }
+    assert!(told.contains("more than --limit-s allows: "), "{told}");
     assert!(told.contains("0 of 2 files drawn, 0 skipped, 2 failed"), "{told}");
     refused(&["info", &names[0], "--limit-s", "0"], "above 0");
     refused(&["info", &names[0], "--limit-s", "1e-9"], "--limit-s");
@@ -161,7 +162,7 @@ fn a_file_has_its_time_to_be_drawn() {
     let output = selvedge(&[&drawn[..], &limited].concat());
     let told = text(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{told}");
-    assert!(told.contains("preparing") && told.contains("take more seconds than --limit-s allows"), "{told}");
+    assert!(told.contains("preparing") && told.contains("take longer than the limit of 1s"), "{told}");
     let table = rows(Path::new(&manifest));
     assert_eq!(table.len(), 100);
     let count = table.iter().take_while(|row| row["status"] == "drawn").count();
@@ -193,7 +194,37 @@ fn a_file_has_its_memory() {
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let output = draw("48x32", "8");
     let told = text(&output.stderr);
-    assert!(output.status.code() == Some(1) && told.contains("reading it takes more than --limit-mib"), "{told}");
+    assert!(
+        output.status.code() == Some(1) && told.contains("reading it takes more memory than the limit of 8.0 MiB"),
+        "{told}"
+    );
+}
+
+/// A file whose picture exceeds the limit leaves nothing of what it took: the next one is drawn as by itself.
+#[test]
+fn a_file_after_a_large_one_is_what_it_is_alone() {
+    let (folder, _) = files();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (large, small) = (path("large.toml"), path("small.toml"));
+    for (scene, size) in [(&large, 12_000), (&small, 48)] {
+        let text = format!("selvedge = 1\n[picture]\nsize = [{size}, {size}]\n[file.model]\npath = 'c.csg'\n");
+        fs::write(scene, text).expect("written");
+    }
+    let draw = |models: &[&String], output: &str| {
+        let models = models.iter().map(|model| model.as_str());
+        let all: Vec<&str> =
+            ["render"].into_iter().chain(models).chain(["-o", output, "--limit-mib", "1024"]).collect();
+        let output = selvedge(&all);
+        (output.status.code(), text(&output.stderr))
+    };
+    let (status, told) = draw(&[&small], &path("alone.png"));
+    assert_eq!(status, Some(0), "{told}");
+    let (status, told) = draw(&[&large, &small], &path("{stem}.png"));
+    assert!(status == Some(1) && told.contains("1 of 2 files drawn, 0 skipped, 1 failed"), "{told}");
+    assert!(told.contains("large.toml") && told.contains("more than --limit-mib allows"), "{told}");
+    let read = |name: &str| fs::read(path(name)).expect("a picture");
+    assert_eq!(read("small.png"), read("alone.png"));
+    assert!(!Path::new(&path("large.png")).exists());
 }
 
 #[test]

@@ -91,8 +91,8 @@ class Renderer:
 
     device: part of the device's name; without it a discrete GPU, else an integrated one, else the CPU.
     validation: load Vulkan's validation layer; what it says of a picture is a RenderError.
-    limit_mib: most MiB of buffers and images on the device; without it as many as it has left. A picture that needs more
-        is a RenderError.
+    limit_mib: most MiB of buffers and images on the device, which never takes more than it has left. A picture that
+        needs more is a RenderError.
 
     Raises DeviceError. Several threads may use one renderer: it draws their pictures in the order in which they ask.
     """
