@@ -27,9 +27,7 @@ use crate::view::View;
 use glam::DVec3;
 use selvedge::model::Camera;
 use selvedge::picture::{FrameStats, Style};
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// Messages that are kept.
 const MOST_MESSAGES: usize = 50;
@@ -53,8 +51,6 @@ pub struct Ui {
     pub commands: Vec<Command>,
     /// The pointer is over a panel, or held by one.
     pub pointer_taken: bool,
-    /// Open files that were written, and when.
-    pub changed: BTreeMap<PathBuf, Instant>,
     /// The window is to be closed.
     pub quit: bool,
     /// The tree scrolls to the selection once.
@@ -118,7 +114,6 @@ impl Default for Ui {
             messages: Vec::new(),
             commands: Vec::new(),
             pointer_taken: false,
-            changed: BTreeMap::new(),
             quit: false,
             show_selection: false,
             clicked: None,

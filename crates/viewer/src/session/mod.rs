@@ -9,6 +9,7 @@
 
 pub mod carry;
 pub mod file;
+pub mod loads;
 pub mod picked;
 pub mod section;
 pub mod shown;
@@ -17,6 +18,7 @@ pub mod world;
 
 pub use carry::Carried;
 pub use file::{Loaded, Loader, LoaderEvent};
+pub use loads::{Ended, Loads};
 pub use picked::Picked;
 pub use section::Section;
 pub use shown::{SceneState, Shown};

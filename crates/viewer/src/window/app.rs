@@ -11,7 +11,7 @@ use crate::navigation::gesture::Held;
 use crate::panels::{Facts, Ui, Verdict};
 use crate::pick::Seen;
 use crate::session::Picked;
-use crate::session::{Loaded, Loader, LoaderEvent, Session, World};
+use crate::session::{Loaded, LoaderEvent, Loads, Session, World};
 use crate::settings::{Settings, Theme};
 use crate::view::{Due, Hover, View};
 use crate::watch::Watcher;
@@ -29,8 +29,8 @@ use winit::window::Window;
 pub enum Event {
     /// The frame that was submitted to the device of this number has finished.
     FrameDone(u32, Result<(), vk::Result>),
-    /// A file.
-    Loader(LoaderEvent),
+    /// A file, by the number of its load.
+    Loader(u64, LoaderEvent),
     /// The model of all open files, and which one since the start.
     Joined(u64, Arc<World>),
     /// The engine's thread has finished.
@@ -47,13 +47,6 @@ pub enum Event {
     Judged(Result<Verdict, String>),
     /// The panels need to be drawn again.
     Repaint,
-}
-
-/// A file that is being read.
-pub struct Loading {
-    pub loader: Loader,
-    pub stage: &'static str,
-    pub share: Option<f32>,
 }
 
 /// A frame in flight.
@@ -100,7 +93,7 @@ pub struct App {
     /// The settings in the file.
     kept: Settings,
     pub files: Vec<Arc<Loaded>>,
-    pub loading: Vec<Loading>,
+    pub loads: Loads,
     /// Counts models of all open files.
     pub worlds: u64,
     /// A thread puts the last one together.
@@ -162,7 +155,7 @@ impl App {
             kept: settings.clone(),
             settings,
             files: Vec::new(),
-            loading: Vec::new(),
+            loads: Loads::default(),
             worlds: 0,
             joins: false,
             watcher,
@@ -333,7 +326,7 @@ impl App {
         let Some(Opened { window, input, engine, screen, .. }) = &mut self.opened else { unreachable!("checked") };
         let raw = input.take_egui_input(window);
         let facts = Facts {
-            loading: self.loading.iter().map(|l| (l.loader.path.as_path(), l.stage, l.share)).collect(),
+            loading: self.loads.iter().collect(),
             stats: self.stats.as_ref(),
             notice: engine.notice.as_deref(),
             busy: self.joins || engine.is_busy(),
