@@ -280,8 +280,12 @@ impl App {
         }
         self.joins = false;
         let first = self.session.world.is_empty();
-        self.session.open(Arc::clone(&world));
+        let gone = self.session.open(Arc::clone(&world));
         self.ui.opened();
+        if gone > 0 {
+            self.ui
+                .tell(format!("Edits of {gone} trim loops are gone: their files are closed or have other loops now."));
+        }
         world.notices.iter().for_each(|notice| self.ui.tell(notice.clone()));
         self.view.set_bounds(self.session.scene.now().bounds(&world));
         self.explosion = self.session.scene.now().explosion;
