@@ -9,6 +9,7 @@
 
 pub mod carry;
 pub mod file;
+pub mod joiner;
 pub mod loads;
 pub mod picked;
 pub mod section;
@@ -18,6 +19,7 @@ pub mod world;
 
 pub use carry::Carried;
 pub use file::{Loaded, Loader, LoaderEvent};
+pub use joiner::{Joiner, JoinerEvent};
 pub use loads::{Ended, Loads};
 pub use picked::Picked;
 pub use section::Section;
@@ -39,9 +41,10 @@ pub struct Session {
 }
 
 impl Session {
-    /// Replaces the open files. Hidden, coloured and edited items stay so, found again by their names, and sections stay.
-    /// Edited loops whose original is another one now, or is gone, lose their edits; returns how many. Earlier states
-    /// can be undone as long as no item has another number, and none of them edits such a loop. The selection is cleared.
+    /// Replaces the open files. Hidden, coloured and edited items stay so, found again by their names, and sections
+    /// stay. Edited loops whose original is another one now, or is gone, lose their edits; returns how many. Earlier
+    /// states can be undone as long as no item has another number, and none of them edits such a loop. The selection is
+    /// cleared.
     pub fn open(&mut self, world: impl Into<Arc<World>>) -> usize {
         let world = world.into();
         let carried = Carried::new(&self.world, &world);

@@ -11,7 +11,7 @@ use crate::navigation::gesture::Held;
 use crate::panels::{Facts, Ui, Verdict};
 use crate::pick::Seen;
 use crate::session::Picked;
-use crate::session::{Loaded, LoaderEvent, Loads, Session, World};
+use crate::session::{Joiner, JoinerEvent, Loaded, LoaderEvent, Loads, Session, World};
 use crate::settings::{Settings, Theme};
 use crate::view::{Due, Hover, View};
 use crate::watch::Watcher;
@@ -31,12 +31,10 @@ pub enum Event {
     FrameDone(u32, Result<(), vk::Result>),
     /// A file, by the number of its load.
     Loader(u64, LoaderEvent),
-    /// The model of all open files, and which one since the start.
-    Joined(u64, Arc<World>),
+    /// The open files as one model.
+    Joiner(JoinerEvent),
     /// The engine's thread has finished.
     Uploaded,
-    /// Edges can be picked now.
-    EdgesFound,
     /// Files were chosen.
     Chosen(Vec<PathBuf>),
     /// An open file has changed.
@@ -94,10 +92,7 @@ pub struct App {
     kept: Settings,
     pub files: Vec<Arc<Loaded>>,
     pub loads: Loads,
-    /// Counts models of all open files.
-    pub worlds: u64,
-    /// A thread puts the last one together.
-    pub joins: bool,
+    pub joiner: Joiner,
     pub watcher: Option<Watcher>,
     flight: Option<Flight>,
     /// Drawn again once the frame in flight is done.
@@ -144,6 +139,8 @@ impl App {
         let watched = proxy.clone();
         let watcher = Watcher::new(move |path| drop(watched.send_event(Event::Changed(path))));
         let watcher = watcher.inspect_err(|e| ui.tell(format!("Files are not watched: {e}"))).ok();
+        let joined = proxy.clone();
+        let joiner = Joiner::new(move |event| drop(joined.send_event(Event::Joiner(event))));
         Self {
             options,
             proxy,
@@ -156,8 +153,7 @@ impl App {
             settings,
             files: Vec::new(),
             loads: Loads::default(),
-            worlds: 0,
-            joins: false,
+            joiner,
             watcher,
             flight: None,
             again: false,
@@ -329,7 +325,7 @@ impl App {
             loading: self.loads.iter().collect(),
             stats: self.stats.as_ref(),
             notice: engine.notice.as_deref(),
-            busy: self.joins || engine.is_busy(),
+            busy: self.joiner.is_busy() || engine.is_busy(),
             picture: screen.shown(),
             view: &self.view,
             device: &screen.context.name,

@@ -7,11 +7,12 @@
 //! ```
 
 use super::living::{self, Placed};
-use crate::session::{SceneState, World};
+use crate::session::{SceneState, World, joiner};
 use selvedge::model::Model;
 use selvedge::picture::{SceneSettings, Smooth};
 use selvedge::renderer::{RenderError, Renderer};
 use std::collections::BTreeSet;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 use std::thread::{self, JoinHandle};
@@ -53,10 +54,19 @@ struct Current {
     is_mixed: bool,
 }
 
+/// Why a model was not uploaded.
+#[derive(Debug, thiserror::Error)]
+pub enum UploadError {
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    #[error("the upload failed by a defect of the program: {0}")]
+    Panic(String),
+}
+
 /// The result of a thread.
 struct Uploaded {
     renderer: Renderer,
-    result: Result<(Current, Option<String>), RenderError>,
+    result: Result<(Current, Option<String>), UploadError>,
 }
 
 /// The renderer and its model.
@@ -116,7 +126,12 @@ impl Engine {
         self.asked = Some(request.clone());
         let (to, from) = mpsc::channel();
         let thread = thread::spawn(move || {
-            let result = upload(&mut renderer, request);
+            // a renderer keeps the model before until it has all of the next one
+            let uploaded = catch_unwind(AssertUnwindSafe(|| upload(&mut renderer, request)));
+            let result = match uploaded {
+                Ok(result) => result.map_err(UploadError::from),
+                Err(panic) => Err(UploadError::Panic(joiner::reason(panic.as_ref()))),
+            };
             // nobody waits for it when the window closes
             drop(to.send(Uploaded { renderer, result }));
             done();
@@ -152,7 +167,7 @@ impl Engine {
     ///
     /// # Errors
     /// Why the model was not uploaded; the model before stays.
-    pub fn take(&mut self) -> Result<(), RenderError> {
+    pub fn take(&mut self) -> Result<(), UploadError> {
         let Some((thread, from)) = self.upload.take() else { return Ok(()) };
         let uploaded = match from.try_recv() {
             Ok(uploaded) => uploaded,

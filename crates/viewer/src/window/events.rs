@@ -97,7 +97,17 @@ impl ApplicationHandler<Event> for App {
                     self.recover(error, events);
                 }
             }
-            Event::Joined(nth, world) => self.joined(nth, world),
+            Event::Joiner(event) => {
+                match self.joiner.take(event) {
+                    Some(Ok(world)) => self.joined(world),
+                    Some(Err(failure)) => {
+                        tracing::error!("{failure}");
+                        self.ui.tell(failure);
+                    }
+                    None => {}
+                }
+                self.redraw();
+            }
             Event::Uploaded => self.uploaded(),
             Event::Loader(number, event) => {
                 match self.loads.take(number, event) {
@@ -127,7 +137,7 @@ impl ApplicationHandler<Event> for App {
                 }
                 self.redraw();
             }
-            Event::EdgesFound | Event::Repaint => self.redraw(),
+            Event::Repaint => self.redraw(),
         }
     }
 
@@ -257,28 +267,11 @@ impl App {
             Some(known) => self.files[known] = loaded,
             None => self.files.push(loaded),
         }
-        self.put_together();
+        self.joiner.join(self.files.clone());
     }
 
-    /// All open files as one model, put together by a thread.
-    fn put_together(&mut self) {
-        self.worlds += 1;
-        self.joins = true;
-        let (nth, files, proxy) = (self.worlds, self.files.clone(), self.proxy.clone());
-        std::thread::spawn(move || {
-            let world = Arc::new(World::new(&files));
-            drop(proxy.send_event(Event::Joined(nth, Arc::clone(&world))));
-            world.find_edges();
-            drop(proxy.send_event(Event::EdgesFound));
-        });
-    }
-
-    /// Shows the model of all open files, unless they are others by now.
-    fn joined(&mut self, nth: u64, world: Arc<World>) {
-        if nth != self.worlds {
-            return;
-        }
-        self.joins = false;
+    /// Shows the model of all open files.
+    fn joined(&mut self, world: Arc<World>) {
         let first = self.session.world.is_empty();
         let gone = self.session.open(Arc::clone(&world));
         self.ui.opened();
@@ -298,7 +291,6 @@ impl App {
         if let Some(opened) = &self.opened {
             opened.window.set_title(&format!("{} - selvedge", title.join(", ")));
         }
-        self.redraw();
     }
 
     /// Reads files again that have changed on the disk and rest.
@@ -362,7 +354,7 @@ impl App {
             let closed = self.files.remove(nth);
             self.unwatch(&closed.path);
             self.loads.forget(&closed.path);
-            self.put_together();
+            self.joiner.join(self.files.clone());
         }
     }
 
