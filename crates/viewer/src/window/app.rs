@@ -95,8 +95,12 @@ pub struct App {
     pub joiner: Joiner,
     pub watcher: Option<Watcher>,
     flight: Option<Flight>,
+    /// The system was told that a frame is due.
+    due: bool,
     /// Drawn again once the frame in flight is done.
     pub again: bool,
+    /// Nothing has happened since the log said that the window is idle.
+    pub rests: bool,
     /// The time of the next frame, if no event comes before.
     pub wake: Option<Instant>,
     pub picture: Option<ShownPicture>,
@@ -156,7 +160,9 @@ impl App {
             joiner,
             watcher,
             flight: None,
+            due: false,
             again: false,
+            rests: false,
             wake: None,
             picture: None,
             stats: None,
@@ -208,7 +214,15 @@ impl App {
             self.again = true;
         } else if let Some(opened) = &self.opened {
             opened.window.request_redraw();
+            self.due = true;
         }
+    }
+
+    /// Nothing is drawn, read, put together or uploaded, and no frame is due.
+    pub fn is_idle(&self) -> bool {
+        let draws = self.flight.is_some() || self.due || self.wake.is_some();
+        let uploads = self.opened.as_ref().is_none_or(|opened| opened.engine.is_busy());
+        !draws && !uploads && self.loads.is_idle() && self.joiner.is_idle()
     }
 
     /// The cursor in pixels of the view, where it is over it and not over a panel.
@@ -222,6 +236,7 @@ impl App {
 
     /// One frame; none while one is in flight.
     pub fn draw(&mut self) -> Result<(), ViewError> {
+        (self.due, self.rests) = (false, false);
         if self.flight.is_some() || self.opened.is_none() {
             self.again = true;
             return Ok(());

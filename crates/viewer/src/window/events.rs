@@ -39,6 +39,11 @@ impl ApplicationHandler<Event> for App {
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
         let next = [self.wake, self.loads.wake()].into_iter().flatten().min();
         events.set_control_flow(next.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
+        let is_idle = self.is_idle();
+        if is_idle && !self.rests {
+            tracing::debug!("idle");
+        }
+        self.rests = is_idle;
         if self.ui.quit {
             events.exit();
         }
@@ -89,6 +94,7 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn user_event(&mut self, events: &ActiveEventLoop, event: Event) {
+        self.rests = false;
         match event {
             // of a device that was lost
             Event::FrameDone(device, _) if device != self.devices => {}
