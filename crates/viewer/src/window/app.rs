@@ -1,7 +1,7 @@
 //! The window's state, and one frame of it.
 
 use super::composite::ViewRect;
-use super::engine::{Engine, Wanted};
+use super::engine::{Drawn, Engine, Wanted};
 use super::look::background;
 use super::screen::{Frame, Picture, Screen};
 use super::waiter::Waiter;
@@ -11,7 +11,7 @@ use crate::navigation::gesture::Held;
 use crate::panels::{Facts, Ui, Verdict};
 use crate::pick::Seen;
 use crate::session::Picked;
-use crate::session::{Joiner, JoinerEvent, Loaded, LoaderEvent, Loads, Session, World};
+use crate::session::{Joiner, JoinerEvent, Loaded, LoaderEvent, Loads, Session};
 use crate::settings::{Settings, Theme};
 use crate::view::{Due, Hover, View};
 use crate::watch::Watcher;
@@ -55,8 +55,8 @@ struct Flight {
     pick: Option<DVec2>,
     /// The picture that the pick reads.
     camera: Option<Camera>,
-    /// The numbers of the picture's instances in a world.
-    numbers: Option<(Arc<World>, Arc<[usize]>)>,
+    /// The scene of that picture.
+    scene: Option<Drawn>,
     free: Vec<egui::TextureId>,
 }
 
@@ -252,9 +252,9 @@ impl App {
         self.keep_settings();
         self.make_room();
         let (due, mut settings, marks) = (self.view.due(now), self.frame_settings(), self.marks());
-        let (under, scene) = (self.over_view(), self.scene_settings());
+        let (under, scene_settings) = (self.over_view(), self.scene_settings());
         let Some(Opened { window, waiter, engine, screen, .. }) = &mut self.opened else { return Ok(()) };
-        let wanted = Wanted { world: &self.session.world, state: self.session.scene.now(), settings: scene };
+        let wanted = Wanted { world: &self.session.world, state: self.session.scene.now(), settings: scene_settings };
         let proxy = self.proxy.clone();
         engine.want(wanted, move || drop(proxy.send_event(Event::Uploaded)));
         if settings.style.is_curvature() && !engine.has_curvature() {
@@ -267,19 +267,19 @@ impl App {
         let wanted = ShownPicture { camera: due.camera, settings, generation: engine.generation };
         let is_new = self.picture != Some(wanted) && due.camera.size.0 > 1 && !self.session.world.is_empty();
         let generation = engine.generation;
-        let numbers = engine.instances_of(&self.session.world).map(Arc::clone);
+        let scene = engine.drawn(&self.session.world);
         let picture = if is_new { engine.renderer() } else { None };
         let picture = picture.map(|renderer| Picture { renderer, camera: &due.camera, settings });
         let in_picture = picture.is_some().then_some((due, settings, generation, now));
         let seen_by = in_picture.map(|_| due.camera).or(self.picture.map(|p| p.camera));
         // the item under a resting cursor changes with the picture
         let rests = in_picture.is_some() && !self.view.is_dragging();
-        let numbers = numbers.filter(|_| seen_by.is_some());
+        let scene = scene.filter(|_| seen_by.is_some());
         // without a picture of what is open there is nothing to click
-        self.click = self.click.filter(|_| numbers.is_some());
+        self.click = self.click.filter(|_| scene.is_some());
         let clicked = self.click.map(|(_, at)| at);
-        let pick = clicked.or(self.pick.take()).or(under.filter(|_| rests)).filter(|_| numbers.is_some());
-        if numbers.is_none() && self.view.wants_point().is_some() {
+        let pick = clicked.or(self.pick.take()).or(under.filter(|_| rests)).filter(|_| scene.is_some());
+        if scene.is_none() && self.view.wants_point().is_some() {
             self.view.hold(None);
         }
         screen.set_textures(&output.textures_delta)?;
@@ -304,8 +304,7 @@ impl App {
         };
         if drawn {
             waiter.watch(screen.context.fence);
-            let numbers = numbers.map(|numbers| (Arc::clone(&self.session.world), numbers));
-            self.flight = Some(Flight { picture: in_picture, pick, camera: seen_by, numbers, free });
+            self.flight = Some(Flight { picture: in_picture, pick, camera: seen_by, scene, free });
         } else {
             screen.free_textures(&free)?;
         }
@@ -395,7 +394,7 @@ impl App {
 
     /// The frame in flight has finished.
     pub fn frame_done(&mut self, result: Result<(), vk::Result>) -> Result<(), ViewError> {
-        let Some(Flight { picture, pick, camera, numbers, free }) = self.flight.take() else { return Ok(()) };
+        let Some(Flight { picture, pick, camera, scene, free }) = self.flight.take() else { return Ok(()) };
         result?;
         tracing::debug!("frame");
         let Some(Opened { engine, screen, .. }) = &mut self.opened else { return Ok(()) };
@@ -424,13 +423,12 @@ impl App {
             tracing::debug!("picture of {width} x {height} in {:.1?}, complete: {complete}", start.elapsed());
         }
         let samples = screen.picked();
-        let world = &self.session.world;
-        let numbers = numbers.filter(|(of, _)| Arc::ptr_eq(of, world)).map(|(_, numbers)| numbers);
-        if let (Some(at), Some(camera), Some(samples), Some(numbers)) = (pick, camera, samples, numbers) {
+        let scene = scene.filter(|scene| Arc::ptr_eq(&scene.world, &self.session.world));
+        if let (Some(at), Some(camera), Some(samples), Some(scene)) = (pick, camera, samples, scene) {
             let scale = f64::from(camera.size.0) / f64::from(self.rect.width.max(1));
-            let state = self.session.scene.now();
+            let Drawn { world, state, instances } = &scene;
             let placed = |number: usize| state.placement(number, world);
-            let seen = Seen { world, instances: &numbers, placement: &placed, camera: &camera };
+            let seen = Seen { world, instances, placement: &placed, camera: &camera };
             let hit = samples.pick(&seen, at * scale, self.ui.filter);
             let before = self.view.hover.and_then(|h| h.hit.picked);
             self.view.hover = Some(Hover { cursor: at, hit });

@@ -21,7 +21,7 @@ use std::thread::{self, JoinHandle};
 #[derive(Clone, Debug)]
 pub struct Request {
     pub world: Arc<World>,
-    pub state: SceneState,
+    pub state: Arc<SceneState>,
     pub settings: SceneSettings,
 }
 
@@ -36,11 +36,11 @@ pub struct Wanted<'a> {
 impl Wanted<'_> {
     fn is_of(self, request: &Request) -> bool {
         let Request { world, state, settings } = request;
-        Arc::ptr_eq(self.world, world) && self.settings == *settings && self.state == state
+        Arc::ptr_eq(self.world, world) && self.settings == *settings && *self.state == **state
     }
 
     fn request(self) -> Request {
-        Request { world: Arc::clone(self.world), state: self.state.clone(), settings: self.settings }
+        Request { world: Arc::clone(self.world), state: Arc::new(self.state.clone()), settings: self.settings }
     }
 }
 
@@ -52,6 +52,15 @@ struct Current {
     placed: Placed,
     /// A change in place failed halfway: only an upload leads to a known state.
     is_mixed: bool,
+}
+
+/// What the renderer draws, for picks in its pictures: the session may have another state by the time of a pick.
+pub struct Drawn {
+    pub world: Arc<World>,
+    /// Places the instances.
+    pub state: Arc<SceneState>,
+    /// Of each instance the number in the world.
+    pub instances: Arc<[usize]>,
 }
 
 /// Why a model was not uploaded.
@@ -92,10 +101,15 @@ impl Engine {
         self.renderer.is_none()
     }
 
-    /// Of each instance that is drawn the number in this world; `None` while something else is drawn.
-    pub fn instances_of(&self, world: &Arc<World>) -> Option<&Arc<[usize]>> {
-        let current = self.current.as_ref().filter(|current| Arc::ptr_eq(&current.request.world, world))?;
-        Some(&current.placed.instances)
+    /// What is drawn of this world; `None` while another one is drawn.
+    pub fn drawn(&self, world: &Arc<World>) -> Option<Drawn> {
+        let Current { request, placed, .. } = self.current.as_ref()?;
+        let drawn = || Drawn {
+            world: Arc::clone(world),
+            state: Arc::clone(&request.state),
+            instances: Arc::clone(&placed.instances),
+        };
+        Arc::ptr_eq(&request.world, world).then(drawn)
     }
 
     /// The renderer's model, and its instances that are hidden; `None` during an upload.
@@ -150,8 +164,9 @@ impl Engine {
         match changed.apply(renderer, &mut current.placed, current.settings.editable) {
             Ok(()) => {
                 tracing::debug!("changed in place");
-                state.clone_from(wanted.state);
-                self.asked = Some(wanted.request());
+                let request = wanted.request();
+                *state = Arc::clone(&request.state);
+                self.asked = Some(request);
                 self.generation += 1;
                 true
             }

@@ -43,9 +43,9 @@ impl App {
 
     /// Hovered and selected items, by the numbers of the shown picture.
     pub fn marks(&self) -> (Option<Mark>, Vec<Mark>) {
-        let numbers = self.opened.as_ref().and_then(|o| o.engine.instances_of(&self.session.world));
-        let Some(numbers) = numbers else { return (None, Vec::new()) };
-        let number = |instance: usize| numbers.binary_search(&instance).ok().map(|i| i as u32 + 1);
+        let drawn = self.opened.as_ref().and_then(|o| o.engine.drawn(&self.session.world));
+        let Some(drawn) = drawn else { return (None, Vec::new()) };
+        let number = |instance: usize| drawn.instances.binary_search(&instance).ok().map(|i| i as u32 + 1);
         let mark = |picked: &Picked| match *picked {
             Picked::Face { instance, face, .. } => {
                 let part = self.session.world.model.instances.get(instance)?.part;
