@@ -1,10 +1,9 @@
 //! The scene's and the frame's settings for the engine, and marks for the composite pass.
 
 use super::app::App;
-use crate::describe::{SUN, ambient_radius};
 use crate::pick::Mark;
 use crate::session::Picked;
-use crate::settings::{Lines, Settings};
+use crate::settings::{Lines, SUN, Settings};
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, SceneSettings, Smooth};
 
 impl App {
@@ -24,7 +23,7 @@ impl App {
             edges,
             smooth,
             curvature,
-            ambient: ambient_radius(&self.session.world, &self.settings),
+            ambient: self.settings.ambient_radius(self.session.world.bounds.diagonal()),
             sun: shadows.then_some(SUN),
             editable: self.ui.trims,
             ..SceneSettings::default()
