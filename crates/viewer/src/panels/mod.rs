@@ -41,6 +41,8 @@ pub struct Ui {
     pub style: Style,
     /// The text to search in the tree.
     pub search: String,
+    /// The items that have it.
+    found: tree::Found,
     /// The help is open.
     pub help: bool,
     /// The list of warnings is open.
@@ -109,6 +111,7 @@ impl Default for Ui {
             filter: PickFilter::default(),
             style: Style::default(),
             search: String::new(),
+            found: tree::Found::default(),
             help: false,
             warnings: false,
             messages: Vec::new(),
