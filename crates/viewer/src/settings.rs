@@ -127,8 +127,8 @@ impl Settings {
         std::fs::rename(&beside, path)
     }
 
-    /// The reach of ambient occlusion in model units, where it is wanted, of a model with this diagonal. A model without
-    /// a size has none.
+    /// The reach of ambient occlusion in model units, where it is wanted, of a model with this diagonal. A model
+    /// without a size has none.
     pub fn ambient_radius(&self, diagonal: f64) -> Option<f64> {
         let radius = AMBIENT * diagonal;
         (self.ambient && radius.is_finite() && radius > 0.0).then_some(radius)

@@ -1,7 +1,7 @@
 //! Open files with their parts: show, hide, isolate, make transparent, colour, find.
 //!
-//! Rows that are scrolled out of sight are not laid out, and names are searched only when the text or the files change: a
-//! frame costs the same for every number of parts and solids.
+//! Rows that are scrolled out of sight are not laid out, and names are searched only when the text or the files change:
+//! a frame costs the same for every number of parts and solids.
 
 use super::Ui;
 use crate::commands::Command;

@@ -140,12 +140,7 @@ impl Engine {
         self.asked = Some(request.clone());
         let (to, from) = mpsc::channel();
         let thread = thread::spawn(move || {
-            // a renderer keeps the model before until it has all of the next one
-            let uploaded = catch_unwind(AssertUnwindSafe(|| upload(&mut renderer, request)));
-            let result = match uploaded {
-                Ok(result) => result.map_err(UploadError::from),
-                Err(panic) => Err(UploadError::Panic(joiner::reason(panic.as_ref()))),
-            };
+            let result = caught(|| upload(&mut renderer, request));
             // nobody waits for it when the window closes
             drop(to.send(Uploaded { renderer, result }));
             done();
@@ -218,6 +213,14 @@ impl Engine {
     }
 }
 
+/// The result of an upload, or its panic. The renderer keeps the model before until it has all of the next one.
+fn caught<T>(upload: impl FnOnce() -> Result<T, RenderError>) -> Result<T, UploadError> {
+    match catch_unwind(AssertUnwindSafe(upload)) {
+        Ok(result) => Ok(result?),
+        Err(panic) => Err(UploadError::Panic(joiner::reason(panic.as_ref()))),
+    }
+}
+
 /// Uploads a model with hidden instances in it, without those where one of them cannot be hidden.
 fn upload(renderer: &mut Renderer, request: Request) -> Result<(Current, Option<String>), RenderError> {
     // shadows are those of an upload
@@ -253,5 +256,18 @@ fn put(
             Ok((settings, Some(format!("Borders are not smooth: that does not go with {what}."))))
         }
         Err(error) => Err(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_of_an_upload_is_an_error() {
+        let failed = caught(|| -> Result<(), RenderError> { panic!("on purpose") });
+        assert!(matches!(&failed, Err(UploadError::Panic(why)) if why == "on purpose"), "{failed:?}");
+        assert!(matches!(caught(|| Err::<(), _>(RenderError::Tolerance(0.0))), Err(UploadError::Render(_))));
+        assert!(matches!(caught(|| Ok(1)), Ok(1)));
     }
 }

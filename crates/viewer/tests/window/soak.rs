@@ -5,7 +5,8 @@ use std::time::Duration;
 
 /// Events of a usual run; the environment's `SELVEDGE_WINDOW_EVENTS` has another number, such as 10000.
 const EVENTS: usize = 480;
-/// Measures of memory in each third. The first third is the warm-up: pipelines, fonts and lists grow to their usual size.
+/// Measures of memory in each third. The first third is the warm-up: pipelines, fonts and lists grow to their usual
+/// size.
 const MEASURES: usize = 4;
 /// Most that the least memory of the last third may be above that of the second one, KiB. The allocator's arenas and a
 /// driver's caches vary by some MiB; a leak of 100 KiB an event is as much in a third of the usual run.
