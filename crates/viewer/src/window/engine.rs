@@ -216,7 +216,7 @@ impl Engine {
 /// The result of an upload, or its panic. The renderer keeps the model before until it has all of the next one.
 fn caught<T>(upload: impl FnOnce() -> Result<T, RenderError>) -> Result<T, UploadError> {
     match catch_unwind(AssertUnwindSafe(upload)) {
-        Ok(result) => Ok(result?),
+        Ok(result) => result.map_err(UploadError::Render),
         Err(panic) => Err(UploadError::Panic(joiner::reason(panic.as_ref()))),
     }
 }
