@@ -25,3 +25,26 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
 pub fn is_of_device(error: &anyhow::Error) -> bool {
     error.downcast_ref::<ViewError>().is_some_and(ViewError::is_of_device)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::settings::Settings;
+    use glam::{DAffine3, DVec3};
+    use selvedge::model::{Instance, Mesh, Model, Part};
+    use selvedge::picture::Samples;
+    use selvedge_session::Ambient;
+
+    /// The window and `render` have a share each of the model's diagonal.
+    #[test]
+    fn ambient_occlusion_reaches_as_far_in_the_window_as_in_render() {
+        let corners = vec![DVec3::ZERO, DVec3::X * 6.0, DVec3::new(6.0, 6.0, 8.0)];
+        let mesh = Mesh::new(1, corners, vec![[0, 1, 2]], vec![]).expect("a triangle");
+        let part = Part { meshes: vec![mesh], ..Part::default() };
+        let placed = Instance { part: 0, transform: DAffine3::IDENTITY, colour: None, name: String::new() };
+        let model = Model { parts: vec![part], instances: vec![placed], ..Model::default() };
+        let settings = Settings { ambient: true, ..Settings::default() };
+        let radius = settings.ambient_radius(model.control_bounds().diagonal());
+        assert!(radius.is_some());
+        assert_eq!(radius, Ambient::radius(Some(Ambient::Auto), Samples::One, &model));
+    }
+}

@@ -2,21 +2,10 @@
 
 use crate::session::Picked;
 use crate::session::{Session, World};
-use crate::settings::{Lines, Settings};
+use crate::settings::{Lines, SUN, Settings};
 use glam::DVec3;
 use selvedge::model::{Camera, EdgeKind, Face, Projection, SurfaceKind};
 use selvedge::picture::Style;
-
-/// Towards the light that casts shadows, model axes: from the front right, high above.
-pub const SUN: DVec3 = DVec3::new(0.5, -0.7, 1.0);
-/// Reach of ambient occlusion as a share of the model's diagonal: as `selvedge render` has it.
-const AMBIENT: f64 = 0.04;
-
-/// The reach of ambient occlusion in model units, where it is wanted.
-pub fn ambient_radius(world: &World, settings: &Settings) -> Option<f64> {
-    let radius = AMBIENT * world.bounds.diagonal();
-    (settings.ambient && radius.is_finite() && radius > 0.0).then_some(radius)
-}
 
 /// Lines of a description: name and value.
 pub type Description = Vec<(&'static str, String)>;
@@ -202,7 +191,7 @@ pub fn command(session: &Session, camera: &Camera, settings: &Settings, style: S
     };
     push("--edges", edges.to_owned());
     push("--smooth", if settings.smooth { "borders" } else { "none" }.to_owned());
-    let ambient = ambient_radius(&session.world, settings);
+    let ambient = settings.ambient_radius(session.world.bounds.diagonal());
     push("--ao", ambient.map_or("none".to_owned(), |radius| format!("{radius}")));
     if settings.shadows {
         push("--sun", triple(SUN));

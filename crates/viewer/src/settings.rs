@@ -4,10 +4,16 @@
 
 use crate::navigation::OrbitStyle;
 use crate::navigation::gesture::Preset;
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};
 
+/// Towards the light that casts shadows, model axes: from the front right, high above.
+pub const SUN: DVec3 = DVec3::new(0.5, -0.7, 1.0);
+/// Reach of ambient occlusion as a share of the model's diagonal. A test of the program holds it equal to that of
+/// `selvedge render --ao=auto`.
+const AMBIENT: f64 = 0.04;
 /// Most files in the list of recent ones.
 const MOST_RECENT: usize = 12;
 
@@ -121,6 +127,13 @@ impl Settings {
         std::fs::rename(&beside, path)
     }
 
+    /// The reach of ambient occlusion in model units, where it is wanted, of a model with this diagonal. A model
+    /// without a size has none.
+    pub fn ambient_radius(&self, diagonal: f64) -> Option<f64> {
+        let radius = AMBIENT * diagonal;
+        (self.ambient && radius.is_finite() && radius > 0.0).then_some(radius)
+    }
+
     /// A file was opened.
     pub fn opened(&mut self, file: &Path) {
         let file = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
@@ -169,6 +182,14 @@ mod tests {
         assert_eq!(settings.recent, [PathBuf::from("/a"), PathBuf::from("/b")]);
         (0..50).for_each(|i| settings.opened(Path::new(&format!("/{i}"))));
         assert_eq!((settings.recent.len(), settings.recent[0].clone()), (MOST_RECENT, PathBuf::from("/49")));
+    }
+
+    #[test]
+    fn only_a_wanted_light_reaches_somewhere() {
+        let settings = Settings { ambient: true, ..Settings::default() };
+        assert_eq!(settings.ambient_radius(50.0), Some(2.0));
+        assert_eq!([0.0, -1.0, f64::INFINITY, f64::NAN].map(|diagonal| settings.ambient_radius(diagonal)), [None; 4]);
+        assert_eq!(Settings::default().ambient_radius(50.0), None);
     }
 
     #[test]

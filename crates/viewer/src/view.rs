@@ -219,6 +219,11 @@ impl View {
     /// Zooms by notches to what is in the middle of the picture, as keys do.
     pub fn zoom(&mut self, notches: f64, now: Instant) {
         self.remember();
+        if let Some((transition, _)) = self.transition.take() {
+            // what is under the cursor on the way is elsewhere at the goal
+            self.hover = None;
+            self.set(transition.end(), now);
+        }
         let (width, height) = self.camera.size;
         self.wheel(DVec2::new(f64::from(width), f64::from(height)) * 0.5, notches, now);
     }
@@ -442,5 +447,29 @@ mod tests {
         assert_eq!(view.camera, goal);
         assert!(view.previous(false, start + DURATION));
         assert_eq!(view.camera.eye, first.eye);
+    }
+
+    #[test]
+    fn a_key_in_the_middle_of_a_transition_starts_from_its_goal() {
+        let start = Instant::now();
+        let half = start + DURATION / 2;
+        let keys: [fn(&mut View, Instant); 3] = [
+            |view, now| view.zoom(2.0, now),
+            |view, now| view.shift(DVec2::new(50.0, -20.0), now),
+            |view, now| view.turn(DVec2::new(50.0, -20.0), OrbitStyle::Turntable, now),
+        ];
+        for key in keys {
+            let of = |smooth: bool| {
+                let mut view = view(start);
+                view.look_from(DVec3::Z, DVec3::Y, smooth, start);
+                view.advance(half);
+                let cursor = DVec2::new(400.0, 300.0);
+                view.hover = smooth.then_some(Hover { cursor, hit: Hit { picked: None, point: Some(BOX.max) } });
+                key(&mut view, half);
+                view.advance(start + DURATION);
+                view.camera
+            };
+            assert_eq!(of(true), of(false));
+        }
     }
 }

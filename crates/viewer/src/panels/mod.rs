@@ -27,9 +27,7 @@ use crate::view::View;
 use glam::DVec3;
 use selvedge::model::Camera;
 use selvedge::picture::{FrameStats, Style};
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// Messages that are kept.
 const MOST_MESSAGES: usize = 50;
@@ -43,6 +41,8 @@ pub struct Ui {
     pub style: Style,
     /// The text to search in the tree.
     pub search: String,
+    /// The items that have it.
+    found: tree::Found,
     /// The help is open.
     pub help: bool,
     /// The list of warnings is open.
@@ -53,8 +53,6 @@ pub struct Ui {
     pub commands: Vec<Command>,
     /// The pointer is over a panel, or held by one.
     pub pointer_taken: bool,
-    /// Open files that were written, and when.
-    pub changed: BTreeMap<PathBuf, Instant>,
     /// The window is to be closed.
     pub quit: bool,
     /// The tree scrolls to the selection once.
@@ -113,12 +111,12 @@ impl Default for Ui {
             filter: PickFilter::default(),
             style: Style::default(),
             search: String::new(),
+            found: tree::Found::default(),
             help: false,
             warnings: false,
             messages: Vec::new(),
             commands: Vec::new(),
             pointer_taken: false,
-            changed: BTreeMap::new(),
             quit: false,
             show_selection: false,
             clicked: None,

@@ -4,6 +4,7 @@ use super::*;
 use crate::session::Picked;
 use crate::session::{Loaded, World};
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Texts of a frame, with their places.
 fn texts(output: &egui::FullOutput) -> Vec<(String, egui::Rect)> {

@@ -1,14 +1,37 @@
 //! Open files with their parts: show, hide, isolate, make transparent, colour, find.
 //!
-//! Rows that are scrolled out of sight are not laid out: a frame costs the same for every number of parts.
+//! Rows that are scrolled out of sight are not laid out, and names are searched only when the text or the files change:
+//! a frame costs the same for every number of parts and solids.
 
 use super::Ui;
 use crate::commands::Command;
-use crate::session::Picked;
-use crate::session::Session;
+use crate::session::{Picked, Session, World};
 use egui::{Rect, Vec2};
 use selvedge::model::GREY;
 use std::ops::Range;
+use std::sync::Arc;
+
+/// The instances that a search finds, from frame to frame.
+#[derive(Debug, Default)]
+pub struct Found {
+    world: Arc<World>,
+    search: String,
+    /// Of each file, in ascending order.
+    files: Vec<Vec<usize>>,
+}
+
+impl Found {
+    /// Searches, unless it has the instances of this model for this text.
+    fn update(&mut self, world: &Arc<World>, search: &str) {
+        if Arc::ptr_eq(&self.world, world) && self.search == search {
+            return;
+        }
+        let wanted = search.to_lowercase();
+        let is_found = |i: &usize| wanted.is_empty() || world.instance_name(*i).to_lowercase().contains(&wanted);
+        let files = world.files.iter().map(|file| file.instances.clone().filter(is_found).collect()).collect();
+        *self = Self { world: Arc::clone(world), search: search.to_owned(), files };
+    }
+}
 
 /// Shows it.
 pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
@@ -25,35 +48,33 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
         }
     });
     panel.separator();
+    let mut found = std::mem::take(&mut ui.found);
+    found.update(&session.world, &ui.search);
     egui::ScrollArea::both().auto_shrink(false).show(panel, |area| {
         let (world, selected) = (session.world.clone(), session.selected_instances());
         let last = session.selection.last().and_then(Picked::instance);
-        for file in &world.files {
+        for (file, found) in world.files.iter().zip(&found.files) {
             egui::CollapsingHeader::new(&file.name).id_salt(&file.path).default_open(true).show(area, |list| {
                 if !file.complete {
                     list.colored_label(list.visuals().warn_fg_color, "not complete").on_hover_text(&file.summary);
                 }
-                let wanted = ui.search.to_lowercase();
-                let found: Vec<usize> = file
-                    .instances
-                    .clone()
-                    .filter(|i| wanted.is_empty() || world.instance_name(*i).to_lowercase().contains(&wanted))
-                    .collect();
                 let to = last.filter(|_| ui.show_selection).and_then(|last| found.binary_search(&last).ok());
-                rows(list, found.len(), to, |list, row| {
+                rows(list, found.len() + file.solids.len(), to, |list, row| {
+                    let solid = row.checked_sub(found.len()).map(|nth| file.solids.start + nth);
+                    let item = solid.map_or_else(|| found[row], |solid| world.model.instances.len() + solid);
                     // a row is the same one wherever it is scrolled to
-                    list.push_id(found[row], |list| part(list, ui, session, found[row], &selected));
+                    list.push_id(item, |list| match solid {
+                        Some(solid) => solid_row(list, session, item, &format!("Solid {}", solid + 1)),
+                        None => part(list, ui, session, item, &selected),
+                    });
                 });
-                let count = world.model.instances.len();
-                for solid in file.solids.clone() {
-                    solid_row(list, session, count + solid, &format!("Solid {}", solid + 1));
-                }
             });
         }
         if world.is_empty() {
             area.label("Open a file, or drop one here.");
         }
     });
+    ui.found = found;
     ui.show_selection = false;
 }
 
@@ -135,6 +156,32 @@ fn part(list: &mut egui::Ui, ui: &mut Ui, session: &mut Session, instance: usize
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::session::Loaded;
+
+    fn world() -> Arc<World> {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/assembly.step");
+        let import = selvedge_io::import::open(&path).expect("a sample");
+        Arc::new(World::new(&[Arc::new(Loaded { path, import })]))
+    }
+
+    #[test]
+    fn names_are_searched_only_when_the_text_or_the_files_change() {
+        let (world, other) = (world(), world());
+        let mut found = Found::default();
+        found.update(&world, "");
+        let all: Vec<usize> = (0..world.model.instances.len()).collect();
+        assert_eq!(found.files, [all.clone()]);
+        found.files.clear();
+        found.update(&world, "");
+        assert!(found.files.is_empty(), "it is not searched again");
+        found.update(&world, &world.instance_name(1).to_uppercase());
+        assert!(found.files[0].contains(&1) && found.files[0].len() < all.len(), "{:?}", found.files);
+        found.update(&other, "");
+        assert_eq!(found.files, [all]);
+        found.files.clear();
+        found.update(&world, "");
+        assert_eq!(found.files.len(), 1, "another model");
+    }
 
     #[test]
     fn only_rows_in_sight_are_laid_out() {

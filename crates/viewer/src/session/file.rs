@@ -1,8 +1,8 @@
-//! Files read by a thread, with progress; reading can be stopped at once.
+//! Files read by a thread, with progress; reading can be stopped.
 
 use selvedge_io::import::{self, Folders, Import, Options, Stage};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
@@ -19,10 +19,8 @@ pub struct Loaded {
 /// A message of the thread.
 #[derive(Debug)]
 pub enum LoaderEvent {
-    /// How far a file has come: stage, and a share of it from 0 to 1 where it is known.
+    /// How far the file has come: stage, and a share of it from 0 to 1 where it is known.
     Progress {
-        /// The file.
-        path: PathBuf,
         /// As in the bar.
         stage: &'static str,
         /// Of the stage.
@@ -31,19 +29,9 @@ pub enum LoaderEvent {
     /// It is read.
     Loaded(Arc<Loaded>),
     /// It cannot be read, or nothing of it can be drawn: the reason, with the file's name.
-    Failed(PathBuf, String),
+    Failed(String),
     /// Reading was stopped.
-    Cancelled(PathBuf),
-}
-
-impl LoaderEvent {
-    /// The file that it is about.
-    pub fn path(&self) -> &Path {
-        match self {
-            Self::Progress { path, .. } | Self::Failed(path, _) | Self::Cancelled(path) => path,
-            Self::Loaded(loaded) => &loaded.path,
-        }
-    }
+    Cancelled,
 }
 
 /// A file that is being read.
@@ -79,23 +67,23 @@ impl Loader {
                     }
                     *last = (stage, share.unwrap_or_default());
                 }
-                tell(LoaderEvent::Progress { path: file.clone(), stage, share });
+                tell(LoaderEvent::Progress { stage, share });
             };
             let folders = Folders::new(Vec::new());
             let options = Options { progress: Some(&progress), files: Some(&folders), ..Options::default() };
             let read = catch_unwind(AssertUnwindSafe(|| import::open_with(&file, &options)));
             let event = match read {
-                _ if stop.load(Ordering::Relaxed) => LoaderEvent::Cancelled(file.clone()),
+                _ if stop.load(Ordering::Relaxed) => LoaderEvent::Cancelled,
                 Ok(Ok(import)) => {
                     let summary = import.summary();
                     if summary.draws_nothing() {
-                        LoaderEvent::Failed(file.clone(), format!("{}: {summary}", file.display()))
+                        LoaderEvent::Failed(format!("{}: {summary}", file.display()))
                     } else {
                         LoaderEvent::Loaded(Arc::new(Loaded { path: file.clone(), import }))
                     }
                 }
-                Ok(Err(error)) => LoaderEvent::Failed(file.clone(), error.to_string()),
-                Err(_) => LoaderEvent::Failed(file.clone(), format!("{}: the importer failed", file.display())),
+                Ok(Err(error)) => LoaderEvent::Failed(error.to_string()),
+                Err(_) => LoaderEvent::Failed(format!("{}: the importer failed", file.display())),
             };
             tell(event);
         });
@@ -162,7 +150,7 @@ mod tests {
     #[test]
     fn what_is_no_file_is_named() {
         let (last, _) = read(sample("no_such.step"), false);
-        assert!(matches!(&last, LoaderEvent::Failed(_, why) if why.contains("no_such.step")), "{last:?}");
+        assert!(matches!(&last, LoaderEvent::Failed(why) if why.contains("no_such.step")), "{last:?}");
     }
 
     /// A fifth of a second, for files of any size; the thread may have read it before it stops.
@@ -170,7 +158,7 @@ mod tests {
     fn a_file_is_given_up_at_once() {
         let start = Instant::now();
         let (last, _) = read(sample("assembly.step"), true);
-        assert!(matches!(last, LoaderEvent::Cancelled(_)), "{last:?}");
+        assert!(matches!(last, LoaderEvent::Cancelled), "{last:?}");
         assert!(start.elapsed() < Duration::from_secs(5));
     }
 }

@@ -9,6 +9,8 @@
 
 pub mod carry;
 pub mod file;
+pub mod joiner;
+pub mod loads;
 pub mod picked;
 pub mod section;
 pub mod shown;
@@ -17,6 +19,8 @@ pub mod world;
 
 pub use carry::Carried;
 pub use file::{Loaded, Loader, LoaderEvent};
+pub use joiner::{Joiner, JoinerEvent};
+pub use loads::{Ended, Loads};
 pub use picked::Picked;
 pub use section::Section;
 pub use shown::{SceneState, Shown};
@@ -37,16 +41,20 @@ pub struct Session {
 }
 
 impl Session {
-    /// Replaces the open files. Hidden, coloured and edited items stay so, found again by their names, and sections stay.
-    /// Earlier states can be undone as long as no item has another number. The selection is cleared.
-    pub fn open(&mut self, world: impl Into<Arc<World>>) {
+    /// Replaces the open files. Hidden, coloured and edited items stay so, found again by their names, and sections
+    /// stay. Edited loops whose original is another one now, or is gone, lose their edits; returns how many. Earlier
+    /// states can be undone as long as no item has another number, and none of them edits such a loop. The selection is
+    /// cleared.
+    pub fn open(&mut self, world: impl Into<Arc<World>>) -> usize {
         let world = world.into();
         let carried = Carried::new(&self.world, &world);
-        if !carried.is_identity() {
+        let edits = self.scene.now().edits.len();
+        if !carried.is_identity() || !self.scene.states().all(|state| carried.keeps_edits(state)) {
             self.scene = History::new(carried.state(self.scene.now()));
         }
         self.world = world;
         self.selection.clear();
+        edits - self.scene.now().edits.len()
     }
 
     /// A click: replaces the selection, or adds an item to it or removes it.

@@ -22,6 +22,11 @@ impl<T: Clone + PartialEq> History<T> {
         &self.now
     }
 
+    /// The state, and all that undo and redo lead to.
+    pub fn states(&self) -> impl Iterator<Item = &T> {
+        self.before.iter().chain([&self.now]).chain(&self.undone)
+    }
+
     /// Makes a change that can be undone; what was undone before is gone. A change that changes nothing is none.
     pub fn change(&mut self, change: impl FnOnce(&mut T)) {
         let mut next = self.now.clone();
@@ -84,6 +89,7 @@ mod tests {
         history.change(|x| *x = 2);
         history.go_on(|x| *x = 3);
         assert!(history.undo() && *history.now() == 1);
+        assert_eq!(history.states().collect::<Vec<_>>(), [&0, &1, &3]);
         assert!(history.redo() && *history.now() == 3);
         assert!(history.undo() && history.undo() && !history.undo());
         assert_eq!(*history.now(), 0);

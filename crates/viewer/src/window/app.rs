@@ -1,7 +1,7 @@
 //! The window's state, and one frame of it.
 
 use super::composite::ViewRect;
-use super::engine::{Engine, Wanted};
+use super::engine::{Drawn, Engine, Wanted};
 use super::look::background;
 use super::screen::{Frame, Picture, Screen};
 use super::waiter::Waiter;
@@ -11,7 +11,7 @@ use crate::navigation::gesture::Held;
 use crate::panels::{Facts, Ui, Verdict};
 use crate::pick::Seen;
 use crate::session::Picked;
-use crate::session::{Loaded, Loader, LoaderEvent, Session, World};
+use crate::session::{Joiner, JoinerEvent, Loaded, LoaderEvent, Loads, Session};
 use crate::settings::{Settings, Theme};
 use crate::view::{Due, Hover, View};
 use crate::watch::Watcher;
@@ -29,14 +29,12 @@ use winit::window::Window;
 pub enum Event {
     /// The frame that was submitted to the device of this number has finished.
     FrameDone(u32, Result<(), vk::Result>),
-    /// A file.
-    Loader(LoaderEvent),
-    /// The model of all open files, and which one since the start.
-    Joined(u64, Arc<World>),
+    /// A file, by the number of its load.
+    Loader(u64, LoaderEvent),
+    /// The open files as one model.
+    Joiner(JoinerEvent),
     /// The engine's thread has finished.
     Uploaded,
-    /// Edges can be picked now.
-    EdgesFound,
     /// Files were chosen.
     Chosen(Vec<PathBuf>),
     /// An open file has changed.
@@ -49,13 +47,6 @@ pub enum Event {
     Repaint,
 }
 
-/// A file that is being read.
-pub struct Loading {
-    pub loader: Loader,
-    pub stage: &'static str,
-    pub share: Option<f32>,
-}
-
 /// A frame in flight.
 struct Flight {
     /// The engine's picture in it, and its start.
@@ -64,8 +55,8 @@ struct Flight {
     pick: Option<DVec2>,
     /// The picture that the pick reads.
     camera: Option<Camera>,
-    /// The numbers of the picture's instances in a world.
-    numbers: Option<(Arc<World>, Arc<[usize]>)>,
+    /// The scene of that picture.
+    scene: Option<Drawn>,
     free: Vec<egui::TextureId>,
 }
 
@@ -100,15 +91,16 @@ pub struct App {
     /// The settings in the file.
     kept: Settings,
     pub files: Vec<Arc<Loaded>>,
-    pub loading: Vec<Loading>,
-    /// Counts models of all open files.
-    pub worlds: u64,
-    /// A thread puts the last one together.
-    pub joins: bool,
+    pub loads: Loads,
+    pub joiner: Joiner,
     pub watcher: Option<Watcher>,
     flight: Option<Flight>,
+    /// The system was told that a frame is due.
+    due: bool,
     /// Drawn again once the frame in flight is done.
     pub again: bool,
+    /// Nothing has happened since the log said that the window is idle.
+    pub rests: bool,
     /// The time of the next frame, if no event comes before.
     pub wake: Option<Instant>,
     pub picture: Option<ShownPicture>,
@@ -151,6 +143,8 @@ impl App {
         let watched = proxy.clone();
         let watcher = Watcher::new(move |path| drop(watched.send_event(Event::Changed(path))));
         let watcher = watcher.inspect_err(|e| ui.tell(format!("Files are not watched: {e}"))).ok();
+        let joined = proxy.clone();
+        let joiner = Joiner::new(move |event| drop(joined.send_event(Event::Joiner(event))));
         Self {
             options,
             proxy,
@@ -162,12 +156,13 @@ impl App {
             kept: settings.clone(),
             settings,
             files: Vec::new(),
-            loading: Vec::new(),
-            worlds: 0,
-            joins: false,
+            loads: Loads::default(),
+            joiner,
             watcher,
             flight: None,
+            due: false,
             again: false,
+            rests: false,
             wake: None,
             picture: None,
             stats: None,
@@ -219,7 +214,15 @@ impl App {
             self.again = true;
         } else if let Some(opened) = &self.opened {
             opened.window.request_redraw();
+            self.due = true;
         }
+    }
+
+    /// Nothing is drawn, read, put together or uploaded, and no frame is due.
+    pub fn is_idle(&self) -> bool {
+        let draws = self.flight.is_some() || self.due || self.wake.is_some();
+        let uploads = self.opened.as_ref().is_none_or(|opened| opened.engine.is_busy());
+        !draws && !uploads && self.loads.is_idle() && self.joiner.is_idle()
     }
 
     /// The cursor in pixels of the view, where it is over it and not over a panel.
@@ -233,6 +236,7 @@ impl App {
 
     /// One frame; none while one is in flight.
     pub fn draw(&mut self) -> Result<(), ViewError> {
+        (self.due, self.rests) = (false, false);
         if self.flight.is_some() || self.opened.is_none() {
             self.again = true;
             return Ok(());
@@ -248,9 +252,9 @@ impl App {
         self.keep_settings();
         self.make_room();
         let (due, mut settings, marks) = (self.view.due(now), self.frame_settings(), self.marks());
-        let (under, scene) = (self.over_view(), self.scene_settings());
+        let (under, scene_settings) = (self.over_view(), self.scene_settings());
         let Some(Opened { window, waiter, engine, screen, .. }) = &mut self.opened else { return Ok(()) };
-        let wanted = Wanted { world: &self.session.world, state: self.session.scene.now(), settings: scene };
+        let wanted = Wanted { world: &self.session.world, state: self.session.scene.now(), settings: scene_settings };
         let proxy = self.proxy.clone();
         engine.want(wanted, move || drop(proxy.send_event(Event::Uploaded)));
         if settings.style.is_curvature() && !engine.has_curvature() {
@@ -263,19 +267,19 @@ impl App {
         let wanted = ShownPicture { camera: due.camera, settings, generation: engine.generation };
         let is_new = self.picture != Some(wanted) && due.camera.size.0 > 1 && !self.session.world.is_empty();
         let generation = engine.generation;
-        let numbers = engine.instances_of(&self.session.world).map(Arc::clone);
+        let scene = engine.drawn(&self.session.world);
         let picture = if is_new { engine.renderer() } else { None };
         let picture = picture.map(|renderer| Picture { renderer, camera: &due.camera, settings });
         let in_picture = picture.is_some().then_some((due, settings, generation, now));
         let seen_by = in_picture.map(|_| due.camera).or(self.picture.map(|p| p.camera));
         // the item under a resting cursor changes with the picture
         let rests = in_picture.is_some() && !self.view.is_dragging();
-        let numbers = numbers.filter(|_| seen_by.is_some());
+        let scene = scene.filter(|_| seen_by.is_some());
         // without a picture of what is open there is nothing to click
-        self.click = self.click.filter(|_| numbers.is_some());
+        self.click = self.click.filter(|_| scene.is_some());
         let clicked = self.click.map(|(_, at)| at);
-        let pick = clicked.or(self.pick.take()).or(under.filter(|_| rests)).filter(|_| numbers.is_some());
-        if numbers.is_none() && self.view.wants_point().is_some() {
+        let pick = clicked.or(self.pick.take()).or(under.filter(|_| rests)).filter(|_| scene.is_some());
+        if scene.is_none() && self.view.wants_point().is_some() {
             self.view.hold(None);
         }
         screen.set_textures(&output.textures_delta)?;
@@ -300,8 +304,7 @@ impl App {
         };
         if drawn {
             waiter.watch(screen.context.fence);
-            let numbers = numbers.map(|numbers| (Arc::clone(&self.session.world), numbers));
-            self.flight = Some(Flight { picture: in_picture, pick, camera: seen_by, numbers, free });
+            self.flight = Some(Flight { picture: in_picture, pick, camera: seen_by, scene, free });
         } else {
             screen.free_textures(&free)?;
         }
@@ -333,10 +336,10 @@ impl App {
         let Some(Opened { window, input, engine, screen, .. }) = &mut self.opened else { unreachable!("checked") };
         let raw = input.take_egui_input(window);
         let facts = Facts {
-            loading: self.loading.iter().map(|l| (l.loader.path.as_path(), l.stage, l.share)).collect(),
+            loading: self.loads.iter().collect(),
             stats: self.stats.as_ref(),
             notice: engine.notice.as_deref(),
-            busy: self.joins || engine.is_busy(),
+            busy: self.joiner.is_busy() || engine.is_busy(),
             picture: screen.shown(),
             view: &self.view,
             device: &screen.context.name,
@@ -391,7 +394,7 @@ impl App {
 
     /// The frame in flight has finished.
     pub fn frame_done(&mut self, result: Result<(), vk::Result>) -> Result<(), ViewError> {
-        let Some(Flight { picture, pick, camera, numbers, free }) = self.flight.take() else { return Ok(()) };
+        let Some(Flight { picture, pick, camera, scene, free }) = self.flight.take() else { return Ok(()) };
         result?;
         tracing::debug!("frame");
         let Some(Opened { engine, screen, .. }) = &mut self.opened else { return Ok(()) };
@@ -420,13 +423,12 @@ impl App {
             tracing::debug!("picture of {width} x {height} in {:.1?}, complete: {complete}", start.elapsed());
         }
         let samples = screen.picked();
-        let world = &self.session.world;
-        let numbers = numbers.filter(|(of, _)| Arc::ptr_eq(of, world)).map(|(_, numbers)| numbers);
-        if let (Some(at), Some(camera), Some(samples), Some(numbers)) = (pick, camera, samples, numbers) {
+        let scene = scene.filter(|scene| Arc::ptr_eq(&scene.world, &self.session.world));
+        if let (Some(at), Some(camera), Some(samples), Some(scene)) = (pick, camera, samples, scene) {
             let scale = f64::from(camera.size.0) / f64::from(self.rect.width.max(1));
-            let state = self.session.scene.now();
+            let Drawn { world, state, instances } = &scene;
             let placed = |number: usize| state.placement(number, world);
-            let seen = Seen { world, instances: &numbers, placement: &placed, camera: &camera };
+            let seen = Seen { world, instances, placement: &placed, camera: &camera };
             let hit = samples.pick(&seen, at * scale, self.ui.filter);
             let before = self.view.hover.and_then(|h| h.hit.picked);
             self.view.hover = Some(Hover { cursor: at, hit });

@@ -7,11 +7,12 @@
 //! ```
 
 use super::living::{self, Placed};
-use crate::session::{SceneState, World};
+use crate::session::{SceneState, World, joiner};
 use selvedge::model::Model;
 use selvedge::picture::{SceneSettings, Smooth};
 use selvedge::renderer::{RenderError, Renderer};
 use std::collections::BTreeSet;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 use std::thread::{self, JoinHandle};
@@ -20,7 +21,7 @@ use std::thread::{self, JoinHandle};
 #[derive(Clone, Debug)]
 pub struct Request {
     pub world: Arc<World>,
-    pub state: SceneState,
+    pub state: Arc<SceneState>,
     pub settings: SceneSettings,
 }
 
@@ -35,11 +36,11 @@ pub struct Wanted<'a> {
 impl Wanted<'_> {
     fn is_of(self, request: &Request) -> bool {
         let Request { world, state, settings } = request;
-        Arc::ptr_eq(self.world, world) && self.settings == *settings && self.state == state
+        Arc::ptr_eq(self.world, world) && self.settings == *settings && *self.state == **state
     }
 
     fn request(self) -> Request {
-        Request { world: Arc::clone(self.world), state: self.state.clone(), settings: self.settings }
+        Request { world: Arc::clone(self.world), state: Arc::new(self.state.clone()), settings: self.settings }
     }
 }
 
@@ -53,10 +54,28 @@ struct Current {
     is_mixed: bool,
 }
 
+/// What the renderer draws, for picks in its pictures: the session may have another state by the time of a pick.
+pub struct Drawn {
+    pub world: Arc<World>,
+    /// Places the instances.
+    pub state: Arc<SceneState>,
+    /// Of each instance the number in the world.
+    pub instances: Arc<[usize]>,
+}
+
+/// Why a model was not uploaded.
+#[derive(Debug, thiserror::Error)]
+pub enum UploadError {
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    #[error("the upload failed by a defect of the program: {0}")]
+    Panic(String),
+}
+
 /// The result of a thread.
 struct Uploaded {
     renderer: Renderer,
-    result: Result<(Current, Option<String>), RenderError>,
+    result: Result<(Current, Option<String>), UploadError>,
 }
 
 /// The renderer and its model.
@@ -82,10 +101,15 @@ impl Engine {
         self.renderer.is_none()
     }
 
-    /// Of each instance that is drawn the number in this world; `None` while something else is drawn.
-    pub fn instances_of(&self, world: &Arc<World>) -> Option<&Arc<[usize]>> {
-        let current = self.current.as_ref().filter(|current| Arc::ptr_eq(&current.request.world, world))?;
-        Some(&current.placed.instances)
+    /// What is drawn of this world; `None` while another one is drawn.
+    pub fn drawn(&self, world: &Arc<World>) -> Option<Drawn> {
+        let Current { request, placed, .. } = self.current.as_ref()?;
+        let drawn = || Drawn {
+            world: Arc::clone(world),
+            state: Arc::clone(&request.state),
+            instances: Arc::clone(&placed.instances),
+        };
+        Arc::ptr_eq(&request.world, world).then(drawn)
     }
 
     /// The renderer's model, and its instances that are hidden; `None` during an upload.
@@ -116,7 +140,7 @@ impl Engine {
         self.asked = Some(request.clone());
         let (to, from) = mpsc::channel();
         let thread = thread::spawn(move || {
-            let result = upload(&mut renderer, request);
+            let result = caught(|| upload(&mut renderer, request));
             // nobody waits for it when the window closes
             drop(to.send(Uploaded { renderer, result }));
             done();
@@ -135,8 +159,9 @@ impl Engine {
         match changed.apply(renderer, &mut current.placed, current.settings.editable) {
             Ok(()) => {
                 tracing::debug!("changed in place");
-                state.clone_from(wanted.state);
-                self.asked = Some(wanted.request());
+                let request = wanted.request();
+                *state = Arc::clone(&request.state);
+                self.asked = Some(request);
                 self.generation += 1;
                 true
             }
@@ -152,7 +177,7 @@ impl Engine {
     ///
     /// # Errors
     /// Why the model was not uploaded; the model before stays.
-    pub fn take(&mut self) -> Result<(), RenderError> {
+    pub fn take(&mut self) -> Result<(), UploadError> {
         let Some((thread, from)) = self.upload.take() else { return Ok(()) };
         let uploaded = match from.try_recv() {
             Ok(uploaded) => uploaded,
@@ -185,6 +210,14 @@ impl Engine {
             let _ = thread.join();
             self.renderer = from.try_recv().ok().map(|uploaded| uploaded.renderer);
         }
+    }
+}
+
+/// The result of an upload, or its panic. The renderer keeps the model before until it has all of the next one.
+fn caught<T>(upload: impl FnOnce() -> Result<T, RenderError>) -> Result<T, UploadError> {
+    match catch_unwind(AssertUnwindSafe(upload)) {
+        Ok(result) => result.map_err(UploadError::Render),
+        Err(panic) => Err(UploadError::Panic(joiner::reason(panic.as_ref()))),
     }
 }
 
@@ -223,5 +256,18 @@ fn put(
             Ok((settings, Some(format!("Borders are not smooth: that does not go with {what}."))))
         }
         Err(error) => Err(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_of_an_upload_is_an_error() {
+        let failed = caught(|| -> Result<(), RenderError> { panic!("on purpose") });
+        assert!(matches!(&failed, Err(UploadError::Panic(why)) if why == "on purpose"), "{failed:?}");
+        assert!(matches!(caught(|| Err::<(), _>(RenderError::Tolerance(0.0))), Err(UploadError::Render(_))));
+        assert!(matches!(caught(|| Ok(1)), Ok(1)));
     }
 }

@@ -1,21 +1,19 @@
 //! Events of the window and of other threads, and the commands.
 
-use super::app::{App, Event, Loading, Opened};
+use super::app::{App, Event, Opened};
 use crate::commands::Command;
 use crate::navigation::gesture::Button;
 use crate::navigation::standard::up_from;
-use crate::session::{Loader, LoaderEvent, World};
+use crate::session::{Ended, Loaded, World};
 use glam::DVec2;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use winit::application::ApplicationHandler;
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::window::WindowId;
 
-/// A file that was written is read again when it has been unchanged so long.
-const REST: Duration = Duration::from_millis(300);
 /// Pixels of a trackpad for one notch of a wheel.
 const NOTCH_PX: f64 = 40.0;
 
@@ -39,9 +37,13 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
-        let changed = self.ui.changed.values().map(|at| *at + REST).min();
-        let next = [self.wake, changed].into_iter().flatten().min();
+        let next = [self.wake, self.loads.wake()].into_iter().flatten().min();
         events.set_control_flow(next.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
+        let is_idle = self.is_idle();
+        if is_idle && !self.rests {
+            tracing::debug!("idle");
+        }
+        self.rests = is_idle;
         if self.ui.quit {
             events.exit();
         }
@@ -92,6 +94,7 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn user_event(&mut self, events: &ActiveEventLoop, event: Event) {
+        self.rests = false;
         match event {
             // of a device that was lost
             Event::FrameDone(device, _) if device != self.devices => {}
@@ -100,11 +103,33 @@ impl ApplicationHandler<Event> for App {
                     self.recover(error, events);
                 }
             }
-            Event::Joined(nth, world) => self.joined(nth, world),
+            Event::Joiner(event) => {
+                match self.joiner.take(event) {
+                    Some(Ok(world)) => self.joined(world),
+                    Some(Err(failure)) => {
+                        tracing::error!("{failure}");
+                        self.ui.tell(failure);
+                    }
+                    None => {}
+                }
+                self.redraw();
+            }
             Event::Uploaded => self.uploaded(),
-            Event::Loader(event) => self.loader(event),
+            Event::Loader(number, event) => {
+                match self.loads.take(number, event) {
+                    Some(Ended { result: Ok(loaded), .. }) => self.loaded(loaded),
+                    Some(Ended { result: Err(why), path }) => self.not_loaded(&path, why),
+                    None => {}
+                }
+                self.redraw();
+            }
             Event::Chosen(paths) => paths.into_iter().for_each(|path| self.load(path)),
-            Event::Changed(path) => drop(self.ui.changed.insert(path, Instant::now())),
+            Event::Changed(path) => {
+                // a closed file may have been written before
+                if self.is_open(&path) || self.loads.is_reading(&path) {
+                    self.loads.written(path, Instant::now());
+                }
+            }
             Event::Measured(selection, measured) => {
                 if selection == self.session.selection {
                     self.ui.measured(measured);
@@ -118,7 +143,7 @@ impl ApplicationHandler<Event> for App {
                 }
                 self.redraw();
             }
-            Event::EdgesFound | Event::Repaint => self.redraw(),
+            Event::Repaint => self.redraw(),
         }
     }
 
@@ -200,83 +225,66 @@ impl App {
         }
     }
 
-    /// Begins to read a file.
+    /// Begins to read a file. It is watched from now on, since it may be written while it is read.
     pub fn load(&mut self, path: PathBuf) {
-        if self.loading.iter().any(|l| l.loader.path == path) {
-            return;
+        if let Some(watcher) = &mut self.watcher {
+            // `loaded` tries it again, and says why it fails
+            let _ = watcher.add(&path);
         }
         let proxy = self.proxy.clone();
-        let loader = Loader::new(path, move |event| drop(proxy.send_event(Event::Loader(event))));
-        self.loading.push(Loading { loader, stage: "reading", share: None });
+        self.loads.begin(path, move |number, event| drop(proxy.send_event(Event::Loader(number, event))));
         self.redraw();
     }
 
-    /// Stops reading. The threads end at their importers' next signs of progress; nothing waits for them.
+    fn is_open(&self, path: &Path) -> bool {
+        self.files.iter().any(|file| file.path == path)
+    }
+
     fn give_up(&mut self) {
-        for loading in self.loading.drain(..) {
-            loading.loader.cancel();
-            self.ui.tell(format!("{}: given up", loading.loader.path.display()));
+        for path in self.loads.give_up() {
+            self.unwatch(&path);
+            self.ui.tell(format!("{}: given up", path.display()));
         }
     }
 
-    fn loader(&mut self, event: LoaderEvent) {
-        // a thread whose file was given up may still send its last events
-        if !self.loading.iter().any(|loading| loading.loader.path == event.path()) {
-            return;
+    /// Watches a file no more, unless it is open.
+    fn unwatch(&mut self, path: &Path) {
+        if !self.is_open(path)
+            && let Some(watcher) = &mut self.watcher
+        {
+            watcher.remove(path);
         }
-        let ended = |app: &mut Self, path: &Path| app.loading.retain(|l| l.loader.path != path);
-        match event {
-            LoaderEvent::Progress { path, stage, share } => {
-                if let Some(loading) = self.loading.iter_mut().find(|l| l.loader.path == path) {
-                    (loading.stage, loading.share) = (stage, share);
-                }
-            }
-            LoaderEvent::Failed(path, why) => {
-                ended(self, &path);
-                tracing::error!("{why}");
-                self.ui.tell(why);
-            }
-            LoaderEvent::Cancelled(path) => ended(self, &path),
-            LoaderEvent::Loaded(loaded) => {
-                ended(self, &loaded.path);
-                let (faces, warnings) = (loaded.import.model.face_count(), loaded.import.warnings.len());
-                tracing::info!("read {}: {faces} faces, {warnings} warnings", loaded.path.display());
-                self.settings.opened(&loaded.path);
-                if let Some(Err(error)) = self.watcher.as_mut().map(|watcher| watcher.add(&loaded.path)) {
-                    self.ui.tell(format!("{} is not watched: {error}", loaded.path.display()));
-                }
-                match self.files.iter().position(|file| file.path == loaded.path) {
-                    Some(known) => self.files[known] = loaded,
-                    None => self.files.push(loaded),
-                }
-                self.put_together();
-            }
-        }
-        self.redraw();
     }
 
-    /// All open files as one model, put together by a thread.
-    fn put_together(&mut self) {
-        self.worlds += 1;
-        self.joins = true;
-        let (nth, files, proxy) = (self.worlds, self.files.clone(), self.proxy.clone());
-        std::thread::spawn(move || {
-            let world = Arc::new(World::new(&files));
-            drop(proxy.send_event(Event::Joined(nth, Arc::clone(&world))));
-            world.find_edges();
-            drop(proxy.send_event(Event::EdgesFound));
-        });
+    fn not_loaded(&mut self, path: &Path, why: String) {
+        self.unwatch(path);
+        tracing::error!("{why}");
+        self.ui.tell(why);
     }
 
-    /// Shows the model of all open files, unless they are others by now.
-    fn joined(&mut self, nth: u64, world: Arc<World>) {
-        if nth != self.worlds {
-            return;
+    fn loaded(&mut self, loaded: Arc<Loaded>) {
+        let (faces, warnings) = (loaded.import.model.face_count(), loaded.import.warnings.len());
+        tracing::info!("read {}: {faces} faces, {warnings} warnings", loaded.path.display());
+        self.settings.opened(&loaded.path);
+        if let Some(Err(error)) = self.watcher.as_mut().map(|watcher| watcher.add(&loaded.path)) {
+            self.ui.tell(format!("{} is not watched: {error}", loaded.path.display()));
         }
-        self.joins = false;
+        match self.files.iter().position(|file| file.path == loaded.path) {
+            Some(known) => self.files[known] = loaded,
+            None => self.files.push(loaded),
+        }
+        self.joiner.join(self.files.clone());
+    }
+
+    /// Shows the model of all open files.
+    fn joined(&mut self, world: Arc<World>) {
         let first = self.session.world.is_empty();
-        self.session.open(Arc::clone(&world));
+        let gone = self.session.open(Arc::clone(&world));
         self.ui.opened();
+        if gone > 0 {
+            self.ui
+                .tell(format!("Edits of {gone} trim loops are gone: their files are closed or have other loops now."));
+        }
         world.notices.iter().for_each(|notice| self.ui.tell(notice.clone()));
         self.view.set_bounds(self.session.scene.now().bounds(&world));
         self.explosion = self.session.scene.now().explosion;
@@ -289,15 +297,11 @@ impl App {
         if let Some(opened) = &self.opened {
             opened.window.set_title(&format!("{} - selvedge", title.join(", ")));
         }
-        self.redraw();
     }
 
     /// Reads files again that have changed on the disk and rest.
     fn read_changed(&mut self, now: Instant) {
-        let rested: Vec<PathBuf> =
-            self.ui.changed.iter().filter(|(_, at)| **at + REST <= now).map(|(path, _)| path.clone()).collect();
-        for path in rested {
-            self.ui.changed.remove(&path);
+        for path in self.loads.rested(now) {
             tracing::info!("{} has changed", path.display());
             self.load(path);
         }
@@ -354,10 +358,9 @@ impl App {
         let path = self.session.world.files.get(file).map(|file| &file.path);
         if let Some(nth) = self.files.iter().position(|file| Some(&file.path) == path) {
             let closed = self.files.remove(nth);
-            if let Some(watcher) = &mut self.watcher {
-                watcher.remove(&closed.path);
-            }
-            self.put_together();
+            self.unwatch(&closed.path);
+            self.loads.forget(&closed.path);
+            self.joiner.join(self.files.clone());
         }
     }
 

@@ -1,10 +1,9 @@
 //! The scene's and the frame's settings for the engine, and marks for the composite pass.
 
 use super::app::App;
-use crate::describe::{SUN, ambient_radius};
 use crate::pick::Mark;
 use crate::session::Picked;
-use crate::settings::{Lines, Settings};
+use crate::settings::{Lines, SUN, Settings};
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, SceneSettings, Smooth};
 
 impl App {
@@ -24,7 +23,7 @@ impl App {
             edges,
             smooth,
             curvature,
-            ambient: ambient_radius(&self.session.world, &self.settings),
+            ambient: self.settings.ambient_radius(self.session.world.bounds.diagonal()),
             sun: shadows.then_some(SUN),
             editable: self.ui.trims,
             ..SceneSettings::default()
@@ -43,9 +42,9 @@ impl App {
 
     /// Hovered and selected items, by the numbers of the shown picture.
     pub fn marks(&self) -> (Option<Mark>, Vec<Mark>) {
-        let numbers = self.opened.as_ref().and_then(|o| o.engine.instances_of(&self.session.world));
-        let Some(numbers) = numbers else { return (None, Vec::new()) };
-        let number = |instance: usize| numbers.binary_search(&instance).ok().map(|i| i as u32 + 1);
+        let drawn = self.opened.as_ref().and_then(|o| o.engine.drawn(&self.session.world));
+        let Some(drawn) = drawn else { return (None, Vec::new()) };
+        let number = |instance: usize| drawn.instances.binary_search(&instance).ok().map(|i| i as u32 + 1);
         let mark = |picked: &Picked| match *picked {
             Picked::Face { instance, face, .. } => {
                 let part = self.session.world.model.instances.get(instance)?.part;

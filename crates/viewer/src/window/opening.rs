@@ -57,9 +57,7 @@ impl App {
 
     /// Frees everything.
     pub fn close(mut self) -> Result<Closed, ViewError> {
-        for loading in &self.loading {
-            loading.loader.cancel();
-        }
+        self.loads.give_up();
         if let Some(Opened { window, input, waiter, mut engine, screen }) = self.opened.take() {
             engine.wait();
             screen.context.wait();

@@ -8,7 +8,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
 
-/// A log that is silent so long: nothing is drawn any more.
+/// An act of the hand reaches the program before its log was silent so long.
 const STILL: Duration = Duration::from_millis(700);
 /// Moves of one drag.
 const STEPS: u32 = 6;
@@ -124,7 +124,7 @@ impl Drop for Display {
 
 /// The process with the window, and its log.
 pub struct Program {
-    pub child: Child,
+    child: Child,
     lines: Receiver<String>,
     pub all: Vec<String>,
     folder: PathBuf,
@@ -176,12 +176,23 @@ impl Program {
         panic!("it never said `{what}`; it said\n{}", self.all.join("\n"));
     }
 
-    /// Waits until the log is silent, so nothing is drawn.
+    /// Waits until the program says that it is idle, and nothing after that. Silence alone is not enough: a busy
+    /// machine may be silent in the middle of an upload.
     pub fn rest(&mut self) {
         let end = Instant::now() + PATIENCE;
-        while self.line(STILL).is_some() {
-            assert!(Instant::now() < end, "it never rests:\n{}", self.all.join("\n"));
+        while self.line(STILL).is_some() || !self.is_idle() {
+            assert!(Instant::now() < end && self.runs(), "it never rests:\n{}", self.all.join("\n"));
         }
+    }
+
+    /// The last line of the window itself says so.
+    fn is_idle(&self) -> bool {
+        let own = self.all.iter().rfind(|line| line.contains("selvedge_viewer::"));
+        own.is_some_and(|line| line.ends_with(": idle"))
+    }
+
+    pub fn runs(&mut self) -> bool {
+        self.child.try_wait().expect("a state").is_none()
     }
 
     /// The last line so far that contains `what`.

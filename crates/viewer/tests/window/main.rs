@@ -37,7 +37,8 @@ fn a_window_is_used_as_a_person_does() {
     }
 }
 
-/// A display for one test at a time: each window draws by all processors.
+/// A display for one test at a time: each window draws by all processors. The lock holds within a process; where each
+/// test has a process of its own, the test group of .config/nextest.toml does.
 struct Screen {
     display: Display,
     _alone: MutexGuard<'static, ()>,

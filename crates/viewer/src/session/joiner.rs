@@ -1,0 +1,172 @@
+//! Open files put together by a thread.
+//!
+//! ```text
+//!   files ─▶ 1 ─▶ World ─▶ Joined 1 ┊ its edges, unless other files came: the newest of them are next
+//!   files ─▶ 2 (left out)           ┊
+//!   files ─▶ 3 ─────────────────────╯▶ World ─▶ Joined 3 ─▶ its edges ─▶ EdgesFound 3
+//! ```
+
+use super::{Loaded, World};
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{self, Sender};
+use std::thread;
+
+/// A message of the thread, with the number of the list of files.
+#[derive(Debug)]
+pub enum JoinerEvent {
+    /// The files as one model. Edges are not found yet.
+    Joined(u64, Arc<World>),
+    /// The edges of that are found.
+    EdgesFound(u64),
+    /// One of both failed, by a defect of the program: its panic.
+    Failed(u64, String),
+}
+
+/// A thread that puts lists of files together, one after another. It leaves out lists that are not the newest.
+#[derive(Debug)]
+pub struct Joiner {
+    newest: Arc<AtomicU64>,
+    to: Sender<(u64, Vec<Arc<Loaded>>)>,
+    /// The last list whose model was taken, or that failed.
+    joined: u64,
+    /// The last list that is done with, edges and all.
+    done: u64,
+}
+
+impl Joiner {
+    /// Starts the thread, which calls `tell`. It ends after the list in work when the joiner is dropped.
+    pub fn new(tell: impl Fn(JoinerEvent) + Send + 'static) -> Self {
+        Self::with(World::new, tell)
+    }
+
+    fn with(
+        join: impl Fn(&[Arc<Loaded>]) -> World + Send + 'static,
+        tell: impl Fn(JoinerEvent) + Send + 'static,
+    ) -> Self {
+        let (to, from) = mpsc::channel::<(u64, Vec<Arc<Loaded>>)>();
+        let newest = Arc::new(AtomicU64::new(0));
+        let wanted = Arc::clone(&newest);
+        thread::spawn(move || {
+            let is_old = |number: u64| number != wanted.load(Ordering::Relaxed);
+            for (number, files) in from {
+                if is_old(number) {
+                    continue;
+                }
+                let worked = catch_unwind(AssertUnwindSafe(|| {
+                    let world = Arc::new(join(&files));
+                    tell(JoinerEvent::Joined(number, Arc::clone(&world)));
+                    if !is_old(number) {
+                        world.find_edges();
+                        tell(JoinerEvent::EdgesFound(number));
+                    }
+                }));
+                if let Err(panic) = worked {
+                    tell(JoinerEvent::Failed(number, reason(panic.as_ref())));
+                }
+            }
+        });
+        Self { newest, to, joined: 0, done: 0 }
+    }
+
+    /// Puts files together, in place of those that wait.
+    pub fn join(&mut self, files: Vec<Arc<Loaded>>) {
+        let number = self.newest() + 1;
+        self.newest.store(number, Ordering::Relaxed);
+        // the thread runs as long as this is there
+        drop(self.to.send((number, files)));
+    }
+
+    /// Takes an event of the thread. Returns the model of the newest list, or the failure in words.
+    pub fn take(&mut self, event: JoinerEvent) -> Option<Result<Arc<World>, String>> {
+        match event {
+            JoinerEvent::Joined(number, world) => {
+                self.joined = number;
+                (number == self.newest()).then_some(Ok(world))
+            }
+            JoinerEvent::EdgesFound(number) => {
+                self.done = number;
+                None
+            }
+            JoinerEvent::Failed(number, why) => {
+                let failed =
+                    if self.joined == number { "Edges are not found" } else { "The files are not put together" };
+                (self.joined, self.done) = (number, number);
+                (number == self.newest()).then(|| Err(format!("{failed}: {why}")))
+            }
+        }
+    }
+
+    /// The model of the newest list is not there yet.
+    pub fn is_busy(&self) -> bool {
+        self.joined != self.newest()
+    }
+
+    /// The thread has nothing to do: edges are found, too.
+    pub fn is_idle(&self) -> bool {
+        self.done == self.newest()
+    }
+
+    fn newest(&self) -> u64 {
+        self.newest.load(Ordering::Relaxed)
+    }
+}
+
+/// What a panic says.
+pub(crate) fn reason(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no reason".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The thread is held after its first model until two more lists wait.
+    #[test]
+    fn only_the_newest_of_waiting_lists_is_put_together() {
+        let (to, from) = mpsc::channel();
+        let (go_on, held) = mpsc::channel::<()>();
+        let mut joiner = Joiner::new(move |event| {
+            let is_first = matches!(event, JoinerEvent::Joined(1, _));
+            to.send(event).expect("the test waits");
+            if is_first {
+                held.recv().expect("the test lets it go on");
+            }
+        });
+        assert!(!joiner.is_busy() && joiner.is_idle());
+        joiner.join(Vec::new());
+        let first = from.recv().expect("an event");
+        assert!(joiner.is_busy());
+        joiner.join(Vec::new());
+        joiner.join(Vec::new());
+        assert!(joiner.take(first).is_none(), "others are wanted by now");
+        go_on.send(()).expect("the thread waits");
+        let third = from.recv().expect("an event");
+        assert!(matches!(third, JoinerEvent::Joined(3, _)), "{third:?}");
+        assert!(matches!(joiner.take(third), Some(Ok(_))) && !joiner.is_busy() && !joiner.is_idle());
+        let found = from.recv().expect("an event");
+        assert!(matches!(found, JoinerEvent::EdgesFound(3)), "{found:?}");
+        assert!(joiner.take(found).is_none() && joiner.is_idle());
+        drop(joiner);
+        assert!(from.recv().is_err(), "the thread ends");
+    }
+
+    #[test]
+    fn a_panic_ends_the_work_and_not_the_thread() {
+        let (to, from) = mpsc::channel();
+        let join = |files: &[Arc<Loaded>]| if files.is_empty() { panic!("on purpose") } else { World::new(files) };
+        let mut joiner = Joiner::with(join, move |event| to.send(event).expect("the test waits"));
+        for _ in 0..2 {
+            joiner.join(Vec::new());
+            let failed = joiner.take(from.recv().expect("an event"));
+            assert!(
+                matches!(&failed, Some(Err(why)) if why == "The files are not put together: on purpose"),
+                "{failed:?}"
+            );
+            assert!(!joiner.is_busy() && joiner.is_idle());
+        }
+    }
+}
