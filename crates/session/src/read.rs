@@ -29,11 +29,7 @@ pub enum Source<'a> {
 pub struct ReadOptions {
     /// Most bytes of a file, gzip undone; three quarters of the machine's memory without it.
     pub most_bytes: Option<u64>,
-<<<<<<< HEAD
-    /// Most time for reading the file, tested between two faces, or two places in a text; no limit without it.
-=======
     /// Most time for reading the file, tested where reading reports progress, and at its end; no limit without it.
->>>>>>> n44b
     pub most_time: Option<Duration>,
     /// Folders in which other files are looked for, too.
     pub search: Vec<PathBuf>,

@@ -49,14 +49,9 @@ pub enum Stage {
 /// How to import.
 #[derive(Clone, Copy, Default)]
 pub struct Options<'a> {
-<<<<<<< HEAD
-    /// Called at the beginning of each stage, before every body, after every face and some bytes of text, from several
-    /// threads: it should return at once. Files that a file names have stages of their own.
-=======
-    /// Called at the beginning of each stage, and of STEP files before every body, after every face and some bytes of
-    /// text, from several threads: it should return at once. Other formats have the stages [`Stage::Read`] and
-    /// [`Stage::Parse`] alone.
->>>>>>> n44b
+    /// Called at the beginning of each stage, of STEP files before every body, after every face and some bytes of text,
+    /// and of IGES and OpenSCAD files between entities, from several threads: it should return at once. Files that a
+    /// file names have stages of their own.
     pub progress: Option<&'a (dyn Fn(Stage) + Sync)>,
     /// Most bytes of a file, before and after gzip is undone. Offsets are 32 bits wide: the limit is 4 GiB at most, and
     /// by default.
