@@ -17,6 +17,7 @@ from .peers import Peers
 from .program import Program
 from .rows import Contest, Report, Section
 from .sections import first_use, frames, least, packages, reading, scale, solids, stability, surfaces, trims, zoom
+from .turns import Late
 
 SECTIONS = {
     "surfaces": surfaces,
@@ -62,7 +63,7 @@ def measured(name, context):
     context.give(budget.of(name, context.quick))
     try:
         section = SECTIONS[name].measure(context)
-    except budget.Late as late:  # too little time is no failure; the row has the limit
+    except Late as late:  # too little time is no failure; the row has the limit
         section = empty(name)
         section.contests.append(Contest(section.title, "all", "s", why=str(late)))
     except Exception as error:  # the other sections are still measured

@@ -13,10 +13,9 @@ import subprocess
 import sys
 import time
 
-from .budget import Late
 from .machine import ROOT
 from .rows import Missing
-from .turns import Unmeasurable
+from .turns import Overdue, Unmeasurable
 
 # names in the report: package, module
 PACKAGES = {
@@ -35,8 +34,8 @@ class Peers:
 
     def __init__(self, scratch):
         self.scratch, self.count = scratch, 0
-        # problem of the last process, empty if there was none; and whether the limit of time stopped it
-        self.problem, self.late = "", False
+        # problem of the last process, empty if there was none; and the error that it is, by what ended the process
+        self.problem, self.error = "", Unmeasurable
         # of the section that is measured
         self.budget = None
         self.versions = {}
@@ -69,18 +68,19 @@ class Peers:
         if windowed:
             command = ["xvfb-run", "-a", "-s", SCREEN, *command]
         out, problem, _ = self.run(command, limit_s)
-        self.late = problem.startswith(NOT_DONE)
         if problem:
             print(f"   {program}: {problem}", file=sys.stderr, flush=True)
-        self.problem = problem
         found = [json.loads(line[len("RESULT ") :]) for line in out.splitlines() if line.startswith("RESULT ")]
         if not found:
-            raise (Late if self.late else Unmeasurable)(f"{program} printed no result: {problem}")
+            raise self.error(f"{program} printed no result: {problem}")
         return found
 
     def run(self, command, limit_s):
         """As the function below, with no more time than the section has."""
-        return run(command, self.budget.limit(limit_s) if self.budget else limit_s)
+        limit_s, error = self.budget.ended(limit_s) if self.budget else (limit_s, Overdue)
+        out, self.problem, took = run(command, limit_s)
+        self.error = error if self.problem.startswith(NOT_DONE) else Unmeasurable
+        return out, self.problem, took
 
 
 def run(command, limit_s, cwd=ROOT):

@@ -39,3 +39,11 @@ def rounds(competitors, seconds, least=FEWEST_ROUNDS, most=9, clock=time.monoton
 
 class Unmeasurable(Exception):
     """The reason why something could not be measured, for its row."""
+
+
+class Late(Unmeasurable):
+    """The section's time was used up, or a process was ended because of that."""
+
+
+class Overdue(Unmeasurable):
+    """A process was ended at its own limit, though the section had time left."""

@@ -13,7 +13,8 @@ from report import budget
 from report.context import Context
 from report.peers import NOT_DONE, Peers
 from report.program import Program
-from report.sections import first_use, surfaces
+from report.sections import first_use, solids, stability, surfaces, zoom
+from report.turns import Late, Overdue, Unmeasurable
 
 from . import pretend
 
@@ -91,18 +92,110 @@ class Processes(unittest.TestCase):
         program.budget = self.budget
         late = subprocess.TimeoutExpired("selvedge", 45)
         with mock.patch("report.program.subprocess.run", side_effect=late) as ran:
-            with self.assertRaisesRegex(budget.Late, "selvedge info was not done in 45 s"):
+            with self.assertRaisesRegex(Late, "selvedge info was not done in 45 s"):
                 program.run("info", "part.step")
         self.assertEqual(ran.call_args.kwargs["timeout"], 45)
+
+    def test_a_process_that_hangs_with_time_left_is_not_late(self):
+        program = Program(Path("selvedge"), None, Path("."))
+        program.budget = self.budget
+        hangs = subprocess.TimeoutExpired("selvedge", 30)
+        with mock.patch("report.program.subprocess.run", side_effect=hangs):
+            with self.assertRaisesRegex(Overdue, "selvedge check was not done in 30 s"):
+                program.run("check", "part.step", limit_s=30)
+            program.budget = None
+            with self.assertRaises(Overdue):
+                program.run("check", "part.step", limit_s=30)
+
+    def test_a_peer_that_hangs_with_time_left_is_not_late(self):
+        with tempfile.TemporaryDirectory() as folder:
+            peers = Peers(Path(folder))
+            peers.budget = self.budget
+            with mock.patch("report.peers.run", return_value=("", f"{NOT_DONE} 30 s", 30.0)):
+                with self.assertRaises(Overdue), contextlib.redirect_stderr(io.StringIO()):
+                    peers.results("kernel", {}, limit_s=30)
+            with mock.patch("report.peers.run", return_value=("", "status 1: no display", 1.0)):
+                peers.run(["viewer"], 30)
+            self.assertIs(peers.error, Unmeasurable)
 
     def test_a_peer_gets_no_more_than_is_left(self):
         with tempfile.TemporaryDirectory() as folder:
             peers = Peers(Path(folder))
             peers.budget = self.budget
             with mock.patch("report.peers.run", return_value=("", f"{NOT_DONE} 45 s", 45.0)) as ran:
-                with self.assertRaises(budget.Late), contextlib.redirect_stderr(io.StringIO()):
+                with self.assertRaises(Late), contextlib.redirect_stderr(io.StringIO()):
                     peers.results("kernel", {}, limit_s=300)
             self.assertEqual(ran.call_args.args[1], 45)
+
+
+class Hangs(unittest.TestCase):
+    """A program that never ends `check` from one case on."""
+
+    def section(self, seconds, from_case, to_case):
+        clock = pretend.Clock()
+
+        class Hangs(pretend.Program):
+            cases = 0
+
+            def check(self, *words, limit_s=600):
+                self.cases += 1
+                if from_case <= self.cases < to_case:
+                    self.spend("check", 1e9, limit_s)
+                return super().check(*words, limit_s=limit_s)
+
+        with contextlib.ExitStack() as on:
+            scratch = Path(on.enter_context(tempfile.TemporaryDirectory()))
+            on.enter_context(mock.patch("time.monotonic", clock))
+            on.enter_context(mock.patch("report.hard.random_sheets", lambda draw, count: ("", 2 * count)))
+            on.enter_context(mock.patch("report.hard.random_trees", lambda draw, count, leaves: ("", 5 * count)))
+            on.enter_context(contextlib.redirect_stderr(io.StringIO()))
+            context = Context(True, Hangs(clock, scratch), pretend.Peers(clock), scratch, scratch)
+            context.give(budget.Budget(seconds, clock))
+            return stability.measure(context)
+
+    def promises(self, section, what):
+        return [(p.violations, p.cases) for p in section.promises if what in p.what]
+
+    def test_a_hard_case_that_hangs_is_a_violation(self):
+        section = self.section(200, 2, 3)
+        self.assertEqual(self.promises(section, "a hard case drawn"), [(1, len(stability.hard.CASES))])
+
+    def test_a_hard_case_without_time_is_none(self):
+        # the second case is ended with the section, before its own 30 s; the others have no time
+        section = self.section(20, 2, 3)
+        self.assertEqual(self.promises(section, "a hard case drawn"), [(0, 1)])
+
+    def test_a_random_case_that_hangs_is_a_violation_and_others_follow(self):
+        hard = len(stability.hard.CASES)
+        section = self.section(200, hard + 3, hard + 4)
+        ((violations, cases),) = self.promises(section, "scene of sheets")
+        self.assertEqual((violations, cases > 3), (1, True))
+        self.assertIn("case 3: selvedge check was not done in 30 s", section.tables[1].rows[0][-1])
+
+
+    def test_a_way_that_takes_too_long_on_a_mesh_is_a_row(self):
+        context = mock.MagicMock(quick=False)
+        context.program.bench.side_effect = Overdue("selvedge bench was not done in 120 s")
+        with mock.patch("report.bumpy.scene", lambda folder, name: Path(f"{name}.toml")):
+            rows = solids.bunnies(context)
+        self.assertEqual(len(rows), len(solids.bumpy.TRIANGLES) * len(solids.WAYS))
+        self.assertEqual(str(rows[0][3].why), "selvedge bench was not done in 120 s")
+
+    def test_only_the_mesher_s_own_limit_is_not_reached(self):
+        def verdicts(seconds):
+            clock = pretend.Clock()
+            with contextlib.ExitStack() as on:
+                scratch = Path(on.enter_context(tempfile.TemporaryDirectory()))
+                on.enter_context(mock.patch("report.turns.rounds.__defaults__", (3, 9, clock, None)))
+                on.enter_context(contextlib.redirect_stderr(io.StringIO()))
+                context = Context(True, pretend.Program(clock, scratch), pretend.Peers(clock), scratch, None)
+                context.give(budget.Budget(seconds, clock))
+                contests = zoom.measure(context).contests
+                return {contest.verdict() for contest in contests if "1,000,000 times" in contest.what}
+
+        self.assertIn("unreached", verdicts(1000))
+        # the section ends before the mesher's limit
+        self.assertEqual(verdicts(12), {"not measured"})
 
 
 class Runs(unittest.TestCase):

@@ -4,11 +4,10 @@ import importlib.util
 import json
 import sys
 
-from ..budget import Late
 from ..machine import ROOT
 from ..peers import NOT_DONE, run
 from ..rows import Missing, Section, Table
-from ..turns import Unmeasurable
+from ..turns import Late, Unmeasurable
 
 TEXT = """\
 Each package draws each file in a process of its own, from the same eight cameras at 1024x1024. *First picture* is the

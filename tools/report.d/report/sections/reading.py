@@ -32,7 +32,7 @@ def measure(context):
             "reading", {"models": [str(path) for path in there.values()]}, limit_s=60
         )
         if len(found) < len(there):
-            raise Unmeasurable(f"it read {len(found)} of {len(there)} files")
+            raise context.peers.error(f"it read {len(found)} of {len(there)} files")
         return [1e3 * one["read_s"] for one in found]
 
     ours = lambda: [context.program.read_ms(path) for path in there.values()]

@@ -3,9 +3,9 @@
 import statistics
 
 from .. import bumpy, floor, scenes, views
-from ..budget import Late, cases
+from ..budget import cases
 from ..rows import Contest, Missing, Promise, Section, Table
-from ..turns import Unmeasurable, rounds
+from ..turns import Late, Overdue, Unmeasurable, rounds
 
 WAYS = ["events", "cst", "blister"]
 SCENES_QUICK = ["widget", "complex", "gear"]
@@ -152,7 +152,7 @@ class Case:
             60,
         )
         if problem or not picture.exists():
-            raise Unmeasurable(f"POV-Ray drew nothing: {problem or 'no picture'}")
+            raise self.context.peers.error(f"POV-Ray drew nothing: {problem or 'no picture'}")
         self.pictures["POV-Ray"] = str(picture)
         return {"POV-Ray": (took, None)}
 
@@ -277,7 +277,7 @@ def previewed(context, file, picture, options):
     command = ["xvfb-run", "-a", "openscad", "--preview", *options, "-o", picture, file]
     _, problem, took = context.peers.run(command, context.pick(30, 60))
     if problem or not picture.exists():
-        raise Unmeasurable(f"OpenSCAD drew nothing: {problem or 'no picture'}")
+        raise context.peers.error(f"OpenSCAD drew nothing: {problem or 'no picture'}")
     return took
 
 
@@ -318,7 +318,7 @@ def bunnies(context):
             try:
                 context.budget.needed()
                 (report,) = context.program.bench([path], *options, limit_s=MESH_S)
-            except Late as late:
+            except (Late, Overdue) as late:
                 rows.append([name, 4, way, *[Missing(str(late))] * 2, *[""] * 5])
             else:
                 rows += way_rows(name, 4, [{way: report}])

@@ -4,9 +4,8 @@ import random
 import time
 
 from .. import hard, program
-from ..budget import Late
 from ..rows import Missing, Promise, Section, Table
-from ..turns import Unmeasurable
+from ..turns import Late, Unmeasurable
 
 # the first random case; others follow
 SEED = 1

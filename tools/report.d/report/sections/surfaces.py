@@ -4,9 +4,9 @@ in turn."""
 import statistics
 
 from .. import floor, noise, views
-from ..budget import Late, cases
+from ..budget import cases
 from ..rows import Contest, Line, Missing, Plot, Promise, Section, Table
-from ..turns import Unmeasurable, rounds
+from ..turns import Late, Unmeasurable, rounds
 
 # what is claimed comes first
 FILES_QUICK = ["nist_pmi_2.stp", "samples/bracket.step", "first/occt_screw.step"]

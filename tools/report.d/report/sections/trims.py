@@ -3,9 +3,9 @@ all ways to trim."""
 
 import statistics
 
-from ..budget import Late, cases
+from ..budget import cases
 from ..rows import Contest, Line, Missing, Plot, Promise, Section, Table
-from ..turns import Unmeasurable, rounds
+from ..turns import Late, Unmeasurable, rounds
 
 # the engine's own; the others are baselines
 OURS = ("table", "exact")

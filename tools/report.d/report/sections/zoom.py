@@ -3,9 +3,8 @@
 import statistics
 
 from .. import program, views
-from ..budget import Late
 from ..rows import Contest, Line, Missing, Plot, Promise, Section, Table
-from ..turns import Unmeasurable, rounds
+from ..turns import Overdue, Unmeasurable, rounds
 
 FILE, SAMPLE = "nist_pmi_2.stp", "samples/bracket.step"
 ZOOMS_QUICK, ZOOMS = [1, 10, 1_000, 1_000_000], [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000]
@@ -64,14 +63,12 @@ def measure(context):
             for name, camera in cameras.items()
         }
         job = {"model": str(model), "views": wanted, "meshes": reached, "fixed": FIXED, "ids": str(folder)}
-        given_s = context.budget.limit(limit_s)
         results = context.peers.results("zoomed", job, windowed=True, limit_s=limit_s)
         found = {(one["kind"], one["view"]): one for one in results}
         late = [name for name in reached if ("remeshed", name) not in found]
-        if late and given_s < limit_s:
-            raise Late(f"a mesh a zoom: {context.peers.problem}")  # the section's time, not the mesher's limit
-        if late and not context.peers.late:
-            raise Unmeasurable(f"a mesh a zoom: {context.peers.problem}")  # a failure is not a loss
+        if late and context.peers.error is not Overdue:
+            # the section's time, or a failure: only the mesher's own limit is a loss
+            raise context.peers.error(f"a mesh a zoom: {context.peers.problem}")
         reached[:] = [name for name in reached if name not in late]
         # reported once, for all rounds
         stopped.update({name: f"{int(late[0]):,} times was not meshed within {limit_s} s" for name in late})
