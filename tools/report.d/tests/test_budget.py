@@ -13,6 +13,7 @@ from report import budget
 from report.context import Context
 from report.peers import NOT_DONE, Peers
 from report.program import Program
+from report.rows import Contest, Promise, Section
 from report.sections import first_use, solids, stability, surfaces, zoom
 from report.turns import Late, Overdue, Unmeasurable
 
@@ -128,6 +129,34 @@ class Processes(unittest.TestCase):
             self.assertEqual(ran.call_args.args[1], 45)
 
 
+class Halves(unittest.TestCase):
+    """A section that ends early."""
+
+    def section(self, error):
+        class Half:
+            TITLE, TEXT = "Made up", "A text."
+
+            def measure(context, section):
+                section.promises += [Promise("tested", 0, 9), Promise("never tested")]
+                section.contests.append(Contest("a half", "Viewer", "s", [1.0] * 3, [2.0] * 3))
+                raise error
+
+        with mock.patch.dict(report.SECTIONS, least=Half), contextlib.redirect_stderr(io.StringIO()):
+            return report.measured("least", Context(True, mock.Mock(), mock.Mock(), Path(), None))
+
+    def test_a_section_keeps_what_it_has_measured(self):
+        late, failed = self.section(Late("used up")), self.section(KeyError("frame"))
+        for section in (late, failed):
+            self.assertEqual((section.number, section.title, section.text), (7, "Made up", "A text."))
+            self.assertEqual((section.contests[0].what, section.contests[0].verdict()), ("a half", "ahead"))
+        self.assertEqual((late.failure, late.contests[1].why), ("", "used up"))
+        self.assertEqual((failed.failure, len(failed.contests)), ("KeyError: 'frame'", 1))
+
+    def test_a_promise_that_was_not_tested_has_the_reason(self):
+        self.assertEqual([promise.why for promise in self.section(Late("used up")).promises], ["", "used up"])
+        self.assertEqual([promise.why for promise in self.section(KeyError("x")).promises], ["", "KeyError: 'x'"])
+
+
 class Hangs(unittest.TestCase):
     """A program that never ends `check` from one case on."""
 
@@ -151,7 +180,9 @@ class Hangs(unittest.TestCase):
             on.enter_context(contextlib.redirect_stderr(io.StringIO()))
             context = Context(True, Hangs(clock, scratch), pretend.Peers(clock), scratch, scratch)
             context.give(budget.Budget(seconds, clock))
-            return stability.measure(context)
+            section = Section(6, stability.TITLE, stability.TEXT)
+            stability.measure(context, section)
+            return section
 
     def promises(self, section, what):
         return [(p.violations, p.cases) for p in section.promises if what in p.what]
@@ -190,8 +221,9 @@ class Hangs(unittest.TestCase):
                 on.enter_context(contextlib.redirect_stderr(io.StringIO()))
                 context = Context(True, pretend.Program(clock, scratch), pretend.Peers(clock), scratch, None)
                 context.give(budget.Budget(seconds, clock))
-                contests = zoom.measure(context).contests
-                return {contest.verdict() for contest in contests if "1,000,000 times" in contest.what}
+                section = Section(2, zoom.TITLE, zoom.TEXT)
+                zoom.measure(context, section)
+                return {one.verdict() for one in section.contests if "1,000,000 times" in one.what}
 
         self.assertIn("unreached", verdicts(1000))
         # the section ends before the mesher's limit

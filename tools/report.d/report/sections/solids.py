@@ -4,7 +4,7 @@ import statistics
 
 from .. import bumpy, floor, scenes, views
 from ..budget import cases
-from ..rows import Contest, Missing, Promise, Section, Table
+from ..rows import Contest, Missing, Promise, Table
 from ..turns import Late, Overdue, Unmeasurable, rounds
 
 WAYS = ["events", "cst", "blister"]
@@ -20,6 +20,7 @@ SEGMENTS_QUICK, SEGMENTS = [64], [32, 128]
 FOV_DEG = 22.5
 # factor on the eye's distance: every way draws the whole solid within the picture
 AWAY = 1.02
+TITLE = "Boolean solids"
 TEXT = """\
 The scenes have the numbers of primitives of the models of J. Hable and J. Rossignac, *Blister*, SIGGRAPH 2005, which
 are not public. *First picture* is the whole process of ours, OpenSCAD and POV-Ray, from the file to a PNG. Of Manifold
@@ -29,8 +30,7 @@ own equations. The number beside OpenSCAD and Manifold is that of facets around 
 preview (a cube) and our plane show what the start of each process takes."""
 
 
-def measure(context):
-    section = Section(4, "Boolean solids", TEXT)
+def measure(context, section):
     section.promises.append(Promise("an outline within half a pixel, by the primitives' equations"))
     section.promises.append(Promise("a pixel of a solid right within half a pixel, by the project's reference"))
     blank(context, section)
@@ -67,7 +67,6 @@ def measure(context):
     section.tables.append(Table("Our ways beside the paper's", head, ways, text))
     if not section.promises[0].cases:
         section.promises[0].why = "no picture was judged"
-    return section
 
 
 class Case:
@@ -300,9 +299,9 @@ def blank(context, section):
         if isinstance(found, Unmeasurable):
             section.contests.append(Contest(what, "OpenSCAD", "s", why=str(found)))
             return
-    section.contests.append(
-        Contest(what, "OpenSCAD", "s", results["ours"], results["theirs"], limit=floor.limit(context, size))
-    )
+    many = min(map(len, results.values()))
+    mine, theirs = results["ours"][:many], results["theirs"][:many]
+    section.contests.append(Contest(what, "OpenSCAD", "s", mine, theirs, limit=floor.limit(context, size)))
 
 
 def bunnies(context):

@@ -5,7 +5,7 @@ import statistics
 
 from .. import floor, noise, views
 from ..budget import cases
-from ..rows import Contest, Line, Missing, Plot, Promise, Section, Table
+from ..rows import Contest, Line, Missing, Plot, Promise, Table
 from ..turns import Late, Unmeasurable, rounds
 
 # what is claimed comes first
@@ -43,6 +43,7 @@ FACETED = 1e-3
 # the bench's name of a frame from its recording to the picture in host memory
 WALL = "wall clock, with read-back"
 VIEWERS = {"occ": "Open CASCADE", "vtk": "VTK"}
+TITLE = "Time against error, surfaces"
 TEXT = """\
 *First picture* is from the file: of ours the whole process, with the device, the driver's pipelines and the PNG; of
 the others from the first byte read to the first frame, without the start of their process, with the window. *Turning*
@@ -67,8 +68,7 @@ At each error our quickest setting beside that of the quickest peer, theirs to o
 no setting of a peer reaches the error. A cell is empty where we do not reach it, or where it was not measured."""
 
 
-def measure(context):
-    section = Section(1, "Time against error, surfaces", TEXT)
+def measure(context, section):
     section.promises.append(Promise("no boundary pixel beyond the tolerance, by the kernel's rays"))
     ratios = Table("Ratios to the quickest peer", ["", *(f"within {error:g} px" for error in ERRORS)], [], RATIOS)
     weights = {}
@@ -94,7 +94,6 @@ def measure(context):
     promise = section.promises[0]
     if not promise.cases:
         promise.why = "the kernel did not judge the pictures"
-    return section
 
 
 def large(model):

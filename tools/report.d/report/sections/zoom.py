@@ -3,7 +3,7 @@
 import statistics
 
 from .. import program, views
-from ..rows import Contest, Line, Missing, Plot, Promise, Section, Table
+from ..rows import Contest, Line, Missing, Plot, Promise, Table
 from ..turns import Overdue, Unmeasurable, rounds
 
 FILE, SAMPLE = "nist_pmi_2.stp", "samples/bracket.step"
@@ -14,6 +14,7 @@ FIXED = 1e-3
 WITHIN_PX = 0.5
 # the kernel's tolerance, millimetres; the least pixel size, in tolerances, whose sixteenth the kernel's rays resolve
 KERNEL_MM, KERNEL_PIXEL = 1e-7, 32
+TITLE = "Time against zoom"
 TEXT = """\
 The views are so many times closer to the detail that is nearest to the eye. The *fixed* viewer draws one mesh within a
 thousandth of the diagonal. The other one meshes anew for each view, within half a pixel; its time is that of mesh and
@@ -23,8 +24,7 @@ project's own reference finds, at every zoom. There are three rounds; a view who
 in its row is not meshed again in later rounds."""
 
 
-def measure(context):
-    section = Section(2, "Time against zoom", TEXT)
+def measure(context, section):
     model = context.model(FILE) or context.model(SAMPLE)
     size, zooms = context.pick((960, 540), (1920, 1080)), context.pick(ZOOMS_QUICK, ZOOMS)
     words = [
@@ -80,7 +80,6 @@ def measure(context):
         raise results["ours"]
     errors = kernel_errors(context, model, cameras, results["meshed"])
     fill(section, model.name, cameras, judged, results, errors, stopped)
-    return section
 
 
 def kernel_errors(context, model, cameras, meshed):
