@@ -76,8 +76,8 @@ fn measured(args: &ReportArgs, parts: &[Part]) -> Result<Outcome> {
                 format!("Not measured: {error:#}")
             }
         };
-        let (title, command, seconds) = (part.title, part.command(), start.elapsed().as_secs_f64());
-        text += &format!("\n## {title}\n\n`selvedge {command}` took {seconds:.0} s.\n\n{body}\n");
+        let (title, command, seconds) = (part.title, part.command(args), start.elapsed().as_secs_f64());
+        text += &format!("\n## {title}\n\n```sh\n{command}\n```\n\nIt took {seconds:.0} s.\n\n{body}\n");
         target::write(&path, |to| Ok(to.write_all(text.as_bytes())?))?;
     }
     output::print(&path.display().to_string())?;
@@ -125,9 +125,9 @@ fn words(command: &str, models: &[PathBuf], options: &[&[&str]]) -> Vec<OsString
 }
 
 impl Part {
-    /// The command as a reader can run it.
-    fn command(&self) -> String {
-        let words: Vec<_> = self.words.iter().map(|word| word.to_string_lossy()).collect();
+    /// The command as a reader can run it in a shell.
+    fn command(&self, args: &ReportArgs) -> String {
+        let words: Vec<_> = self.whole(args).iter().map(|word| quoted(&word.to_string_lossy())).collect();
         words.join(" ")
     }
 
@@ -147,6 +147,16 @@ impl Part {
         let cli = Cli::try_parse_from(self.whole(args))?;
         let outcome = dispatch(&cli.command)?;
         Ok((outcome, markdown(&self.table, self.columns)?))
+    }
+}
+
+/// A word of a command line, quoted for a shell where it must be.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }
 
@@ -194,9 +204,20 @@ mod tests {
             let args = args(quick);
             for part in parts(&args) {
                 let parsed = Cli::try_parse_from(part.whole(&args));
-                assert!(parsed.is_ok(), "{}: {}", part.command(), parsed.unwrap_err());
+                assert!(parsed.is_ok(), "{}: {}", part.command(&args), parsed.unwrap_err());
             }
         }
+    }
+
+    #[test]
+    fn a_reader_can_run_the_commands() {
+        let models = vec![PathBuf::from("it's a part.step")];
+        let args = ReportArgs { models, quick: true, device: Some("RTX 4090".into()), out: PathBuf::from("my out") };
+        let copies = parts(&args).pop().unwrap();
+        let sweep = r"selvedge sweep 'it'\''s a part.step' --copies 1,10,100 --sizes 480x270 --frames 2 --samples 0";
+        let places = "--device 'RTX 4090' --out 'my out/copies.csv'";
+        assert_eq!(copies.command(&args), format!("{sweep} {places}"));
+        assert_eq!(quoted(""), "''");
     }
 
     #[test]
