@@ -4,11 +4,13 @@
 Debian are used if they are installed.
 """
 
+import contextlib
 import importlib.metadata
 import importlib.util
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -27,6 +29,8 @@ PACKAGES = {
 DEBIAN = {"OpenSCAD": "openscad", "POV-Ray": "povray"}
 SCREEN = "-screen 0 3840x2160x24"
 NOT_DONE = "not done in"
+# seconds that a process may take to end after SIGTERM, and its pipe to close after SIGKILL
+GRACE_S = 5.0
 
 
 class Peers:
@@ -104,10 +108,26 @@ def run(command, limit_s, cwd=ROOT):
             else f"status {process.returncode}: {(told.strip().splitlines() or ['it printed nothing'])[-1]}"
         )
     except subprocess.TimeoutExpired:
-        os.killpg(process.pid, 15)
-        out, _ = process.communicate()
+        out = ended(process)
         problem = f"{NOT_DONE} {limit_s:.0f} s"
     return out, problem, time.perf_counter() - start
+
+
+def ended(process):
+    """Ends the group of a process; what it has written."""
+    written = b""
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, number)
+        try:
+            return process.communicate(timeout=GRACE_S)[0]
+        except subprocess.TimeoutExpired as waits:
+            written = waits.output or b""
+    # a process that left the group holds the pipes open
+    process.poll()
+    process.stdout.close()
+    process.stderr.close()
+    return written.decode(errors="replace")
 
 
 def version(program):

@@ -2,14 +2,16 @@
 
 import contextlib
 import io
+import os
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 from unittest import mock
 
 from report import __main__ as report
-from report import budget
+from report import budget, peers
 from report.context import Context
 from report.peers import NOT_DONE, Peers
 from report.program import Program
@@ -228,6 +230,26 @@ class Hangs(unittest.TestCase):
         self.assertIn("unreached", verdicts(1000))
         # the section ends before the mesher's limit
         self.assertEqual(verdicts(12), {"not measured"})
+
+
+class Ends(unittest.TestCase):
+    """Real processes that do not end by themselves."""
+
+    def ended(self, script):
+        start = time.monotonic()
+        with mock.patch("report.peers.GRACE_S", 0.3):
+            out, problem, _ = peers.run(["sh", "-c", script], 1.0)
+        self.assertEqual(problem, f"{NOT_DONE} 1 s")
+        # the shell has ended, and was waited for
+        self.assertRaises(ProcessLookupError, os.kill, int(out), 0)
+        return time.monotonic() - start
+
+    def test_a_process_that_ignores_the_end_is_killed(self):
+        # without a kill it lasts 20 s
+        self.assertLess(self.ended("trap '' TERM; echo $$; sleep 20"), 10)
+
+    def test_a_process_that_left_the_group_is_not_waited_for(self):
+        self.assertLess(self.ended("echo $$; setsid sleep 20 & sleep 20"), 10)
 
 
 class Runs(unittest.TestCase):
