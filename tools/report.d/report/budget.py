@@ -46,13 +46,13 @@ class Budget:
         """Seconds for a case of this weight; `rest` are the weights of all cases to come, its own among them."""
         return self.left() * weight / sum(rest)
 
-    def limit(self, most_s):
+    def limit_s(self, most_s):
         """Seconds after which a process is ended: `most_s`, or what is left."""
         return min(most_s, max(self.left(), min(LEAST_S, LEAST_SHARE * self.seconds)))
 
     def ended(self, most_s):
         """That, and the error of a process that is ended then: only the section's time makes it late."""
-        limit_s = self.limit(most_s)
+        limit_s = self.limit_s(most_s)
         return limit_s, Late if limit_s < most_s else Overdue
 
 

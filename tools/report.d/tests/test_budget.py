@@ -75,11 +75,11 @@ class Shares(unittest.TestCase):
     def test_a_process_is_ended_with_its_section(self):
         clock = pretend.Clock()
         of = budget.Budget(100, clock)
-        self.assertEqual(of.limit(30), 30)
+        self.assertEqual(of.limit_s(30), 30)
         clock.now = 80
-        self.assertEqual(of.limit(30), 20)
+        self.assertEqual(of.limit_s(30), 20)
         clock.now = 99
-        self.assertEqual(of.limit(30), budget.LEAST_SHARE * 100)
+        self.assertEqual(of.limit_s(30), budget.LEAST_SHARE * 100)
 
 
 class Processes(unittest.TestCase):

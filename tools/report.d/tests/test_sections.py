@@ -158,13 +158,13 @@ class Surfaces(unittest.TestCase):
         self.assertEqual(rows[2][2], "77 %")
         self.assertEqual(surfaces.spent_rows(exact, None)[0][0], "exact surfaces")
 
-    def test_frames_have_limits(self):
+    def test_frames_have_causes(self):
         frame = {surfaces.WALL: 99.0, "all passes": 90.0, "pass: visibility": 60.0, "pass: resolve": 30.0}
-        self.assertIn("takes 99 ms (of its passes visibility 67 %, resolve 33 %)", surfaces.frame_limit(frame, None))
-        self.assertIn("facets 7 ms by this engine", surfaces.frame_limit(frame, {surfaces.WALL: 7.0}))
+        self.assertIn("takes 99 ms (of its passes visibility 67 %, resolve 33 %)", surfaces.frame_cause(frame, None))
+        self.assertIn("facets 7 ms by this engine", surfaces.frame_cause(frame, {surfaces.WALL: 7.0}))
         stands = frame | {"reused: all passes": 40.0, "reused: pass: resolve": 30.0, "reused: pass: gaps": 10.0}
-        self.assertEqual(surfaces.standing_limit(frame), "")
-        self.assertIn("takes 40 ms of passes, 30 of them resolve", surfaces.standing_limit(stands))
+        self.assertEqual(surfaces.standing_cause(frame), "")
+        self.assertIn("takes 40 ms of passes, 30 of them resolve", surfaces.standing_cause(stands))
 
     def test_pixels_beyond_the_tolerance_are_counted(self):
         self.assertEqual(surfaces.beyond({"beyond": 0, "worst_px": 0.5}, 0.5), 0)

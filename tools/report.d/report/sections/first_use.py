@@ -76,7 +76,7 @@ def built(context, section):
         ]
         for name, command, within, made in words:
             before = os.times()
-            _, problem, took = run(command, context.budget.limit(context.budget.seconds), cwd=within)
+            _, problem, took = run(command, context.budget.limit_s(context.budget.seconds), cwd=within)
             if problem.startswith(NOT_DONE):
                 late = Missing(f"{name} was {problem}")
                 return [*rows, [name, late, late, late]]

@@ -37,7 +37,7 @@ def compared(context, section):
     options = ["--views", VIEWS, "--timeout", PROCESS_S]
     section.commands.append(context.shown("tools/compare_python", "out.json", *files, *options, program="python"))
     command = [sys.executable, ROOT / "tools/compare_python", out, *files, *options]
-    _, problem, _ = run(command, context.budget.limit(context.budget.seconds))
+    _, problem, _ = run(command, context.budget.limit_s(context.budget.seconds))
     if problem:
         raise (Late if problem.startswith(NOT_DONE) else Unmeasurable)(f"tools/compare_python: {problem}")
     report = json.loads(out.read_text())

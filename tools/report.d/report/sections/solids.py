@@ -195,7 +195,7 @@ class Case:
                 text,
             )
         )
-        self.limits = [floor.limit(self.context, self.camera["size"]), self.frame_limit()]
+        self.causes = [floor.cause(self.context, self.camera["size"]), self.frame_cause()]
         self.contests(section, results)
         for way in WAYS:
             error = errors.get(f"selvedge, {way}")
@@ -206,7 +206,7 @@ class Case:
                 section.promises[1].cases += report[way]["error"]["judged_pixels"]
                 section.promises[1].violations += report[way]["error"]["wrong_pixels"]
 
-    def frame_limit(self):
+    def frame_cause(self):
         """What of a turning frame the rays through the solid take."""
         median = lambda name: statistics.median(one["events"]["of"].get(name, 0.0) for one in self.benches)
         rays, whole = median("pass: solids"), median("wall clock, with read-back")
@@ -248,8 +248,8 @@ class Case:
                     if found[0][setting][k] is not None:
                         many = min(len(ours), len(found))
                         mine, theirs = [best(one, k) for one in ours[:many]], [one[setting][k] for one in found[:many]]
-                        what, limit = f"{quantity}, {self.name}", self.limits[k]
-                        section.contests.append(Contest(what, setting, unit, mine, theirs, limit=limit))
+                        what, cause = f"{quantity}, {self.name}", self.causes[k]
+                        section.contests.append(Contest(what, setting, unit, mine, theirs, cause=cause))
 
 
 def way_rows(name, primitives, benches):
@@ -301,7 +301,7 @@ def blank(context, section):
             return
     many = min(map(len, results.values()))
     mine, theirs = results["ours"][:many], results["theirs"][:many]
-    section.contests.append(Contest(what, "OpenSCAD", "s", mine, theirs, limit=floor.limit(context, size)))
+    section.contests.append(Contest(what, "OpenSCAD", "s", mine, theirs, cause=floor.cause(context, size)))
 
 
 def bunnies(context):

@@ -58,9 +58,10 @@ The first round times every setting. Later rounds repeat our tolerances of 0.5 a
 sides; with fewer than three it is not measured. All our tolerances are drawn at 1920x1080; the other sizes have 0.25,
 0.5 and 1 px. Meshes become finer until the next one may take longer than the limit: its row names the limit.
 
-*Where our turning frame goes* is the limit of such a frame on a processor that draws. Its first row is this engine as
-a viewer of facets: it draws the mesh within a thousandth of the diagonal, the same that the viewers draw. The rows
-below are a frame of the exact surfaces, pass by pass; its time beyond the first row is the price of exactness."""
+*Where our turning frame goes* is the cause of such a frame's time on a processor that draws. Its first row is this
+engine as a viewer of facets: it draws the mesh within a thousandth of the diagonal, the same that the viewers draw.
+The rows below are a frame of the exact surfaces, pass by pass; its time beyond the first row is the price of
+exactness."""
 
 
 RATIOS = """\
@@ -148,12 +149,12 @@ class Case:
         return self.context.program.bench([model or self.model], *words)[0]["of"]
 
     def spent(self, section):
-        """Adds where a turning frame goes, beside one of this engine with the viewers' mesh; the limits of frames."""
+        """Adds where a turning frame goes, beside one of this engine with the viewers' mesh; the causes of frames."""
         exact, faceted = self.bench(SPENT_PX), self.bench(SPENT_PX, self.stl) if self.stl else None
         columns = ["", "passes, ms", "of the exact frame", "wall clock, ms"]
         section.tables.append(Table(f"{self.what}: where our turning frame goes", columns, spent_rows(exact, faceted)))
-        limit, stands = frame_limit(exact, faceted), standing_limit(exact)
-        return {"turning frame": f"{self.what}: {limit}", "standing frame": f"{self.what}: {stands}" if stands else ""}
+        cause, stands = frame_cause(exact, faceted), standing_cause(exact)
+        return {"turning frame": f"{self.what}: {cause}", "standing frame": f"{self.what}: {stands}" if stands else ""}
 
     def job(self, **more):
         return {
@@ -248,14 +249,14 @@ class Case:
             competitors[name] = ("mesh", found if isinstance(found, Unmeasurable) else [one[name] for one in found])
         competitors["F3D"] = ("mesh", results["F3D"])
         self.table(section, competitors, head, errors)
-        limits = {}
+        causes = {}
         try:
-            limits = self.spent(section)
-            limits["first picture"] = floor.limit(self.context, self.size)
-        except Late as late:  # the rows stay; they have no limit beside them
-            section.contests.append(Contest(f"limits, {self.what}", "all", "ms", why=str(late)))
+            causes = self.spent(section)
+            causes["first picture"] = floor.cause(self.context, self.size)
+        except Late as late:  # the rows stay; they have no cause beside them
+            section.contests.append(Contest(f"causes, {self.what}", "all", "ms", why=str(late)))
         self.plots(section, competitors, errors)
-        ratios = self.contests(section, competitors, errors, limits)
+        ratios = self.contests(section, competitors, errors, causes)
         for tolerance in self.tolerances:
             error = errors.get(f"ours {tolerance}")
             if error:
@@ -334,7 +335,7 @@ class Case:
                     Plot(key, f"{quantity}: {self.what}", "99.9 % boundary error, px", f"{quantity}, {unit}", lines)
                 )
 
-    def contests(self, section, competitors, errors, limits):
+    def contests(self, section, competitors, errors, causes):
         """At each error, our quickest tolerance beside the peer's quickest deflection, round by round; rows of the
         least ratio of all peers."""
         ours, least = competitors["selvedge"][1], {}
@@ -356,7 +357,7 @@ class Case:
                     # a larger error that changes neither side's setting is the same contest
                     sides = contest and (contest.ours, contest.theirs, contest.why)
                     if contest and sides != before:
-                        contest.limit = limits.get(quantity, "")
+                        contest.cause = causes.get(quantity, "")
                         section.contests.append(contest)
                     before = sides
         return [
@@ -404,14 +405,14 @@ def least_ratio(contests):
     return "ours alone" if contests else ""
 
 
-def frame_limit(exact, faceted):
+def frame_cause(exact, faceted):
     """The price of exactness in a turning frame, as a sentence; of medians by name."""
     shares = ", ".join(f"{name} {share}" for name, _, share, _ in spent_rows(exact, None)[1:4] if share)
     surfaces = f"a turning frame of the exact surfaces takes {exact[WALL]:.0f} ms (of its passes {shares})"
     return f"{surfaces}, one of the viewers' facets {faceted[WALL]:.0f} ms by this engine" if faceted else surfaces
 
 
-def standing_limit(exact):
+def standing_cause(exact):
     """What a standing frame computes again, as a sentence; empty without such frames."""
     passes = [(ms, name.removeprefix("reused: pass: ")) for name, ms in exact.items() if "reused: pass: " in name]
     if not passes:

@@ -174,11 +174,11 @@ def contests(section, model, found, size):
         least = min(filter(None, (values(found[:1], other(way), "trim_bytes") for way in OURS)), default=[])
         texture = values(found[:1], other("texture"), "trim_bytes")
         memory = contest(f"memory, {what}", "a trim texture", "bytes", least, texture, claim, exact=True)
-        memory.limit = texture_limit(model, found[0], size)
+        memory.cause = texture_cause(model, found[0], size)
         section.contests.append(memory)
 
 
-def texture_limit(model, first, size):
+def texture_cause(model, first, size):
     """The bytes of a texture at the closest view: ours serve all views."""
     rows = [(at[2], row) for at, row in first.items() if at[:2] == (model, "texture") and at[3] == size]
     closest, bytes_ = max(((zoom, float(row["trim_bytes"])) for zoom, row in rows if row["trim_bytes"]), default=(1, 0))

@@ -138,8 +138,8 @@ def fill(section, file, cameras, judged, results, errors, stopped):
             lines[kind].append((float(name), statistics.median(times)))
             cells += [statistics.median(times), error(errors[name], kind)]
             many = min(len(mine), len(times))
-            limit = frame_limit([one[name] for one in results["ours"]], error(errors[name], kind))
-            section.contests.append(Contest(what, peer, "ms", mine[:many], times[:many], claim, limit=limit))
+            cause = frame_cause([one[name] for one in results["ours"]], error(errors[name], kind))
+            section.contests.append(Contest(what, peer, "ms", mine[:many], times[:many], claim, cause=cause))
         rows.append(cells)
     head = [
         "zoom",
@@ -158,8 +158,8 @@ def fill(section, file, cameras, judged, results, errors, stopped):
     section.plots.append(Plot("zoom", f"time over zoom: {file}", "zoom", "frame, ms", drawn))
 
 
-def frame_limit(stats, theirs):
-    """The passes that take most of our frame, and the peer's error: the limit of a frame that is behind."""
+def frame_cause(stats, theirs):
+    """The passes that take most of our frame, and the peer's error: the cause of a frame that is behind."""
     passes = [{one["name"]: one["gpu_ms"] for one in frame["passes"]} for frame in stats]
     medians = {name: statistics.median(of.get(name, 0.0) for of in passes) for name in passes[0]}
     whole, longest = sum(medians.values()), sorted(medians.items(), key=lambda row: -row[1])[:3]
