@@ -4,12 +4,13 @@
 //!   part ─▶ a command of this program, in this process ─▶ its CSV table ─▶ a section of report.md
 //! ```
 //!
-//! A part that fails has the reason in place of its table, and the run goes on.
+//! All models are read before the first part: one that cannot be read ends the run at once. A part that fails later has
+//! the reason in place of its table, and the run goes on.
 
-use crate::args::{Cli, ReportArgs};
+use crate::args::{Cli, ReadArgs, ReportArgs, SubdivideArgs};
 use crate::target::{self, MARKDOWN};
-use crate::{Outcome, dispatch, is_of_device, output};
-use anyhow::{Context, Result};
+use crate::{Outcome, dispatch, is_of_device, output, session};
+use anyhow::{Context, Result, bail};
 use clap::Parser;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -43,15 +44,26 @@ struct Part {
     columns: &'static [&'static str],
 }
 
-/// Runs all parts, and writes report.md after each.
+/// Reads all models, and measures them.
 pub fn run(args: &ReportArgs) -> Result<Outcome> {
     let inputs: Vec<&Path> = args.models.iter().map(PathBuf::as_path).collect();
-    let path = args.out.join("report.md");
+    if inputs.iter().any(|path| target::is_standard(path)) {
+        bail!("each part reads the models anew, and `-` is standard input, which can be read once");
+    }
     target::folder(&inputs, &args.out, [("report.md".to_owned(), MARKDOWN)])?;
+    for path in inputs {
+        session::open(path, &ReadArgs::default(), &SubdivideArgs::default())?;
+    }
+    measured(args, &parts(args))
+}
+
+/// Runs the parts, and writes report.md after each.
+fn measured(args: &ReportArgs, parts: &[Part]) -> Result<Outcome> {
+    let path = args.out.join("report.md");
     let mut outcome = Outcome::Good;
     let mut text =
         format!("# Speed and error\n\nWritten by `selvedge report`, version {}.\n", env!("CARGO_PKG_VERSION"));
-    for part in parts(args) {
+    for part in parts {
         let start = Instant::now();
         let body = match part.measured(args) {
             Ok((of, table)) => {
@@ -64,8 +76,8 @@ pub fn run(args: &ReportArgs) -> Result<Outcome> {
                 format!("Not measured: {error:#}")
             }
         };
-        let (title, command, seconds) = (part.title, part.command(), start.elapsed().as_secs_f64());
-        text += &format!("\n## {title}\n\n`selvedge {command}` took {seconds:.0} s.\n\n{body}\n");
+        let (title, command, seconds) = (part.title, part.command(args), start.elapsed().as_secs_f64());
+        text += &format!("\n## {title}\n\n```sh\n{command}\n```\n\nIt took {seconds:.0} s.\n\n{body}\n");
         target::write(&path, |to| Ok(to.write_all(text.as_bytes())?))?;
     }
     output::print(&path.display().to_string())?;
@@ -113,9 +125,9 @@ fn words(command: &str, models: &[PathBuf], options: &[&[&str]]) -> Vec<OsString
 }
 
 impl Part {
-    /// The command as a reader can run it.
-    fn command(&self) -> String {
-        let words: Vec<_> = self.words.iter().map(|word| word.to_string_lossy()).collect();
+    /// The command as a reader can run it in a shell.
+    fn command(&self, args: &ReportArgs) -> String {
+        let words: Vec<_> = self.whole(args).iter().map(|word| quoted(&word.to_string_lossy())).collect();
         words.join(" ")
     }
 
@@ -138,11 +150,24 @@ impl Part {
     }
 }
 
-/// These columns of a CSV table, as Markdown.
+/// A word of a command line, quoted for a shell where it must be.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+/// These columns of a CSV table, as Markdown; an error where one is absent.
 fn markdown(path: &Path, columns: &[&str]) -> Result<String> {
     let mut reader = csv::Reader::from_path(path).with_context(|| format!("cannot read {}", path.display()))?;
     let head = reader.headers()?.clone();
-    let at: Vec<usize> = columns.iter().filter_map(|&name| head.iter().position(|of| of == name)).collect();
+    let position = |&name: &&str| {
+        head.iter().position(|of| of == name).with_context(|| format!("{} has no column {name}", path.display()))
+    };
+    let at = columns.iter().map(position).collect::<Result<Vec<usize>>>()?;
     let mut lines = vec![row(at.iter().map(|&k| &head[k])), format!("|{}", "---|".repeat(at.len()))];
     for record in reader.records() {
         let record = record?;
@@ -179,9 +204,20 @@ mod tests {
             let args = args(quick);
             for part in parts(&args) {
                 let parsed = Cli::try_parse_from(part.whole(&args));
-                assert!(parsed.is_ok(), "{}: {}", part.command(), parsed.unwrap_err());
+                assert!(parsed.is_ok(), "{}: {}", part.command(&args), parsed.unwrap_err());
             }
         }
+    }
+
+    #[test]
+    fn a_reader_can_run_the_commands() {
+        let models = vec![PathBuf::from("it's a part.step")];
+        let args = ReportArgs { models, quick: true, device: Some("RTX 4090".into()), out: PathBuf::from("my out") };
+        let copies = parts(&args).pop().unwrap();
+        let sweep = r"selvedge sweep 'it'\''s a part.step' --copies 1,10,100 --sizes 480x270 --frames 2 --samples 0";
+        let places = "--device 'RTX 4090' --out 'my out/copies.csv'";
+        assert_eq!(copies.command(&args), format!("{sweep} {places}"));
+        assert_eq!(quoted(""), "''");
     }
 
     #[test]
@@ -189,7 +225,70 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.csv");
         std::fs::write(&path, "model,ms,spare\nfirst|one,1.23456,x\nsecond,7,y\n").unwrap();
-        let table = markdown(&path, &["ms", "model", "absent"]).unwrap();
+        let table = markdown(&path, &["ms", "model"]).unwrap();
         assert_eq!(table, "| ms | model |\n|---|---|\n| 1.235 | first\\|one |\n| 7 | second |");
+        let error = markdown(&path, &["ms", "absent"]).unwrap_err();
+        assert!(error.to_string().ends_with("a.csv has no column absent"), "{error}");
+    }
+
+    /// A flat patch, a folder for the output, and arguments for both.
+    fn small() -> (tempfile::TempDir, ReportArgs) {
+        let folder = tempfile::tempdir().unwrap();
+        let (model, out) = (folder.path().join("a.bv"), folder.path().join("out"));
+        std::fs::write(&model, "4\n1\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n").unwrap();
+        std::fs::create_dir(&out).unwrap();
+        (folder, ReportArgs { models: vec![model], quick: true, device: None, out })
+    }
+
+    /// The parts of a report, in small: each command writes the columns that its tables show.
+    #[test]
+    fn the_commands_write_what_the_report_shows() {
+        let (_folder, args) = small();
+        let models = args.models.as_slice();
+        let turn = ["--motion", "turn", "--judged", "1", "--size", "48x32", "--frames", "2"];
+        let sweep = ["--sizes", "48x32", "--frames", "1", "--samples", "20"];
+        let trims = ["--no-knobs", "--holes", "1", "--zooms", "1", "--size", "32x32", "--sizes", "32x32"];
+        let few = ["--frames", "1", "--samples", "20"];
+        let part = |title, words, name: &str, table: &str, columns| {
+            let out = args.out.join(name);
+            Part { title, words, table: out.join(table), out, columns }
+        };
+        let table = args.out.join("sweep.csv");
+        let parts = [
+            part("Turn", words("bench", models, &[&turn]), "turn", "bench.csv", OF_BENCH),
+            part("Trims", words("trims", &[], &[&trims, &few]), "trims", "trims.csv", OF_TRIMS),
+            Part {
+                title: "Sweep",
+                words: words("sweep", models, &[&sweep]),
+                out: table.clone(),
+                table: table.clone(),
+                columns: OF_SWEEP,
+            },
+        ];
+        assert_eq!(measured(&args, &parts).unwrap(), Outcome::Good);
+        let text = std::fs::read_to_string(args.out.join("report.md")).unwrap();
+        for (title, columns) in [("Turn", OF_BENCH), ("Trims", OF_TRIMS), ("Sweep", OF_SWEEP)] {
+            let (_, section) = text.split_once(&format!("\n## {title}\n")).unwrap();
+            let section = section.split("\n## ").next().unwrap();
+            let rows = section.split_once(&row(columns.iter().copied())).unwrap().1;
+            assert!(rows.lines().count() > 2, "{title}: {section}");
+        }
+        assert!(markdown(&table, OF_SCALE).is_ok());
+    }
+
+    #[test]
+    fn a_part_that_fails_has_its_reason_and_the_next_ones_follow() {
+        let (folder, args) = small();
+        let absent = [folder.path().join("absent.bv")];
+        let part = |title| Part {
+            title,
+            words: words("bench", &absent, &[]),
+            out: args.out.join(title),
+            table: args.out.join(title).join("bench.csv"),
+            columns: OF_BENCH,
+        };
+        assert_eq!(measured(&args, &[part("one"), part("two")]).unwrap(), Outcome::Broken);
+        let text = std::fs::read_to_string(args.out.join("report.md")).unwrap();
+        assert_eq!(text.matches("Not measured: ").count(), 2, "{text}");
     }
 }

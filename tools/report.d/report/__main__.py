@@ -17,6 +17,7 @@ from .peers import Peers
 from .program import Program
 from .rows import Contest, Report, Section
 from .sections import first_use, frames, least, packages, reading, scale, solids, stability, surfaces, trims, zoom
+from .turns import Late
 
 SECTIONS = {
     "surfaces": surfaces,
@@ -56,26 +57,31 @@ def options():
 
 
 def measured(name, context):
-    """Measures a section; one that fails holds the reason."""
+    """Measures a section; one that ends early keeps what it has, with the reason."""
     print(f"== {name}", file=sys.stderr, flush=True)
     start = time.monotonic()
+    of = SECTIONS[name]
+    section = Section(list(SECTIONS).index(name) + 1, of.TITLE, of.TEXT)
     context.give(budget.of(name, context.quick))
     try:
-        section = SECTIONS[name].measure(context)
-    except budget.Late as late:  # too little time is no failure; the row has the limit
-        section = empty(name)
+        of.measure(context, section)
+    except Late as late:  # too little time is no failure; the row has the limit
         section.contests.append(Contest(section.title, "all", "s", why=str(late)))
+        unjudged(section, late)
     except Exception as error:  # the other sections are still measured
         traceback.print_exc()
-        section = empty(name)
         section.failure = f"{type(error).__name__}: {error}"
+        unjudged(section, section.failure)
     section.seconds, section.given = time.monotonic() - start, context.budget.seconds
     print(f"   {section.seconds:.0f} s of {section.given:.0f}", file=sys.stderr, flush=True)
     return section
 
 
-def empty(name):
-    return Section(list(SECTIONS).index(name) + 1, name.replace("_", " ").capitalize(), "")
+def unjudged(section, why):
+    """Gives the reason to the promises that no case has tested: they do not pass for kept ones."""
+    for promise in section.promises:
+        if not promise.cases:
+            promise.why = promise.why or str(why)
 
 
 def write(report, out):

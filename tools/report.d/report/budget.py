@@ -2,12 +2,12 @@
 
 The shares of a whole run are 75 minutes together, those of a quick one 9. A section orders its cases, the most telling
 ones first, and divides what is left among those to come. A case that has no time left stays in the report as a row
-with that reason, and so does one whose process was ended at the limit.
+with that reason, and so does one whose process was ended for the section's time.
 """
 
 import time
 
-from .turns import Unmeasurable
+from .turns import Late, Overdue
 
 # seconds of a quick run, and of a whole one
 SECONDS = {
@@ -28,10 +28,6 @@ SECONDS = {
 LEAST_S, LEAST_SHARE = 30.0, 1 / 8
 
 
-class Late(Unmeasurable):
-    """The time was used up, or a process was ended at its limit."""
-
-
 class Budget:
     """`seconds` from now."""
 
@@ -50,9 +46,14 @@ class Budget:
         """Seconds for a case of this weight; `rest` are the weights of all cases to come, its own among them."""
         return self.left() * weight / sum(rest)
 
-    def limit(self, most_s):
+    def limit_s(self, most_s):
         """Seconds after which a process is ended: `most_s`, or what is left."""
         return min(most_s, max(self.left(), min(LEAST_S, LEAST_SHARE * self.seconds)))
+
+    def ended(self, most_s):
+        """That, and the error of a process that is ended then: only the section's time makes it late."""
+        limit_s = self.limit_s(most_s)
+        return limit_s, Late if limit_s < most_s else Overdue
 
 
 def of(section, quick):

@@ -18,7 +18,7 @@ def floor_s(context, size):
     return context.floors[size]
 
 
-def limit(context, size):
-    """The floor as the limit of a first picture."""
+def cause(context, size):
+    """The floor as the cause of a first picture's time."""
     seconds = floor_s(context, size)
     return f"a process of ours that draws one plane takes {seconds:.2f} s at {size[0]}x{size[1]}"

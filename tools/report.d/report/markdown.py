@@ -62,19 +62,19 @@ def losses(report):
     lines += [f"* **failed**: {s.number}. {s.title}: {s.failure}" for s in report.sections if s.failure]
     behind = [(s, c) for s, c in report.contests() if c.verdict() == "behind"]
     behind.sort(key=lambda row: (not row[1].lost(), row[1].ratio().median))
-    limit = lambda c: f". Its limit: {c.limit}" if c.limit else ""
-    lines += [f"* **lost**: {loss(s, c)}{limit(c)}" for s, c in behind if c.lost()]
+    cause = lambda c: f". Its cause: {c.cause}" if c.cause else ""
+    lines += [f"* **lost**: {loss(s, c)}{cause(c)}" for s, c in behind if c.lost()]
     lines += [f"* known: {told(s, p)}; {p.known}" for s, p in report.promises() if p.excepted()]
     parts = ["\n".join(lines)]
     grouped = {}
     for section, contest in behind:
         if not contest.lost():
-            grouped.setdefault(contest.limit, []).append(f"* {loss(section, contest)}")
+            grouped.setdefault(contest.cause, []).append(f"* {loss(section, contest)}")
     unexplained = grouped.pop("", [])
     if unexplained:
         parts += ["No measurement of this run explains these:", "\n".join(unexplained)]
-    for limit, rows in grouped.items():
-        parts += [f"{limit[0].upper()}{limit[1:]}:", "\n".join(rows)]
+    for cause, rows in grouped.items():
+        parts += [f"{cause[0].upper()}{cause[1:]}:", "\n".join(rows)]
     return "\n\n".join(part for part in parts if part) or "Nowhere in this run."
 
 

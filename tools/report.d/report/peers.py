@@ -4,19 +4,20 @@
 Debian are used if they are installed.
 """
 
+import contextlib
 import importlib.metadata
 import importlib.util
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
 
-from .budget import Late
 from .machine import ROOT
 from .rows import Missing
-from .turns import Unmeasurable
+from .turns import Overdue, Unmeasurable
 
 # names in the report: package, module
 PACKAGES = {
@@ -28,6 +29,8 @@ PACKAGES = {
 DEBIAN = {"OpenSCAD": "openscad", "POV-Ray": "povray"}
 SCREEN = "-screen 0 3840x2160x24"
 NOT_DONE = "not done in"
+# seconds that a process may take to end after SIGTERM, and its pipe to close after SIGKILL
+GRACE_S = 5.0
 
 
 class Peers:
@@ -35,8 +38,8 @@ class Peers:
 
     def __init__(self, scratch):
         self.scratch, self.count = scratch, 0
-        # problem of the last process, empty if there was none; and whether the limit of time stopped it
-        self.problem, self.late = "", False
+        # problem of the last process, empty if there was none; and the error that it is, by what ended the process
+        self.problem, self.error = "", Unmeasurable
         # of the section that is measured
         self.budget = None
         self.versions = {}
@@ -69,18 +72,19 @@ class Peers:
         if windowed:
             command = ["xvfb-run", "-a", "-s", SCREEN, *command]
         out, problem, _ = self.run(command, limit_s)
-        self.late = problem.startswith(NOT_DONE)
         if problem:
             print(f"   {program}: {problem}", file=sys.stderr, flush=True)
-        self.problem = problem
         found = [json.loads(line[len("RESULT ") :]) for line in out.splitlines() if line.startswith("RESULT ")]
         if not found:
-            raise (Late if self.late else Unmeasurable)(f"{program} printed no result: {problem}")
+            raise self.error(f"{program} printed no result: {problem}")
         return found
 
     def run(self, command, limit_s):
         """As the function below, with no more time than the section has."""
-        return run(command, self.budget.limit(limit_s) if self.budget else limit_s)
+        limit_s, error = self.budget.ended(limit_s) if self.budget else (limit_s, Overdue)
+        out, self.problem, took = run(command, limit_s)
+        self.error = error if self.problem.startswith(NOT_DONE) else Unmeasurable
+        return out, self.problem, took
 
 
 def run(command, limit_s, cwd=ROOT):
@@ -104,10 +108,26 @@ def run(command, limit_s, cwd=ROOT):
             else f"status {process.returncode}: {(told.strip().splitlines() or ['it printed nothing'])[-1]}"
         )
     except subprocess.TimeoutExpired:
-        os.killpg(process.pid, 15)
-        out, _ = process.communicate()
+        out = ended(process)
         problem = f"{NOT_DONE} {limit_s:.0f} s"
     return out, problem, time.perf_counter() - start
+
+
+def ended(process):
+    """Ends the group of a process; what it has written."""
+    written = b""
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, number)
+        try:
+            return process.communicate(timeout=GRACE_S)[0]
+        except subprocess.TimeoutExpired as waits:
+            written = waits.output or b""
+    # a process that left the group holds the pipes open
+    process.poll()
+    process.stdout.close()
+    process.stderr.close()
+    return written.decode(errors="replace")
 
 
 def version(program):

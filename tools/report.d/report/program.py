@@ -6,9 +6,8 @@ import re
 import subprocess
 import time
 
-from .budget import Late
 from .machine import ROOT
-from .turns import Unmeasurable
+from .turns import Overdue, Unmeasurable
 
 # 1 is a broken promise, which the figures show
 FINE = (0, 1)
@@ -34,12 +33,12 @@ class Program:
     def run(self, *words, limit_s=600, allowed=FINE):
         """Standard output and standard error; the wall clock of the whole process, seconds."""
         command = [str(self.path), *map(str, words)]
-        limit_s = self.budget.limit(limit_s) if self.budget else limit_s
+        limit_s, error = self.budget.ended(limit_s) if self.budget else (limit_s, Overdue)
         start = time.perf_counter()
         try:
             done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=limit_s)
         except subprocess.TimeoutExpired:
-            raise Late(f"selvedge {words[0]} was not done in {limit_s:.0f} s") from None
+            raise error(f"selvedge {words[0]} was not done in {limit_s:.0f} s") from None
         took = time.perf_counter() - start
         if done.returncode not in allowed:
             last = (done.stderr.strip().splitlines() or ["it printed nothing"])[-1].replace(f"{self.scratch}/", "")

@@ -1,7 +1,7 @@
 """The contents of a report: contests, promises, tables and plots, by section.
 
-A contest is one quantity, the smaller the better, measured for the program and for a peer in the same rounds. Its
-ratio is theirs to ours: above 1 we are ahead. With `claim` "ahead" the project says that it wins; "open" claims nothing.
+A contest is one quantity, the smaller the better, measured for the program and for a peer in the same rounds. Its ratio
+is theirs to ours: above 1 we are ahead. With `claim` "ahead" the project says that it wins; "open" claims nothing.
 
     verdict         of the interval of the ratio              lost: a claim that is
     ahead           all of it is above 1
@@ -33,7 +33,7 @@ class Missing:
 
 @dataclass
 class Contest:
-    """`ours` and `theirs` have one figure a round. `exact` quantities (bytes, counts, errors) have no noise. `limit`
+    """`ours` and `theirs` have one figure a round. `exact` quantities (bytes, counts, errors) have no noise. `cause`
     is a measurement that explains a loss."""
 
     what: str
@@ -45,8 +45,7 @@ class Contest:
     exact: bool = False
     unreached: bool = False
     why: str = ""
-    # what of our figure a measurement explains
-    limit: str = ""
+    cause: str = ""
 
     def __post_init__(self):
         if self.claim not in CLAIMS:

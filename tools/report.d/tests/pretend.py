@@ -6,7 +6,7 @@ are those of docs/benchmarks.md. Files are as heavy as nist_pmi_2.stp, or light.
 
 from pathlib import Path
 
-from report.budget import Late
+from report.turns import Unmeasurable
 
 KERNEL = {"worst_px": 0.25, "p999_px": 0.125, "off": 3, "searched": 3, "beyond": 0}
 # files of a hundred kilobytes, and their work beside that of the others
@@ -58,9 +58,9 @@ class Program:
         return folder
 
     def spend(self, what, seconds, limit_s=600):
-        limit_s = self.budget.limit(limit_s)
+        limit_s, error = self.budget.ended(limit_s)
         if not self.clock.spend(what, seconds, limit_s):
-            raise Late(f"selvedge {what} was not done in {limit_s:.0f} s")
+            raise error(f"selvedge {what} was not done in {limit_s:.0f} s")
 
     def info(self, _model):
         self.spend("info", 0.3)
@@ -128,13 +128,15 @@ class Program:
 
 class Peers:
     def __init__(self, clock):
-        self.clock, self.budget, self.problem, self.late, self.versions = clock, None, "", False, {"F3D": "1"}
+        self.clock, self.budget, self.problem, self.error, self.versions = clock, None, "", Unmeasurable, {"F3D": "1"}
 
     def needed(self, _name):
         pass
 
     def run(self, command, limit_s):
-        done = self.clock.spend(Path(command[0]).name, 0.7, self.budget.limit(limit_s))
+        limit_s, error = self.budget.ended(limit_s)
+        done = self.clock.spend(Path(command[0]).name, 0.7, limit_s)
+        self.error = Unmeasurable if done else error
         for word, value in zip(command, command[1:]):
             if word == "-o":
                 Path(value).touch()
@@ -145,14 +147,14 @@ class Peers:
 
     def results(self, program, job, windowed=False, limit_s=300):
         seconds, found = getattr(self, program)(job)
-        limit_s = self.budget.limit(limit_s)
-        self.late = not self.clock.spend(program, seconds, limit_s)
-        self.problem = f"not done in {limit_s:.0f} s" if self.late else ""
-        if self.late:
+        limit_s, error = self.budget.ended(limit_s)
+        done = self.clock.spend(program, seconds, limit_s)
+        self.problem, self.error = ("", Unmeasurable) if done else (f"not done in {limit_s:.0f} s", error)
+        if not done:
             # all but the last were told before the limit
             found = found[:-1]
         if not found:
-            raise Late(f"{program} printed no result: {self.problem}")
+            raise self.error(f"{program} printed no result: {self.problem}")
         return found
 
     def given(self, job):

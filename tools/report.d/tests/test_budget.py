@@ -2,18 +2,22 @@
 
 import contextlib
 import io
+import os
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 from unittest import mock
 
 from report import __main__ as report
-from report import budget
+from report import budget, peers
 from report.context import Context
 from report.peers import NOT_DONE, Peers
 from report.program import Program
-from report.sections import first_use, surfaces
+from report.rows import Contest, Promise, Section
+from report.sections import first_use, solids, stability, surfaces, zoom
+from report.turns import Late, Overdue, Unmeasurable
 
 from . import pretend
 
@@ -71,11 +75,11 @@ class Shares(unittest.TestCase):
     def test_a_process_is_ended_with_its_section(self):
         clock = pretend.Clock()
         of = budget.Budget(100, clock)
-        self.assertEqual(of.limit(30), 30)
+        self.assertEqual(of.limit_s(30), 30)
         clock.now = 80
-        self.assertEqual(of.limit(30), 20)
+        self.assertEqual(of.limit_s(30), 20)
         clock.now = 99
-        self.assertEqual(of.limit(30), budget.LEAST_SHARE * 100)
+        self.assertEqual(of.limit_s(30), budget.LEAST_SHARE * 100)
 
 
 class Processes(unittest.TestCase):
@@ -91,18 +95,161 @@ class Processes(unittest.TestCase):
         program.budget = self.budget
         late = subprocess.TimeoutExpired("selvedge", 45)
         with mock.patch("report.program.subprocess.run", side_effect=late) as ran:
-            with self.assertRaisesRegex(budget.Late, "selvedge info was not done in 45 s"):
+            with self.assertRaisesRegex(Late, "selvedge info was not done in 45 s"):
                 program.run("info", "part.step")
         self.assertEqual(ran.call_args.kwargs["timeout"], 45)
+
+    def test_a_process_that_hangs_with_time_left_is_not_late(self):
+        program = Program(Path("selvedge"), None, Path("."))
+        program.budget = self.budget
+        hangs = subprocess.TimeoutExpired("selvedge", 30)
+        with mock.patch("report.program.subprocess.run", side_effect=hangs):
+            with self.assertRaisesRegex(Overdue, "selvedge check was not done in 30 s"):
+                program.run("check", "part.step", limit_s=30)
+            program.budget = None
+            with self.assertRaises(Overdue):
+                program.run("check", "part.step", limit_s=30)
+
+    def test_a_peer_that_hangs_with_time_left_is_not_late(self):
+        with tempfile.TemporaryDirectory() as folder:
+            peers = Peers(Path(folder))
+            peers.budget = self.budget
+            with mock.patch("report.peers.run", return_value=("", f"{NOT_DONE} 30 s", 30.0)):
+                with self.assertRaises(Overdue), contextlib.redirect_stderr(io.StringIO()):
+                    peers.results("kernel", {}, limit_s=30)
+            with mock.patch("report.peers.run", return_value=("", "status 1: no display", 1.0)):
+                peers.run(["viewer"], 30)
+            self.assertIs(peers.error, Unmeasurable)
 
     def test_a_peer_gets_no_more_than_is_left(self):
         with tempfile.TemporaryDirectory() as folder:
             peers = Peers(Path(folder))
             peers.budget = self.budget
             with mock.patch("report.peers.run", return_value=("", f"{NOT_DONE} 45 s", 45.0)) as ran:
-                with self.assertRaises(budget.Late), contextlib.redirect_stderr(io.StringIO()):
+                with self.assertRaises(Late), contextlib.redirect_stderr(io.StringIO()):
                     peers.results("kernel", {}, limit_s=300)
             self.assertEqual(ran.call_args.args[1], 45)
+
+
+class Halves(unittest.TestCase):
+    """A section that ends early."""
+
+    def section(self, error):
+        class Half:
+            TITLE, TEXT = "Made up", "A text."
+
+            def measure(context, section):
+                section.promises += [Promise("tested", 0, 9), Promise("never tested")]
+                section.contests.append(Contest("a half", "Viewer", "s", [1.0] * 3, [2.0] * 3))
+                raise error
+
+        with mock.patch.dict(report.SECTIONS, least=Half), contextlib.redirect_stderr(io.StringIO()):
+            return report.measured("least", Context(True, mock.Mock(), mock.Mock(), Path(), None))
+
+    def test_a_section_keeps_what_it_has_measured(self):
+        late, failed = self.section(Late("used up")), self.section(KeyError("frame"))
+        for section in (late, failed):
+            self.assertEqual((section.number, section.title, section.text), (7, "Made up", "A text."))
+            self.assertEqual((section.contests[0].what, section.contests[0].verdict()), ("a half", "ahead"))
+        self.assertEqual((late.failure, late.contests[1].why), ("", "used up"))
+        self.assertEqual((failed.failure, len(failed.contests)), ("KeyError: 'frame'", 1))
+
+    def test_a_promise_that_was_not_tested_has_the_reason(self):
+        self.assertEqual([promise.why for promise in self.section(Late("used up")).promises], ["", "used up"])
+        self.assertEqual([promise.why for promise in self.section(KeyError("x")).promises], ["", "KeyError: 'x'"])
+
+
+class Hangs(unittest.TestCase):
+    """A program that never ends `check` from one case on."""
+
+    def section(self, seconds, from_case, to_case):
+        clock = pretend.Clock()
+
+        class Hangs(pretend.Program):
+            cases = 0
+
+            def check(self, *words, limit_s=600):
+                self.cases += 1
+                if from_case <= self.cases < to_case:
+                    self.spend("check", 1e9, limit_s)
+                return super().check(*words, limit_s=limit_s)
+
+        with contextlib.ExitStack() as on:
+            scratch = Path(on.enter_context(tempfile.TemporaryDirectory()))
+            on.enter_context(mock.patch("time.monotonic", clock))
+            on.enter_context(mock.patch("report.hard.random_sheets", lambda draw, count: ("", 2 * count)))
+            on.enter_context(mock.patch("report.hard.random_trees", lambda draw, count, leaves: ("", 5 * count)))
+            on.enter_context(contextlib.redirect_stderr(io.StringIO()))
+            context = Context(True, Hangs(clock, scratch), pretend.Peers(clock), scratch, scratch)
+            context.give(budget.Budget(seconds, clock))
+            section = Section(6, stability.TITLE, stability.TEXT)
+            stability.measure(context, section)
+            return section
+
+    def promises(self, section, what):
+        return [(p.violations, p.cases) for p in section.promises if what in p.what]
+
+    def test_a_hard_case_that_hangs_is_a_violation(self):
+        section = self.section(200, 2, 3)
+        self.assertEqual(self.promises(section, "a hard case drawn"), [(1, len(stability.hard.CASES))])
+
+    def test_a_hard_case_without_time_is_none(self):
+        # the second case is ended with the section, before its own 30 s; the others have no time
+        section = self.section(20, 2, 3)
+        self.assertEqual(self.promises(section, "a hard case drawn"), [(0, 1)])
+
+    def test_a_random_case_that_hangs_is_a_violation_and_others_follow(self):
+        hard = len(stability.hard.CASES)
+        section = self.section(200, hard + 3, hard + 4)
+        ((violations, cases),) = self.promises(section, "scene of sheets")
+        self.assertEqual((violations, cases > 3), (1, True))
+        self.assertIn("case 3: selvedge check was not done in 30 s", section.tables[1].rows[0][-1])
+
+
+    def test_a_way_that_takes_too_long_on_a_mesh_is_a_row(self):
+        context = mock.MagicMock(quick=False)
+        context.program.bench.side_effect = Overdue("selvedge bench was not done in 120 s")
+        with mock.patch("report.bumpy.scene", lambda folder, name: Path(f"{name}.toml")):
+            rows = solids.bunnies(context)
+        self.assertEqual(len(rows), len(solids.bumpy.TRIANGLES) * len(solids.WAYS))
+        self.assertEqual(str(rows[0][3].why), "selvedge bench was not done in 120 s")
+
+    def test_only_the_mesher_s_own_limit_is_not_reached(self):
+        def verdicts(seconds):
+            clock = pretend.Clock()
+            with contextlib.ExitStack() as on:
+                scratch = Path(on.enter_context(tempfile.TemporaryDirectory()))
+                on.enter_context(mock.patch("report.turns.rounds.__defaults__", (3, 9, clock, None)))
+                on.enter_context(contextlib.redirect_stderr(io.StringIO()))
+                context = Context(True, pretend.Program(clock, scratch), pretend.Peers(clock), scratch, None)
+                context.give(budget.Budget(seconds, clock))
+                section = Section(2, zoom.TITLE, zoom.TEXT)
+                zoom.measure(context, section)
+                return {one.verdict() for one in section.contests if "1,000,000 times" in one.what}
+
+        self.assertIn("unreached", verdicts(1000))
+        # the section ends before the mesher's limit
+        self.assertEqual(verdicts(12), {"not measured"})
+
+
+class Ends(unittest.TestCase):
+    """Real processes that do not end by themselves."""
+
+    def ended(self, script):
+        start = time.monotonic()
+        with mock.patch("report.peers.GRACE_S", 0.3):
+            out, problem, _ = peers.run(["sh", "-c", script], 1.0)
+        self.assertEqual(problem, f"{NOT_DONE} 1 s")
+        # the shell has ended, and was waited for
+        self.assertRaises(ProcessLookupError, os.kill, int(out), 0)
+        return time.monotonic() - start
+
+    def test_a_process_that_ignores_the_end_is_killed(self):
+        # without a kill it lasts 20 s
+        self.assertLess(self.ended("trap '' TERM; echo $$; sleep 20"), 10)
+
+    def test_a_process_that_left_the_group_is_not_waited_for(self):
+        self.assertLess(self.ended("echo $$; setsid sleep 20 & sleep 20"), 10)
 
 
 class Runs(unittest.TestCase):

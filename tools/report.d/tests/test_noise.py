@@ -4,7 +4,7 @@ import random
 import unittest
 
 from report import noise
-from report.turns import Unmeasurable, rounds
+from report.turns import Late, Unmeasurable, rounds
 
 
 class Intervals(unittest.TestCase):
@@ -70,6 +70,26 @@ class Turns(unittest.TestCase):
         found = rounds({"a": lambda: 1, "b": fails}, 0)
         self.assertEqual(found["a"], [1, 1, 1])
         self.assertEqual(str(found["b"]), "no display")
+
+    def test_a_late_competitor_keeps_its_rounds_and_ends_them(self):
+        turns = []
+
+        def late():
+            turns.append(len(turns))
+            if len(turns) > 3:
+                raise Late("used up")
+            return turns[-1]
+
+        # it begins round 4; the other has no turn in it
+        found = rounds({"a": late, "b": lambda: 1, "c": lambda: 1}, 0, least=5, most=5)
+        self.assertEqual(found, {"a": [0, 1, 2], "b": [1, 1, 1], "c": [1, 1, 1]})
+
+    def test_a_competitor_that_is_late_at_once_has_the_reason_and_others_go_on(self):
+        def late():
+            raise Late("used up")
+
+        found = rounds({"a": late, "b": lambda: 1}, 0)
+        self.assertEqual((str(found["a"]), found["b"]), ("used up", [1, 1, 1]))
 
 
 if __name__ == "__main__":

@@ -79,15 +79,15 @@ class Written(unittest.TestCase):
         self.assertIn("**lost**", text[first : text.index("## 1. Made up")])
 
     def test_a_loss_stands_under_the_measurement_that_explains_it(self):
-        limited = contest(LOST.ours, LOST.theirs, "open", limit="a process takes 0.4 s")
-        text = markdown.losses(report(contest(LOST.ours, LOST.theirs, "open"), limited))
+        caused = contest(LOST.ours, LOST.theirs, "open", cause="a process takes 0.4 s")
+        text = markdown.losses(report(contest(LOST.ours, LOST.theirs, "open"), caused))
         unexplained, explained = text.split("A process takes 0.4 s:")
         self.assertIn("No measurement of this run explains these:\n\n* 1. first picture", unexplained)
         self.assertIn("* 1. first picture", explained)
 
-    def test_a_lost_claim_has_its_limit(self):
-        lost = contest(LOST.ours, LOST.theirs, limit="a process takes 0.4 s")
-        self.assertRegex(markdown.losses(report(lost)), r"\*\*lost\*\*: .*Its limit: a process takes 0.4 s")
+    def test_a_lost_claim_has_its_cause(self):
+        lost = contest(LOST.ours, LOST.theirs, cause="a process takes 0.4 s")
+        self.assertRegex(markdown.losses(report(lost)), r"\*\*lost\*\*: .*Its cause: a process takes 0.4 s")
 
     def test_each_section_has_its_time(self):
         whole = report(WON)

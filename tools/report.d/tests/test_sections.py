@@ -101,12 +101,48 @@ class Surfaces(unittest.TestCase):
 
     def test_later_rounds_repeat_some_settings(self):
         case = object.__new__(surfaces.Case)
-        case.first = {}
-        tolerances = [0.1, 0.5, 1.0, 4.0]
-        self.assertEqual(case.settings_of("ours", tolerances), tolerances)
-        self.assertEqual(case.with_first("ours", {0.1: "a", 0.5: "b"}), {0.1: "a", 0.5: "b"})
-        self.assertEqual(case.settings_of("ours", tolerances), [0.5, 1.0])
-        self.assertEqual(case.with_first("ours", {0.5: "c"}), {0.1: "a", 0.5: "c"})
+        case.begun, case.model, case.camera, case.context = set(), None, None, mock.MagicMock()
+        case.tolerances, case.bench = [0.1, 0.5, 1.0, 4.0], lambda tolerance: {surfaces.WALL: 9.0}
+        self.assertEqual(list(case.ours()), [0.1, 0.5, 1.0, 4.0])
+        self.assertEqual(list(case.ours()), [0.5, 1.0])
+
+    def once(self, error, mine, theirs, errors):
+        """A claim whose sides have these first pictures, by round and setting."""
+        case = object.__new__(surfaces.Case)
+        case.model, case.what, case.stopped = Sized(2_000_000), "part.step", {}
+        errors = {name: {"p999_px": off} for name, off in errors.items()}
+        ours, found = ([{s: (t, 9.0, 9.0) for s, t in one.items()} for one in side] for side in (mine, theirs))
+        return case.contest("first picture", "VTK", "s", "mesh", ours, found, errors, 0, error)
+
+    def test_a_setting_that_is_timed_once_has_no_noise_and_no_verdict(self):
+        errors = {"ours 0.5": 0.2, "mesh 0.0001": 0.4, "mesh 1e-05": 0.1}
+        ours = [{0.5: 2.0}] * 3
+        fine = self.once(0.25, ours, [{1e-4: 0.9, 1e-5: 1.99}, {1e-4: 0.9}, {1e-4: 0.9}], errors)
+        self.assertEqual((fine.ours, fine.theirs, fine.claim), ([2.0], [1.99], "ahead"))
+        self.assertEqual((fine.verdict(), fine.lost()), ("not measured", False))
+        coarse = self.once(0.5, ours, [{1e-4: 1.9, 1e-5: 1.99}, {1e-4: 1.9}, {1e-4: 1.9}], errors)
+        self.assertEqual((coarse.theirs, coarse.lost()), ([1.9] * 3, True))
+
+    def test_a_setting_that_is_timed_once_does_not_improve_its_round(self):
+        errors = {"ours 0.5": 0.2, "ours 4.0": 0.2, "mesh 0.0001": 0.1}
+        found = self.once(0.5, [{0.5: 2.0, 4.0: 0.5}, {0.5: 2.1}, {0.5: 2.2}], [{1e-4: 3.0}] * 3, errors)
+        self.assertEqual(found.ours, [2.0, 2.1, 2.2])
+
+    def test_a_contest_has_the_rounds_of_both_sides(self):
+        errors = {"ours 0.5": 0.2, "mesh 0.0001": 0.1}
+        theirs = [{}, {1e-4: 4.0}, {1e-4: 5.0}, {1e-4: 6.0}]
+        found = self.once(0.5, [{0.5: 1.0}, {0.5: 2.0}, {0.5: 3.0}, {0.5: 4.0}], theirs, errors)
+        self.assertEqual((found.ours, found.theirs), ([2.0, 3.0, 4.0], [4.0, 5.0, 6.0]))
+        apart = self.once(0.5, [{0.5: 1.0}, {}], [{}, {1e-4: 1.0}], errors)
+        self.assertEqual((apart.verdict(), apart.why), ("not measured", "no round timed both sides"))
+
+    def test_the_table_counts_the_rounds_of_each_setting(self):
+        case = object.__new__(surfaces.Case)
+        case.what, case.stopped = "part.step", {}
+        section, found = Section(1, "", ""), [{0.1: (5.0, 6.0, 7.0), 0.5: (1.0, 2.0, 3.0)}, {0.5: (2.0, 4.0, None)}]
+        case.table(section, {"selvedge": ("ours", found)}, {"boundary": 9, "alone": 0}, {})
+        rows = section.tables[0].rows
+        self.assertEqual([row[1:6] for row in rows], [["0.1 px", 5.0, 6.0, 7.0, 1], ["0.5 px", 1.5, 3.0, "", 2]])
 
     def test_a_plot_shows_the_quickest_of_each_error(self):
         self.assertEqual(surfaces.front([(0.5, 3), (0.1, 9), (0.5, 2)]), [(0.1, 9), (0.5, 2)])
@@ -122,13 +158,13 @@ class Surfaces(unittest.TestCase):
         self.assertEqual(rows[2][2], "77 %")
         self.assertEqual(surfaces.spent_rows(exact, None)[0][0], "exact surfaces")
 
-    def test_frames_have_limits(self):
+    def test_frames_have_causes(self):
         frame = {surfaces.WALL: 99.0, "all passes": 90.0, "pass: visibility": 60.0, "pass: resolve": 30.0}
-        self.assertIn("takes 99 ms (of its passes visibility 67 %, resolve 33 %)", surfaces.frame_limit(frame, None))
-        self.assertIn("facets 7 ms by this engine", surfaces.frame_limit(frame, {surfaces.WALL: 7.0}))
+        self.assertIn("takes 99 ms (of its passes visibility 67 %, resolve 33 %)", surfaces.frame_cause(frame, None))
+        self.assertIn("facets 7 ms by this engine", surfaces.frame_cause(frame, {surfaces.WALL: 7.0}))
         stands = frame | {"reused: all passes": 40.0, "reused: pass: resolve": 30.0, "reused: pass: gaps": 10.0}
-        self.assertEqual(surfaces.standing_limit(frame), "")
-        self.assertIn("takes 40 ms of passes, 30 of them resolve", surfaces.standing_limit(stands))
+        self.assertEqual(surfaces.standing_cause(frame), "")
+        self.assertIn("takes 40 ms of passes, 30 of them resolve", surfaces.standing_cause(stands))
 
     def test_pixels_beyond_the_tolerance_are_counted(self):
         self.assertEqual(surfaces.beyond({"beyond": 0, "worst_px": 0.5}, 0.5), 0)

@@ -89,6 +89,19 @@ fn a_missing_file_is_named() {
     }
 }
 
+/// `report` reads every model before it measures the first.
+#[test]
+fn a_report_ends_at_once_where_a_model_cannot_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let sample = concat!(env!("CARGO_MANIFEST_DIR"), "/../../samples/panel.step");
+    let report = |model| ["report", sample, model, "--out", out.to_str().unwrap()];
+    refused(&report("no/such/model.step"), "no/such/model.step");
+    refused(&report("-"), "`-` is standard input, which can be read once");
+    let written = std::fs::read_dir(&out).unwrap().count();
+    assert_eq!(written, 0, "neither a document nor a table");
+}
+
 #[test]
 fn a_file_that_is_no_model_is_an_import_error() {
     let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");

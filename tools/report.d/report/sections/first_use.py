@@ -7,9 +7,10 @@ from pathlib import Path
 
 from ..machine import ROOT
 from ..peers import NOT_DONE, run
-from ..rows import Missing, Section, Table
+from ..rows import Missing, Table
 from ..turns import Unmeasurable
 
+TITLE = "First use"
 TEXT = """\
 The clone has the history of one commit. The build makes the release program with its window, on all cores, from crates
 that were downloaded before. The library for hosts is built by `tools/report` in a whole run."""
@@ -17,8 +18,7 @@ NO_LIBRARY = Missing("not built: a whole run of tools/report builds it, and tool
 LONG = Missing("takes many minutes: only without --quick")
 
 
-def measure(context):
-    section = Section(8, "First use", TEXT)
+def measure(context, section):
     rows = [["the program", megabytes(context.program.path), "", ""]]
     library = ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "release/libselvedge_c.so"
     size = megabytes(library) if library.exists() else NO_LIBRARY
@@ -40,7 +40,6 @@ def measure(context):
         rows += built(context, section)
     section.tables.append(Table("", ["", "MB", "seconds", "CPU seconds"], rows))
     section.commands.append(context.shown("render", sample, "--size", "640x480", "-o", "picture.png"))
-    return section
 
 
 def megabytes(path):
@@ -77,7 +76,7 @@ def built(context, section):
         ]
         for name, command, within, made in words:
             before = os.times()
-            _, problem, took = run(command, context.budget.limit(context.budget.seconds), cwd=within)
+            _, problem, took = run(command, context.budget.limit_s(context.budget.seconds), cwd=within)
             if problem.startswith(NOT_DONE):
                 late = Missing(f"{name} was {problem}")
                 return [*rows, [name, late, late, late]]

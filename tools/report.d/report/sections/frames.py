@@ -2,17 +2,17 @@
 
 from pathlib import Path
 
-from ..rows import Promise, Section, Table
+from ..rows import Promise, Table
 
 MODELS = ["samples/panel.step", "samples/bracket.step", "samples/assembly.step", "samples/gallery/glass.toml"]
+TITLE = "Frames of the samples"
 TEXT = """\
 Medians of the frames after the first one. *Pipelines* is the time in which the driver makes the scene's pipelines;
 *first frame* is the time of the frame for which it compiles the rest. *Reused* is a standing view, drawn as a viewer
 draws it."""
 
 
-def measure(context):
-    section = Section(9, "Frames of the samples", TEXT)
+def measure(context, section):
     models = [context.model(name) for name in MODELS]
     rows, wrong, judged = [], 0, 0
     for motion in ("still", "turn"):
@@ -58,4 +58,3 @@ def measure(context):
     ]
     section.tables.append(Table("", head, rows))
     section.promises.append(Promise("a pixel right within half a pixel, by the project's reference", wrong, judged))
-    return section

@@ -4,7 +4,7 @@ import re
 
 from .. import hard
 from ..floor import CAMERA, PLANE
-from ..rows import Promise, Section, Table
+from ..rows import Promise, Table
 from ..turns import Unmeasurable
 
 # parts of the names of objects, by feature
@@ -34,13 +34,13 @@ SCENES = {
     "a solid of glass": (GLASS, ["solids", "layers"]),
     "a solid in the sun": (SUN, ["solids", "a sun"]),
 }
+TITLE = "Only what a scene needs"
 TEXT = """\
 What exists after two frames of 320 x 240 pixels, by name. Objects for trims, meshes, solids, layers or a sun exist
 only in scenes that have these. The last column counts the objects of a scene that the plane's scene lacks."""
 
 
-def measure(context):
-    section = Section(7, "Only what a scene needs", TEXT)
+def measure(context, section):
     folder = context.program.folder()
     (folder / "tetra.obj").write_text(TETRA)
     found = {}
@@ -66,7 +66,6 @@ def measure(context):
     section.commands.append(
         context.shown("render", "SCENE.toml", "--size", SIZE, "-o", "picture.png", "--stats", "stats.json")
     )
-    return section
 
 
 def foreign(name, features):

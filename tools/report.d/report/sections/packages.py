@@ -4,12 +4,12 @@ import importlib.util
 import json
 import sys
 
-from ..budget import Late
 from ..machine import ROOT
 from ..peers import NOT_DONE, run
-from ..rows import Missing, Section, Table
-from ..turns import Unmeasurable
+from ..rows import Missing, Table
+from ..turns import Late, Unmeasurable
 
+TITLE = "From Python"
 TEXT = """\
 Each package draws each file in a process of its own, from the same eight cameras at 1024x1024. *First picture* is the
 time from before the import of the package to arrays in memory, *next* that of the other seven views. Triangles are
@@ -23,14 +23,12 @@ LONG = "takes many minutes: only without --quick"
 NOT_BUILT = "selvedge is not installed in target/report/python: tools/wheel writes it"
 
 
-def measure(context):
-    section = Section(11, "From Python", TEXT)
+def measure(context, section):
     why = LONG if context.quick else "" if importlib.util.find_spec("selvedge") else NOT_BUILT
     rows = [["all", "", Missing(why), *[""] * 6]] if why else compared(context, section)
     columns = ["file", "package", "first picture, s", "next, s", "peak, MiB"]
     columns += ["silhouette, px", "of", "depth, px", "99 %, px"]
     section.tables.append(Table("", columns, rows))
-    return section
 
 
 def compared(context, section):
@@ -39,7 +37,7 @@ def compared(context, section):
     options = ["--views", VIEWS, "--timeout", PROCESS_S]
     section.commands.append(context.shown("tools/compare_python", "out.json", *files, *options, program="python"))
     command = [sys.executable, ROOT / "tools/compare_python", out, *files, *options]
-    _, problem, _ = run(command, context.budget.limit(context.budget.seconds))
+    _, problem, _ = run(command, context.budget.limit_s(context.budget.seconds))
     if problem:
         raise (Late if problem.startswith(NOT_DONE) else Unmeasurable)(f"tools/compare_python: {problem}")
     report = json.loads(out.read_text())

@@ -1,6 +1,6 @@
 """10. Reading files, beside Open CASCADE."""
 
-from ..rows import Contest, Section
+from ..rows import Contest
 from ..turns import Unmeasurable, rounds
 
 FILES = [
@@ -11,13 +11,13 @@ FILES = [
     "impeller.igs",
     "nist_827-9999-904.stp",
 ]
+TITLE = "Reading files"
 TEXT = """\
 *Ours* is from bytes on disk to a valid model, on all cores, in a fresh process for each file. *Theirs* is the two
 steps of Open CASCADE's reader, read and transfer, with all files in one process."""
 
 
-def measure(context):
-    section = Section(10, "Reading files", TEXT)
+def measure(context, section):
     names = context.pick(FILES[:4], FILES)
     there = {name: context.model(name) for name in names if context.model(name)}
     section.contests += [
@@ -32,7 +32,7 @@ def measure(context):
             "reading", {"models": [str(path) for path in there.values()]}, limit_s=60
         )
         if len(found) < len(there):
-            raise Unmeasurable(f"it read {len(found)} of {len(there)} files")
+            raise context.peers.error(f"it read {len(found)} of {len(there)} files")
         return [1e3 * one["read_s"] for one in found]
 
     ours = lambda: [context.program.read_ms(path) for path in there.values()]
@@ -45,7 +45,7 @@ def measure(context):
         if isinstance(results["theirs"], Unmeasurable):
             section.contests.append(Contest(what, "Open CASCADE", "ms", why=str(results["theirs"])))
         else:
-            mine, other = ([one[k] for one in results[who]] for who in ("ours", "theirs"))
+            many = min(map(len, results.values()))
+            mine, other = ([one[k] for one in results[who][:many]] for who in ("ours", "theirs"))
             section.contests.append(Contest(what, "Open CASCADE", "ms", mine, other, "ahead"))
     section.commands.append("selvedge -v info FILE")
-    return section

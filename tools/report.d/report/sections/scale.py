@@ -1,7 +1,7 @@
 """5. Scale: patches, instances and the leaves of solids, each over decades: time, bytes, exponents of growth."""
 
 from .. import noise, scenes
-from ..rows import Line, Missing, Plot, Section, Table
+from ..rows import Line, Missing, Plot, Table
 from ..turns import Unmeasurable
 
 # beyond so many copies or holes one frame is measured: it is long, and its noise small
@@ -10,6 +10,7 @@ ONE_FRAME = 1000
 STORED = 4096
 # seconds of one number
 MOST_S = 180
+TITLE = "Scale"
 TEXT = """\
 Patches are those of wavy bicubic sheets of 32 x 32 spans, each sheet with a net of its own; the table counts the
 patches that the engine stores. Instances are copies of `bracket.step`. Leaves are the primitives of a plate with a grid
@@ -18,8 +19,7 @@ one frame is measured. An exponent of 1 is growth in proportion, a smaller one s
 between the two largest."""
 
 
-def measure(context):
-    section = Section(5, "Scale", TEXT)
+def measure(context, section):
     size = context.pick("480x270", "640x360")
     frames = lambda number: context.pick(2, 5) if number < ONE_FRAME else 1
     copies = context.pick("1,10,100", "1,10,100,1000,2442")
@@ -75,7 +75,6 @@ def measure(context):
         line = Line("selvedge", [(n, cells[0]) for n, cells in good], True)
         section.plots.append(Plot(f"scale-{name}", f"time over {title}", title, "all passes, ms", [line]))
     section.tables.append(Table("Exponents", ["of", "", "over all", "last"], exponents))
-    return section
 
 
 def swept(context, section, what, copies, size, frames, column):

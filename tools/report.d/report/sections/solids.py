@@ -3,9 +3,9 @@
 import statistics
 
 from .. import bumpy, floor, scenes, views
-from ..budget import Late, cases
-from ..rows import Contest, Missing, Promise, Section, Table
-from ..turns import Unmeasurable, rounds
+from ..budget import cases
+from ..rows import Contest, Missing, Promise, Table
+from ..turns import Late, Overdue, Unmeasurable, rounds
 
 WAYS = ["events", "cst", "blister"]
 SCENES_QUICK = ["widget", "complex", "gear"]
@@ -20,6 +20,7 @@ SEGMENTS_QUICK, SEGMENTS = [64], [32, 128]
 FOV_DEG = 22.5
 # factor on the eye's distance: every way draws the whole solid within the picture
 AWAY = 1.02
+TITLE = "Boolean solids"
 TEXT = """\
 The scenes have the numbers of primitives of the models of J. Hable and J. Rossignac, *Blister*, SIGGRAPH 2005, which
 are not public. *First picture* is the whole process of ours, OpenSCAD and POV-Ray, from the file to a PNG. Of Manifold
@@ -29,8 +30,7 @@ own equations. The number beside OpenSCAD and Manifold is that of facets around 
 preview (a cube) and our plane show what the start of each process takes."""
 
 
-def measure(context):
-    section = Section(4, "Boolean solids", TEXT)
+def measure(context, section):
     section.promises.append(Promise("an outline within half a pixel, by the primitives' equations"))
     section.promises.append(Promise("a pixel of a solid right within half a pixel, by the project's reference"))
     blank(context, section)
@@ -67,7 +67,6 @@ def measure(context):
     section.tables.append(Table("Our ways beside the paper's", head, ways, text))
     if not section.promises[0].cases:
         section.promises[0].why = "no picture was judged"
-    return section
 
 
 class Case:
@@ -152,7 +151,7 @@ class Case:
             60,
         )
         if problem or not picture.exists():
-            raise Unmeasurable(f"POV-Ray drew nothing: {problem or 'no picture'}")
+            raise self.context.peers.error(f"POV-Ray drew nothing: {problem or 'no picture'}")
         self.pictures["POV-Ray"] = str(picture)
         return {"POV-Ray": (took, None)}
 
@@ -196,7 +195,7 @@ class Case:
                 text,
             )
         )
-        self.limits = [floor.limit(self.context, self.camera["size"]), self.frame_limit()]
+        self.causes = [floor.cause(self.context, self.camera["size"]), self.frame_cause()]
         self.contests(section, results)
         for way in WAYS:
             error = errors.get(f"selvedge, {way}")
@@ -207,7 +206,7 @@ class Case:
                 section.promises[1].cases += report[way]["error"]["judged_pixels"]
                 section.promises[1].violations += report[way]["error"]["wrong_pixels"]
 
-    def frame_limit(self):
+    def frame_cause(self):
         """What of a turning frame the rays through the solid take."""
         median = lambda name: statistics.median(one["events"]["of"].get(name, 0.0) for one in self.benches)
         rays, whole = median("pass: solids"), median("wall clock, with read-back")
@@ -249,8 +248,8 @@ class Case:
                     if found[0][setting][k] is not None:
                         many = min(len(ours), len(found))
                         mine, theirs = [best(one, k) for one in ours[:many]], [one[setting][k] for one in found[:many]]
-                        what, limit = f"{quantity}, {self.name}", self.limits[k]
-                        section.contests.append(Contest(what, setting, unit, mine, theirs, limit=limit))
+                        what, cause = f"{quantity}, {self.name}", self.causes[k]
+                        section.contests.append(Contest(what, setting, unit, mine, theirs, cause=cause))
 
 
 def way_rows(name, primitives, benches):
@@ -277,7 +276,7 @@ def previewed(context, file, picture, options):
     command = ["xvfb-run", "-a", "openscad", "--preview", *options, "-o", picture, file]
     _, problem, took = context.peers.run(command, context.pick(30, 60))
     if problem or not picture.exists():
-        raise Unmeasurable(f"OpenSCAD drew nothing: {problem or 'no picture'}")
+        raise context.peers.error(f"OpenSCAD drew nothing: {problem or 'no picture'}")
     return took
 
 
@@ -300,9 +299,9 @@ def blank(context, section):
         if isinstance(found, Unmeasurable):
             section.contests.append(Contest(what, "OpenSCAD", "s", why=str(found)))
             return
-    section.contests.append(
-        Contest(what, "OpenSCAD", "s", results["ours"], results["theirs"], limit=floor.limit(context, size))
-    )
+    many = min(map(len, results.values()))
+    mine, theirs = results["ours"][:many], results["theirs"][:many]
+    section.contests.append(Contest(what, "OpenSCAD", "s", mine, theirs, cause=floor.cause(context, size)))
 
 
 def bunnies(context):
@@ -318,7 +317,7 @@ def bunnies(context):
             try:
                 context.budget.needed()
                 (report,) = context.program.bench([path], *options, limit_s=MESH_S)
-            except Late as late:
+            except (Late, Overdue) as late:
                 rows.append([name, 4, way, *[Missing(str(late))] * 2, *[""] * 5])
             else:
                 rows += way_rows(name, 4, [{way: report}])

@@ -4,9 +4,8 @@ import random
 import time
 
 from .. import hard, program
-from ..budget import Late
-from ..rows import Missing, Promise, Section, Table
-from ..turns import Unmeasurable
+from ..rows import Missing, Promise, Table
+from ..turns import Late, Unmeasurable
 
 # the first random case; others follow
 SEED = 1
@@ -15,6 +14,7 @@ PIXEL = "a pixel right within half a pixel,"
 GOALS = {"patches": 10**6, "trims": 10**5, "trees": 10**5}
 # seconds of a case
 CASE_S_QUICK, CASE_S = 30, 120
+TITLE = "Stability"
 TEXT = """\
 Each case is a scene file, which `selvedge check` draws and judges: it compares pixels with rays through the exact model
 in double precision. *In doubt* counts the rays that the reference gave up. *Wrong* pixels are right nowhere within half
@@ -23,8 +23,7 @@ that is left is used up. Trims that change from frame to frame, first frames and
 file; tests/frame and tests/parity have these cases."""
 
 
-def measure(context):
-    section = Section(6, "Stability", TEXT)
+def measure(context, section):
     size, samples = context.pick("320x240", "1280x720"), context.pick(1000, 5000)
     judge = Judge(context, ["--size", size, "--samples", samples])
     rows, devices, first, whole = [], [None], True, {}
@@ -53,7 +52,6 @@ def measure(context):
     section.promises += [drawn, *(promise for promise in both if promise.violations or not promise.known)]
     soak(context, section, judge)
     section.commands.append(context.shown("check", "CASE.toml", "--views", "all", *judge.options))
-    return section
 
 
 def promises(known):

@@ -4,9 +4,9 @@ in turn."""
 import statistics
 
 from .. import floor, noise, views
-from ..budget import Late, cases
-from ..rows import Contest, Line, Missing, Plot, Promise, Section, Table
-from ..turns import Unmeasurable, rounds
+from ..budget import cases
+from ..rows import Contest, Line, Missing, Plot, Promise, Table
+from ..turns import Late, Unmeasurable, rounds
 
 # what is claimed comes first
 FILES_QUICK = ["nist_pmi_2.stp", "samples/bracket.step", "first/occt_screw.step"]
@@ -19,8 +19,9 @@ WEIGHTS, LARGE_FILE = {SMALL: 0.6, MIDDLE: 1.0, LARGE: 1.9}, 1.5
 # tolerances, pixels, and deflections, shares of the diagonal; the whole run has all of ours at the middle size alone
 TOLERANCES_QUICK, TOLERANCES, TOLERANCES_OTHER = [0.5, 1.0], [0.1, 0.25, 0.5, 1.0, 4.0], [0.25, 0.5, 1.0]
 DEFLECTIONS_QUICK, DEFLECTIONS = [1e-2, 1e-3, 1e-4, 1e-5], [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
-# settings that every round repeats; the others are timed in the first one
-REPEATED = {"ours": [0.5, 1.0], "meshed": [1e-2, 1e-3, 1e-4], "F3D": [1e-3, 1e-4]}
+# settings that every round repeats; the others are timed in the first one. A peer's others are finer than all of these,
+# and so slower: no contest misses the peer's quickest setting
+REPEATED = {"ours": [0.5, 1.0], "meshed": [1e-2, 1e-3, 1e-4], "F3D": [1e-2, 1e-3, 1e-4]}
 # share of a case's time for its rounds; the rest is for the pictures and the judge
 ROUNDS_SHARE = 0.65
 # seconds of a process of a peer, and the reason where it took longer
@@ -42,6 +43,7 @@ FACETED = 1e-3
 # the bench's name of a frame from its recording to the picture in host memory
 WALL = "wall clock, with read-back"
 VIEWERS = {"occ": "Open CASCADE", "vtk": "VTK"}
+TITLE = "Time against error, surfaces"
 TEXT = """\
 *First picture* is from the file: of ours the whole process, with the device, the driver's pipelines and the PNG; of
 the others from the first byte read to the first frame, without the start of their process, with the window. *Turning*
@@ -52,13 +54,14 @@ exceeds *99.9 %*. One picture of the triangles is judged for all viewers that dr
 within half a pixel, of files of a megabyte and more.
 
 The first round times every setting. Later rounds repeat our tolerances of 0.5 and 1 px, and deflections of 0.01 to
-0.0001 (of F3D 0.001 and 0.0001). A setting that is timed once has the same figure in every round; column *rounds* has
-the number. All our tolerances are drawn at 1920x1080; the other sizes have 0.25, 0.5 and 1 px. Meshes become finer
-until the next one may take longer than the limit: its row names the limit.
+0.0001. Column *rounds* has the number of rounds that timed a setting. A contest takes the rounds that timed both of its
+sides; with fewer than three it is not measured. All our tolerances are drawn at 1920x1080; the other sizes have 0.25,
+0.5 and 1 px. Meshes become finer until the next one may take longer than the limit: its row names the limit.
 
-*Where our turning frame goes* is the limit of such a frame on a processor that draws. Its first row is this engine as
-a viewer of facets: it draws the mesh within a thousandth of the diagonal, the same that the viewers draw. The rows
-below are a frame of the exact surfaces, pass by pass; its time beyond the first row is the price of exactness."""
+*Where our turning frame goes* is the cause of such a frame's time on a processor that draws. Its first row is this
+engine as a viewer of facets: it draws the mesh within a thousandth of the diagonal, the same that the viewers draw.
+The rows below are a frame of the exact surfaces, pass by pass; its time beyond the first row is the price of
+exactness."""
 
 
 RATIOS = """\
@@ -66,8 +69,7 @@ At each error our quickest setting beside that of the quickest peer, theirs to o
 no setting of a peer reaches the error. A cell is empty where we do not reach it, or where it was not measured."""
 
 
-def measure(context):
-    section = Section(1, "Time against error, surfaces", TEXT)
+def measure(context, section):
     section.promises.append(Promise("no boundary pixel beyond the tolerance, by the kernel's rays"))
     ratios = Table("Ratios to the quickest peer", ["", *(f"within {error:g} px" for error in ERRORS)], [], RATIOS)
     weights = {}
@@ -93,7 +95,6 @@ def measure(context):
     promise = section.promises[0]
     if not promise.cases:
         promise.why = "the kernel did not judge the pictures"
-    return section
 
 
 def large(model):
@@ -122,14 +123,14 @@ class Case:
         self.f3d_deflections = context.pick([1e-3, 1e-4], DEFLECTIONS)
         self.most_mesh_s = context.pick(10, 12)
         self.what = f"{model.name}, {size[0]}x{size[1]}"
-        # the first round of each competitor, by setting; then the reasons of those that were not timed
-        self.first, self.stopped = {}, {}
+        # competitors whose first round is done; then the reasons of settings that were not timed
+        self.begun, self.stopped = set(), {}
         # images of faces and a mesh, which the first round of the viewers writes
         self.images, self.stl = {}, None
 
     def settings_of(self, who, all_settings):
         """All settings in the first round, then those that are repeated."""
-        return [s for s in all_settings if who not in self.first or s in REPEATED[who]]
+        return [s for s in all_settings if who not in self.begun or s in REPEATED[who]]
 
     def ours(self):
         """By tolerance: seconds to the first picture, milliseconds of a frame that turns, and of one that stands."""
@@ -138,12 +139,8 @@ class Case:
             first = self.context.program.render(self.model, self.camera, "--tolerance", tolerance, stats=False)
             of = self.bench(tolerance)
             found[tolerance] = (first["seconds"], of[WALL], of.get(f"reused: {WALL}"))
-        return self.with_first("ours", found)
-
-    def with_first(self, who, found):
-        """A round with the settings that only the first one timed."""
-        first = self.first.setdefault(who, found)
-        return {**first, **found}
+        self.begun.add("ours")
+        return found
 
     def bench(self, tolerance, model=None):
         """Medians of a turn by name; of the file, unless another is named."""
@@ -152,12 +149,12 @@ class Case:
         return self.context.program.bench([model or self.model], *words)[0]["of"]
 
     def spent(self, section):
-        """Adds where a turning frame goes, beside one of this engine with the viewers' mesh; the limits of frames."""
+        """Adds where a turning frame goes, beside one of this engine with the viewers' mesh; the causes of frames."""
         exact, faceted = self.bench(SPENT_PX), self.bench(SPENT_PX, self.stl) if self.stl else None
         columns = ["", "passes, ms", "of the exact frame", "wall clock, ms"]
         section.tables.append(Table(f"{self.what}: where our turning frame goes", columns, spent_rows(exact, faceted)))
-        limit, stands = frame_limit(exact, faceted), standing_limit(exact)
-        return {"turning frame": f"{self.what}: {limit}", "standing frame": f"{self.what}: {stands}" if stands else ""}
+        cause, stands = frame_cause(exact, faceted), standing_cause(exact)
+        return {"turning frame": f"{self.what}: {cause}", "standing frame": f"{self.what}: {stands}" if stands else ""}
 
     def job(self, **more):
         return {
@@ -173,7 +170,7 @@ class Case:
         self.context.peers.needed("Open CASCADE")
         self.context.peers.needed("VTK")
         # the first round writes the images that are judged
-        folder = None if "meshed" in self.first else str(self.context.program.folder())
+        folder = None if "meshed" in self.begun else str(self.context.program.folder())
         deflections = self.settings_of("meshed", self.deflections)
         job = self.job(deflections=deflections, ids=folder, wants=list(VIEWERS))
         head, *results = self.context.peers.results("meshed", job, windowed=True, limit_s=PEER_S)
@@ -188,8 +185,8 @@ class Case:
                 self.images[result["deflection"]] = result["ids"]
                 self.stl = result["stl"] if result["deflection"] == FACETED else self.stl
         self.why("meshed", deflections, results)
-        first = self.first.setdefault("meshed", found)
-        return {name: {**first[name], **found[name]} for name in found}
+        self.begun.add("meshed")
+        return found
 
     def f3d(self):
         self.context.peers.needed("F3D")
@@ -203,7 +200,8 @@ class Case:
             if "first_s" in r
         }
         self.why("F3D", deflections, results)
-        return self.with_first("F3D", found)
+        self.begun.add("F3D")
+        return found
 
     def why(self, who, deflections, results):
         """Keeps the reasons of the deflections that were not drawn: the mesher's limit, or that of the process."""
@@ -251,14 +249,14 @@ class Case:
             competitors[name] = ("mesh", found if isinstance(found, Unmeasurable) else [one[name] for one in found])
         competitors["F3D"] = ("mesh", results["F3D"])
         self.table(section, competitors, head, errors)
-        limits = {}
+        causes = {}
         try:
-            limits = self.spent(section)
-            limits["first picture"] = floor.limit(self.context, self.size)
-        except Late as late:  # the rows stay; they have no limit beside them
-            section.contests.append(Contest(f"limits, {self.what}", "all", "ms", why=str(late)))
+            causes = self.spent(section)
+            causes["first picture"] = floor.cause(self.context, self.size)
+        except Late as late:  # the rows stay; they have no cause beside them
+            section.contests.append(Contest(f"causes, {self.what}", "all", "ms", why=str(late)))
         self.plots(section, competitors, errors)
-        ratios = self.contests(section, competitors, errors, limits)
+        ratios = self.contests(section, competitors, errors, causes)
         for tolerance in self.tolerances:
             error = errors.get(f"ours {tolerance}")
             if error:
@@ -268,8 +266,8 @@ class Case:
         return ratios
 
     def settings(self, found):
-        """Settings that every round has."""
-        return [s for s in found[0] if all(s in one for one in found)] if found else []
+        """Settings that a round timed."""
+        return list(dict.fromkeys(s for one in found for s in one))
 
     def table(self, section, competitors, head, errors):
         rows = []
@@ -279,7 +277,8 @@ class Case:
                 continue
             who = {"selvedge": "ours", "F3D": "F3D"}.get(name, "meshed")
             for setting in self.settings(found):
-                times = [None if None in of else statistics.median(of) for of in zip(*(one[setting] for one in found))]
+                timed = [one[setting] for one in found if setting in one]
+                times = [None if None in of else statistics.median(of) for of in zip(*timed)]
                 error = errors.get(f"{kind} {setting}")
                 worst = (
                     [
@@ -292,7 +291,7 @@ class Case:
                 )
                 unit = f"{setting:g} px" if kind == "ours" else f"{setting:g} of the diagonal"
                 times = ["" if time is None else time for time in times]
-                rows.append([name, unit, *times, len(found) if setting in REPEATED[who] else 1, *worst])
+                rows.append([name, unit, *times, len(timed), *worst])
             for (of, deflection), why in self.stopped.items():
                 if of == who and deflection not in self.settings(found):
                     rows.append([name, f"{deflection:g} of the diagonal", *[Missing(why)] * 3, *[""] * 4])
@@ -314,11 +313,11 @@ class Case:
         section.tables.append(Table(self.what, columns, rows, text))
 
     def curve(self, kind, found, errors, k):
-        """`(error, time)` of each setting, times of one round or the medians of all."""
+        """`(error, time)` of each setting, times of one round or the medians of those that timed it."""
         points = []
         for setting in self.settings(found):
             error = errors.get(f"{kind} {setting}")
-            times = [one[setting][k] for one in found]
+            times = [one[setting][k] for one in found if setting in one]
             if error and None not in times:
                 points.append((max(error["p999_px"], LEAST_PX), statistics.median(times)))
         return points
@@ -336,7 +335,7 @@ class Case:
                     Plot(key, f"{quantity}: {self.what}", "99.9 % boundary error, px", f"{quantity}, {unit}", lines)
                 )
 
-    def contests(self, section, competitors, errors, limits):
+    def contests(self, section, competitors, errors, causes):
         """At each error, our quickest tolerance beside the peer's quickest deflection, round by round; rows of the
         least ratio of all peers."""
         ours, least = competitors["selvedge"][1], {}
@@ -358,7 +357,7 @@ class Case:
                     # a larger error that changes neither side's setting is the same contest
                     sides = contest and (contest.ours, contest.theirs, contest.why)
                     if contest and sides != before:
-                        contest.limit = limits.get(quantity, "")
+                        contest.cause = causes.get(quantity, "")
                         section.contests.append(contest)
                     before = sides
         return [
@@ -366,16 +365,24 @@ class Case:
             for k, (quantity, _) in enumerate(QUANTITIES)
         ]
 
+    def quickest(self, kind, found, errors, k, error):
+        """The quickest time within the error, by round; None in a round without one. Settings that are timed too seldom
+        to know their noise count only where no other is within the error: the rounds of a side compare alike."""
+        count = lambda setting: sum(setting in one for one in found)
+        often = {s for s in self.settings(found) if count(s) >= noise.FEWEST_ROUNDS}
+        within = lambda one: noise.quickest_within(self.curve(kind, [one], errors, k), error)
+        times = [within({s: of for s, of in one.items() if s in often}) for one in found]
+        return times if any(times) else [within(one) for one in found]
+
     def contest(self, what, name, unit, kind, ours, found, errors, k, error):
         """None if our own settings do not reach the error."""
-        best = lambda kind, one: noise.quickest_within(self.curve(kind, [one], errors, k), error)
-        mine, theirs = [best("ours", one) for one in ours], [best(kind, one) for one in found]
-        if None in mine:
+        mine, theirs = self.quickest("ours", ours, errors, k, error), self.quickest(kind, found, errors, k, error)
+        if not any(mine):
             return None
-        if not any(self.curve(kind, [one], errors, k) for one in found):
+        if not self.curve(kind, found, errors, k):
             return Contest(what, name, unit, why="none of its settings was both timed and judged")
         claim = "ahead" if k == 0 and error <= CLAIMED_PX and large(self.model) else "open"
-        if None in theirs:
+        if not any(theirs):
             stopped = [why for (who, _), why in self.stopped.items() if who == ("F3D" if name == "F3D" else "meshed")]
             cut = next((why for why in stopped if why.startswith(PROCESS)), None)
             if cut:
@@ -383,8 +390,10 @@ class Case:
             why = "none of its settings has so small an error"
             why += f"; a finer one is beyond the limit: {stopped[0]}" if stopped else ""
             return Contest(what, name, unit, claim=claim, unreached=True, why=why)
-        many = min(len(mine), len(theirs))
-        return Contest(what, name, unit, mine[:many], theirs[:many], claim)
+        both = [(a, b) for a, b in zip(mine, theirs) if a and b]
+        if not both:
+            return Contest(what, name, unit, claim=claim, why="no round timed both sides")
+        return Contest(what, name, unit, *map(list, zip(*both)), claim)
 
 
 def least_ratio(contests):
@@ -396,14 +405,14 @@ def least_ratio(contests):
     return "ours alone" if contests else ""
 
 
-def frame_limit(exact, faceted):
+def frame_cause(exact, faceted):
     """The price of exactness in a turning frame, as a sentence; of medians by name."""
     shares = ", ".join(f"{name} {share}" for name, _, share, _ in spent_rows(exact, None)[1:4] if share)
     surfaces = f"a turning frame of the exact surfaces takes {exact[WALL]:.0f} ms (of its passes {shares})"
     return f"{surfaces}, one of the viewers' facets {faceted[WALL]:.0f} ms by this engine" if faceted else surfaces
 
 
-def standing_limit(exact):
+def standing_cause(exact):
     """What a standing frame computes again, as a sentence; empty without such frames."""
     passes = [(ms, name.removeprefix("reused: pass: ")) for name, ms in exact.items() if "reused: pass: " in name]
     if not passes:

@@ -3,9 +3,9 @@ all ways to trim."""
 
 import statistics
 
-from ..budget import Late, cases
-from ..rows import Contest, Line, Missing, Plot, Promise, Section, Table
-from ..turns import Unmeasurable, rounds
+from ..budget import cases
+from ..rows import Contest, Line, Missing, Plot, Promise, Table
+from ..turns import Late, Unmeasurable, rounds
 
 # the engine's own; the others are baselines
 OURS = ("table", "exact")
@@ -16,6 +16,7 @@ FILES = {"samples/panel.step": 50, "nist_pmi_2.stp": 0, "m6_countersunk_screw.st
 WEIGHTS = {"samples/panel.step": 2.2, "nist_pmi_2.stp": 1.0, "m6_countersunk_screw.step": 1.0}
 # pictures of the sweep over zoom, and those that every round draws beside them
 SIZE, SMALL_SIZE = "400x400", "200x200"
+TITLE = "Trimming"
 TEXT = """\
 The engine's ways to trim, `table` and `exact`, are measured beside other methods: bisection (the paper's), a texture
 of the trim, and triangles made in advance. *Trims* is what the tests cost in the passes of a frame, *turning* the same
@@ -23,8 +24,7 @@ of a view that turns. Each round takes the least of its frames; the table has me
 the sweep over zoom, at 400x400. Larger pictures are measured once: a frame is long there, and its noise small."""
 
 
-def measure(context):
-    section = Section(3, "Trimming", TEXT)
+def measure(context, section):
     files = context.pick(FILES_QUICK, FILES)
     absent = [name for name in files if not context.model(name)]
     section.contests += [Contest(f"trims, {name}", "all", "ms", why=context.absent(name).why) for name in absent]
@@ -51,7 +51,6 @@ def measure(context):
     why = "" if judged else "nothing was drawn"
     what = "a pixel trimmed by `table` or `exact` right within half a pixel"
     section.promises.append(Promise(what, wrong, judged, why))
-    return section
 
 
 def measured(context, section, name, holes, seconds):
@@ -175,11 +174,11 @@ def contests(section, model, found, size):
         least = min(filter(None, (values(found[:1], other(way), "trim_bytes") for way in OURS)), default=[])
         texture = values(found[:1], other("texture"), "trim_bytes")
         memory = contest(f"memory, {what}", "a trim texture", "bytes", least, texture, claim, exact=True)
-        memory.limit = texture_limit(model, found[0], size)
+        memory.cause = texture_cause(model, found[0], size)
         section.contests.append(memory)
 
 
-def texture_limit(model, first, size):
+def texture_cause(model, first, size):
     """The bytes of a texture at the closest view: ours serve all views."""
     rows = [(at[2], row) for at, row in first.items() if at[:2] == (model, "texture") and at[3] == size]
     closest, bytes_ = max(((zoom, float(row["trim_bytes"])) for zoom, row in rows if row["trim_bytes"]), default=(1, 0))

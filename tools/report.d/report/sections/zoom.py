@@ -3,9 +3,8 @@
 import statistics
 
 from .. import program, views
-from ..budget import Late
-from ..rows import Contest, Line, Missing, Plot, Promise, Section, Table
-from ..turns import Unmeasurable, rounds
+from ..rows import Contest, Line, Missing, Plot, Promise, Table
+from ..turns import Overdue, Unmeasurable, rounds
 
 FILE, SAMPLE = "nist_pmi_2.stp", "samples/bracket.step"
 ZOOMS_QUICK, ZOOMS = [1, 10, 1_000, 1_000_000], [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000]
@@ -15,6 +14,7 @@ FIXED = 1e-3
 WITHIN_PX = 0.5
 # the kernel's tolerance, millimetres; the least pixel size, in tolerances, whose sixteenth the kernel's rays resolve
 KERNEL_MM, KERNEL_PIXEL = 1e-7, 32
+TITLE = "Time against zoom"
 TEXT = """\
 The views are so many times closer to the detail that is nearest to the eye. The *fixed* viewer draws one mesh within a
 thousandth of the diagonal. The other one meshes anew for each view, within half a pixel; its time is that of mesh and
@@ -24,8 +24,7 @@ project's own reference finds, at every zoom. There are three rounds; a view who
 in its row is not meshed again in later rounds."""
 
 
-def measure(context):
-    section = Section(2, "Time against zoom", TEXT)
+def measure(context, section):
     model = context.model(FILE) or context.model(SAMPLE)
     size, zooms = context.pick((960, 540), (1920, 1080)), context.pick(ZOOMS_QUICK, ZOOMS)
     words = [
@@ -64,14 +63,12 @@ def measure(context):
             for name, camera in cameras.items()
         }
         job = {"model": str(model), "views": wanted, "meshes": reached, "fixed": FIXED, "ids": str(folder)}
-        given_s = context.budget.limit(limit_s)
         results = context.peers.results("zoomed", job, windowed=True, limit_s=limit_s)
         found = {(one["kind"], one["view"]): one for one in results}
         late = [name for name in reached if ("remeshed", name) not in found]
-        if late and given_s < limit_s:
-            raise Late(f"a mesh a zoom: {context.peers.problem}")  # the section's time, not the mesher's limit
-        if late and not context.peers.late:
-            raise Unmeasurable(f"a mesh a zoom: {context.peers.problem}")  # a failure is not a loss
+        if late and context.peers.error is not Overdue:
+            # the section's time, or a failure: only the mesher's own limit is a loss
+            raise context.peers.error(f"a mesh a zoom: {context.peers.problem}")
         reached[:] = [name for name in reached if name not in late]
         # reported once, for all rounds
         stopped.update({name: f"{int(late[0]):,} times was not meshed within {limit_s} s" for name in late})
@@ -83,7 +80,6 @@ def measure(context):
         raise results["ours"]
     errors = kernel_errors(context, model, cameras, results["meshed"])
     fill(section, model.name, cameras, judged, results, errors, stopped)
-    return section
 
 
 def kernel_errors(context, model, cameras, meshed):
@@ -142,8 +138,8 @@ def fill(section, file, cameras, judged, results, errors, stopped):
             lines[kind].append((float(name), statistics.median(times)))
             cells += [statistics.median(times), error(errors[name], kind)]
             many = min(len(mine), len(times))
-            limit = frame_limit([one[name] for one in results["ours"]], error(errors[name], kind))
-            section.contests.append(Contest(what, peer, "ms", mine[:many], times[:many], claim, limit=limit))
+            cause = frame_cause([one[name] for one in results["ours"]], error(errors[name], kind))
+            section.contests.append(Contest(what, peer, "ms", mine[:many], times[:many], claim, cause=cause))
         rows.append(cells)
     head = [
         "zoom",
@@ -162,8 +158,8 @@ def fill(section, file, cameras, judged, results, errors, stopped):
     section.plots.append(Plot("zoom", f"time over zoom: {file}", "zoom", "frame, ms", drawn))
 
 
-def frame_limit(stats, theirs):
-    """The passes that take most of our frame, and the peer's error: the limit of a frame that is behind."""
+def frame_cause(stats, theirs):
+    """The passes that take most of our frame, and the peer's error: the cause of a frame that is behind."""
     passes = [{one["name"]: one["gpu_ms"] for one in frame["passes"]} for frame in stats]
     medians = {name: statistics.median(of.get(name, 0.0) for of in passes) for name in passes[0]}
     whole, longest = sum(medians.values()), sorted(medians.items(), key=lambda row: -row[1])[:3]
