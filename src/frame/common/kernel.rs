@@ -1,6 +1,7 @@
 //! A compute pipeline whose bindings, workgroup size and constants come from its shader.
 
 use crate::abi::ListedPatches;
+use crate::abi::constants::part_runs::THREADS;
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Resource};
 use crate::shaders::Shader;
 use std::mem::offset_of;
@@ -67,10 +68,14 @@ impl Kernel {
     }
 
     /// As [`record`](Self::record), for a number of threads that may come from the GPU.
+    ///
+    /// # Panics
+    /// If the GPU counted workgroups of another size than the shader has.
     pub(crate) fn record_threads(&self, cmd: &Commands<'_>, resources: &[Resource<'_>], threads: Threads<'_>) {
         match threads {
             Threads::Host(threads) => self.record(cmd, resources, threads),
             Threads::Gpu(listed) => {
+                assert_eq!(self.group, [THREADS, 1, 1], "pass `part_runs` counts workgroups of {THREADS} threads");
                 self.record_indirect(cmd, resources, (listed, offset_of!(ListedPatches, threads) as u64));
             }
         }
