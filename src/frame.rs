@@ -222,7 +222,7 @@ impl Frame<'_> {
         #[cfg(feature = "baselines")]
         stages.visibility.untested(self, cmd, times);
         times.drawing(cmd, "visibility", || stages.visibility.patches(self, cmd, &test, false));
-        if let Some(occlusion) = stages.occlusion.as_ref().filter(|occlusion| occlusion.tests(self)) {
+        if let Some(occlusion) = stages.occlusion.as_ref().filter(|_| self.occlusion.tests()) {
             times.drawing(cmd, "occlusion", || occlusion.cull_late(self, cmd, &test));
         }
         let mut drawn = Access::COLOUR_WRITE;

@@ -45,6 +45,13 @@ pub(crate) enum OcclusionState {
     Same,
 }
 
+impl OcclusionState {
+    /// Whether the frame tests which patches are hidden.
+    pub(crate) fn tests(self) -> bool {
+        matches!(self, Self::Asks | Self::Moved)
+    }
+}
+
 /// The passes of scenes with occlusion culling.
 pub(crate) struct Passes {
     cull_early: cull_early::CullEarly,
@@ -122,11 +129,6 @@ impl Occlusion {
         let bindings = cull_early::Bindings { frame: frame.constants, hidden: &self.hidden, taus, counters, in_sight };
         self.passes.cull_early.record(cmd, &bindings, threads);
         cmd.after(w, w);
-    }
-
-    /// Whether this frame tests which patches are hidden.
-    pub(super) fn tests(&self, frame: &Frame<'_>) -> bool {
-        matches!(frame.occlusion, OcclusionState::Asks | OcclusionState::Moved)
     }
 
     /// After `visibility`: finds the hidden patches. Draws patches that were not drawn and may be visible.

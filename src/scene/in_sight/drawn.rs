@@ -102,13 +102,15 @@ impl SceneData {
         })
     }
 
-    /// Where the placed parts of these numbers may be drawn, in their order.
-    pub(crate) fn parts_in_sight(&self, camera: &Camera, parts: &[u32]) -> Vec<PartInSight> {
-        let pixels = camera.pixel_matrix();
+    /// The placed parts of these numbers, in their order, and where a camera may draw them. Without a camera, none is
+    /// hidden.
+    pub(crate) fn parts_in_sight(&self, camera: Option<&Camera>, parts: &[u32]) -> Vec<PartInSight> {
+        let view = camera.map(|camera| (camera.pixel_matrix(), camera));
         let of = |&n: &u32| {
             let placed = &self.boxes[n as usize];
-            let (depth, [low, high]) =
-                placed.in_picture(pixels, self.placements[n as usize], camera).unwrap_or((NEVER_HIDDEN, [0; 2]));
+            let drawn =
+                view.and_then(|(pixels, camera)| placed.in_picture(pixels, self.placements[n as usize], camera));
+            let (depth, [low, high]) = drawn.unwrap_or((NEVER_HIDDEN, [0; 2]));
             PartInSight {
                 instance: n,
                 first_patch_instance: placed.first,

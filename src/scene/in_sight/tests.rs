@@ -140,7 +140,7 @@ fn nothing_is_drawn_beside_the_rectangle_or_before_the_depth() {
         assert!(data.hides_parts());
         assert!(data.patches.iter().all(|patch| patch.side() == Side::Boundary), "every patch has skirts");
         let in_sight = data.in_sight(&camera, Reach { beside_px: 1.0, beyond_px: 1.0 });
-        let parts = data.parts_in_sight(&camera, &in_sight.parts);
+        let parts = data.parts_in_sight(Some(&camera), &in_sight.parts);
         for part in parts.iter().filter(|part| part.depth < 1.0) {
             checked += 1;
             let own = data.boxes[part.instance as usize].patches;
