@@ -22,7 +22,7 @@
 //! Source of the continuation: G. Farin, *Curves and Surfaces for CAGD*, 2002, section 5.4 (extrapolation by
 //! subdivision).
 
-use super::{CHUNK, Extent, PlacedBox, SINGLE_ROUNDING, SceneData};
+use super::{CHUNK, Extent, PlacedBox, PlacedFaces, SINGLE_ROUNDING, SceneData, placed_faces};
 use crate::abi::constants::behind::DEPTH_ROUNDING;
 use crate::abi::constants::push::MAX_PUSH;
 use crate::abi::{self, BORDER_U0, BORDER_U1, BORDER_V0, BORDER_V1, PartInSight, Side};
@@ -51,30 +51,26 @@ impl SceneData {
     }
 
     /// Finds the boxes around all that is drawn of each placed part. Needs the arrays that the GPU gets.
-    pub(in crate::scene) fn find_drawn(&mut self) {
+    pub(in crate::scene) fn find_drawn_boxes(&mut self) {
         let mut boxes = std::mem::take(&mut self.boxes);
         // copies of a part share their patches
         let mut known: HashMap<(u32, usize), Option<Extent>> = HashMap::new();
-        for faces in self.face_instances.chunk_by(|a, b| a.instance == b.instance) {
-            let (first, last) = (faces[0], faces[faces.len() - 1]);
-            let from = self.faces[first.face as usize].first_patch as usize;
-            let to =
-                self.faces.get(last.face as usize + 1).map_or(self.patches.len(), |next| next.first_patch as usize);
-            let drawn = *known.entry((first.face, faces.len())).or_insert_with(|| self.drawn(&self.patches[from..to]));
-            boxes[first.instance as usize].drawn = drawn;
+        for PlacedFaces { first, part, patches } in placed_faces(self) {
+            let of_part = *known.entry(part).or_insert_with(|| self.drawn_box(patches));
+            boxes[first.instance as usize].drawn = of_part;
         }
         self.boxes = boxes;
     }
 
     /// The box around all that may be drawn of these patches.
-    fn drawn(&self, patches: &[abi::Patch]) -> Option<Extent> {
-        let of_patches = patches.par_iter().map(|patch| self.drawn_of(patch));
+    fn drawn_box(&self, patches: &[abi::Patch]) -> Option<Extent> {
+        let of_patches = patches.par_iter().map(|patch| self.drawn_bounds(patch));
         let bounds = of_patches.try_reduce(|| Bounds::EMPTY, |a, b| Some(a.union(b)))?;
         (!bounds.is_empty()).then(|| Extent::between(bounds.min, bounds.max))
     }
 
     /// The same of one patch: empty if it is never drawn.
-    fn drawn_of(&self, patch: &abi::Patch) -> Option<Bounds> {
+    fn drawn_bounds(&self, patch: &abi::Patch) -> Option<Bounds> {
         // an edit may change on which side of the loops a patch lies
         let is_editable = self.edit.is_some();
         if patch.side() == Side::Outside && !is_editable {
