@@ -12,8 +12,9 @@
 //!
 //! The picture is the same, bit for bit, as with every patch drawn, whatever the previous frame contained. A culled
 //! patch would fail the depth test at each pixel, and its skirts lie behind visible surfaces; `twin::occlusion` has the
-//! derivation. One exception: of faces at exactly the same depth, another one may be drawn first and be visible. If the
-//! view has not changed since the last occlusion test, the test is skipped.
+//! derivation. One exception: of faces at exactly the same depth, another one may be drawn first and be visible; two
+//! rare ones are in `docs/design/culling.md`. If the view has not changed since the last occlusion test, the test is
+//! skipped.
 
 pub(crate) mod cull_early;
 pub(crate) mod cull_late;

@@ -12,8 +12,9 @@
 //!
 //! A part is hidden if every pixel of a rectangle shows something nearer than a depth. Rectangle and depth come from
 //! a box around everything that is drawn of the part (`scene/in_sight/drawn.rs`). So every fragment of the part would
-//! fail the depth test, and the picture is the same bit for bit. A part that was hidden and is no longer certainly hidden is
-//! drawn in the same frame.
+//! fail the depth test. Its skirts store their depths without a depth test, but they lie behind the visible surface and
+//! do not count there (`twin::occlusion`). So the picture is the same bit for bit, with the exceptions in
+//! `docs/design/culling.md`. A part that was hidden and is no longer certainly hidden is drawn in the same frame.
 //!
 //! The lists are made on the GPU, so passes over patches take their number of threads from there
 //! ([`Threads::Gpu`]).
