@@ -110,7 +110,7 @@ fn only_a_scene_of_many_parts_has_occlusion_culling_of_parts() {
         "counts of parts",
         "starts of parts",
         "runs of listed parts",
-        "listed patches",
+        "dispatches of listed parts",
     ];
     let copies = |shape: Model, count: u32| {
         let place = |n: u32| DAffine3::from_translation(DVec3::X * 9.0 * f64::from(n));

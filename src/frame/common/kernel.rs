@@ -1,6 +1,6 @@
 //! A compute pipeline whose bindings, workgroup size and constants come from its shader.
 
-use crate::abi::ListedPatches;
+use crate::abi::ListDispatches;
 use crate::abi::constants::part_runs::THREADS;
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Resource};
 use crate::shaders::Shader;
@@ -14,7 +14,7 @@ pub(crate) const MOST_THREADS: u32 = 1 << 31;
 pub(crate) enum Threads<'a> {
     /// Known on the CPU.
     Host(u32),
-    /// Counted by an earlier pass, which wrote [`ListedPatches`].
+    /// Counted by an earlier pass, which wrote [`ListDispatches`].
     Gpu(&'a Buffer),
 }
 
@@ -74,9 +74,9 @@ impl Kernel {
     pub(crate) fn record_threads(&self, cmd: &Commands<'_>, resources: &[Resource<'_>], threads: Threads<'_>) {
         match threads {
             Threads::Host(threads) => self.record(cmd, resources, threads),
-            Threads::Gpu(listed) => {
+            Threads::Gpu(dispatches) => {
                 assert_eq!(self.group, [THREADS, 1, 1], "pass `part_runs` counts workgroups of {THREADS} threads");
-                self.record_indirect(cmd, resources, (listed, offset_of!(ListedPatches, threads) as u64));
+                self.record_indirect(cmd, resources, (dispatches, offset_of!(ListDispatches, threads) as u64));
             }
         }
     }

@@ -23,8 +23,8 @@ use super::cull_early::{self, CullEarly};
 use super::cull_parts::{self, CullParts};
 use super::part_counts::{self, PartCounts};
 use super::part_runs::{self, PartRuns};
-use crate::abi::{LIST_ALL, LIST_APPEARING, ListedPatches, PartList, PatchRun};
-use crate::frame::common::Listed;
+use crate::abi::{LIST_ALL, LIST_APPEARING, ListDispatches, PartList, PatchRun};
+use crate::frame::common::PatchList;
 use crate::frame::common::kernel::Threads;
 use crate::frame::common::room::Room;
 use crate::frame::{Frame, WRITE_TO_READ};
@@ -66,7 +66,7 @@ pub(crate) struct Parts {
     counts: Buffer,
     starts: Buffer,
     runs: Buffer,
-    listed: Buffer,
+    dispatches: Buffer,
 }
 
 impl Parts {
@@ -79,7 +79,7 @@ impl Parts {
             counts: room.words("counts of parts", 2 * n)?,
             starts: room.words("starts of parts", 2 * n + 1)?,
             runs: room.structs::<PatchRun>("runs of listed parts", n)?,
-            listed: room.indirect::<ListedPatches>("listed patches", 1)?,
+            dispatches: room.indirect::<ListDispatches>("dispatches of listed parts", 1)?,
         })
     }
 
@@ -89,8 +89,8 @@ impl Parts {
     }
 
     /// The patch instances of the last list.
-    pub(super) fn listed(&self) -> Listed<'_> {
-        Listed { runs: &self.runs, threads: Threads::Gpu(&self.listed) }
+    pub(super) fn patch_list(&self) -> PatchList<'_> {
+        PatchList { runs: &self.runs, threads: Threads::Gpu(&self.dispatches) }
     }
 
     /// Makes a list, one of `LIST_*`. Passes of the list before may still be at work.
@@ -115,7 +115,7 @@ impl Parts {
             counts: &self.counts,
             starts: &self.starts,
             runs: &self.runs,
-            listed: &self.listed,
+            dispatches: &self.dispatches,
             counters: &common.counters,
         };
         cmd.after(w | Access::UNIFORM_READ, w);
@@ -128,7 +128,7 @@ impl Parts {
         let (parts_in_sight, parts) = frame.parts_in_sight();
         let hidden_now = &self.hidden_now;
         let bindings = cull_parts::Bindings { frame: frame.constants, parts_in_sight, farthest, hidden_now };
-        self.passes.cull.record(cmd, &bindings, PartList { parts, list: LIST_ALL });
+        self.passes.cull.record(cmd, &bindings, parts);
     }
 
     /// After [`cull`](Self::cull): divides the patches of parts that appear, and lists them with the others. `hidden`:
@@ -139,8 +139,8 @@ impl Parts {
         frame.stages.tessellation.divide(frame, cmd);
         cmd.after(w, w);
         let (taus, counters) = (&frame.stages.tessellation.taus, &frame.stages.common.counters);
-        let Listed { runs: in_sight, threads } = self.listed();
-        let bindings = cull_early::Bindings { frame: frame.constants, hidden, taus, counters, in_sight };
+        let PatchList { runs, threads } = self.patch_list();
+        let bindings = cull_early::Bindings { frame: frame.constants, hidden, taus, counters, runs };
         self.passes.cull_all.record(cmd, &bindings, threads);
         self.list(frame, cmd, LIST_ALL);
     }
