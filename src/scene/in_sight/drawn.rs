@@ -145,7 +145,7 @@ const ROUNDINGS_OF_A_DEGREE: f64 = 16.0;
 /// Bounds the rounding errors of the homogeneous coordinates of the surface beyond these borders, in the evaluation in
 /// single precision. At `t = 1 + MAX_PUSH` the magnitudes of the Bernstein polynomials of degree `n` add up to
 /// `(|t| + |1 - t|)^n`, while the polynomials themselves add up to 1.
-fn rounding_beyond(patch: &Patch, borders: u32) -> DVec4 {
+pub(super) fn rounding_beyond(patch: &Patch, borders: u32) -> DVec4 {
     let most = 1.0 + 2.0 * f64::from(MAX_PUSH);
     let growth = |both: u32, degree: usize| if borders & both == 0 { 1.0 } else { most.powi(degree as i32) };
     let growth = growth(BORDER_U0 | BORDER_U1, patch.degree_u) * growth(BORDER_V0 | BORDER_V1, patch.degree_v);
