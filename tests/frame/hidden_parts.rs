@@ -36,10 +36,9 @@ pub fn hall() -> Model {
 /// Something before a hall of two shapes, of which the first is three times in four. It is instance 0, and its part is
 /// the last one.
 fn hall_of(shapes: [Model; 2], (before, place): (Model, DAffine3)) -> Model {
-    let mut model = Model::default();
     let parts: Vec<Part> = shapes.into_iter().chain([before]).flat_map(|shape| shape.parts).collect();
     assert_eq!(parts.len(), 3);
-    model.parts = parts;
+    let mut model = Model { parts, ..Model::default() };
     let placed = |part: usize, transform: DAffine3| Instance { part, ..shapes::placed(transform, None) };
     model.instances.push(placed(2, place));
     for nth in 0..SIDE * SIDE * SIDE {

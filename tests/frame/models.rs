@@ -8,7 +8,7 @@ use crate::support::{assert_identical, assert_silent, watched_with};
 use glam::{DAffine3, DVec3};
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::{Camera, Instance, Model};
-use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
+use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings, TrimWay};
 use selvedge::renderer::{InstanceError, RemoveError, RenderError};
 
 /// Rows of everything, with closed parts of several faces among them.
@@ -159,7 +159,7 @@ fn among_hidden_parts() -> Model {
 #[test]
 fn what_comes_behind_a_block_is_hidden_with_the_parts_there() {
     let (base, added) = (hall(), among_hidden_parts());
-    let settings = SceneSettings::default();
+    let settings = SceneSettings { trim: TrimWay::Exact, ..SceneSettings::default() };
     let mut renderer = watched_with(&base, settings);
     let mut fresh = watched_with(&base, settings);
     let [before, behind] = [before_the_block(DVec3::ZERO), behind_the_hall()];
