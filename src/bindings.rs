@@ -4,7 +4,7 @@
 //!   constants      of the frame, or the sun, in a uniform block: a driver loads its words once for many invocations;
 //!                  from a storage buffer it gathers them for each
 //!   placed patches views, faces' places, faces, patches, their instances, points  glsl/include/placed.glsl
-//!   bounded        views, instances, faces' places, faces, patches, their instances, taus, counters, cones, points, in_sight
+//!   bounded        views, instances, faces' places, faces, patches, their instances, taus, counters, cones, points, runs
 //!                                                                                  glsl/include/bound.glsl
 //!   primitives     leaves, their sides, surfaces, surfaces' places         glsl/include/solids.glsl, volume.glsl
 //!   sun            sun, its tiles, …, primitives, leaves' centres, counts  glsl/include/sun.glsl
@@ -59,7 +59,7 @@ pub(crate) struct Bounded<'a> {
     /// Control points.
     pub points: &'a TexelBuffer,
     /// [`PatchRun`](crate::abi::PatchRun)s of the listed patch instances.
-    pub in_sight: &'a Buffer,
+    pub runs: &'a Buffer,
 }
 
 impl<'a> Bounded<'a> {
@@ -74,21 +74,8 @@ impl<'a> Bounded<'a> {
         let placed = [self.views, self.instances, self.face_instances, self.faces, self.patches, self.patch_instances];
         let [views, instances, face_instances, faces, patches, patch_instances] = placed.map(Resource::from);
         let [frame, taus, counters, cones] = [self.frame, self.taus, self.counters, cones].map(Resource::from);
-        let (points, in_sight) = (self.points.into(), self.in_sight.into());
-        [
-            frame,
-            views,
-            instances,
-            face_instances,
-            faces,
-            patches,
-            patch_instances,
-            taus,
-            counters,
-            cones,
-            points,
-            in_sight,
-        ]
+        let (points, runs) = (self.points.into(), self.runs.into());
+        [frame, views, instances, face_instances, faces, patches, patch_instances, taus, counters, cones, points, runs]
     }
 }
 

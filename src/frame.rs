@@ -44,7 +44,7 @@ use crate::gpu::{
 use crate::scene::Scene;
 use antialiasing::samples::Scopes;
 use capacities::Capacities;
-use common::Listed;
+use common::PatchList;
 use common::kernel::Threads;
 use counts::Counts;
 use shading::resolve;
@@ -133,10 +133,10 @@ impl<'a> Frame<'a> {
         self.stages.trim.as_ref().map_or_else(Vec::new, |trim| trim.test(self))
     }
 
-    /// The patch instances that passes over patches look at.
-    fn listed(&self) -> Listed<'a> {
-        let parts = self.stages.occlusion.as_ref().and_then(|occlusion| occlusion.listed());
-        parts.unwrap_or(Listed { runs: self.in_sight, threads: Threads::Host(self.patch_instances_in_sight) })
+    /// The listed patch instances.
+    fn patch_list(&self) -> PatchList<'a> {
+        let parts = self.stages.occlusion.as_ref().and_then(|occlusion| occlusion.patch_list());
+        parts.unwrap_or(PatchList { runs: self.in_sight, threads: Threads::Host(self.patch_instances_in_sight) })
     }
 
     /// The placed parts in sight and their number.
@@ -222,7 +222,7 @@ impl Frame<'_> {
         #[cfg(feature = "baselines")]
         stages.visibility.untested(self, cmd, times);
         times.drawing(cmd, "visibility", || stages.visibility.patches(self, cmd, &test, false));
-        if let Some(occlusion) = stages.occlusion.as_ref().filter(|occlusion| occlusion.tests(self)) {
+        if let Some(occlusion) = stages.occlusion.as_ref().filter(|_| self.occlusion.tests()) {
             times.drawing(cmd, "occlusion", || occlusion.cull_late(self, cmd, &test));
         }
         let mut drawn = Access::COLOUR_WRITE;

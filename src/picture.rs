@@ -400,7 +400,8 @@ pub struct FrameStats {
     /// occlusion test. Patches of [`hidden_parts`](Self::hidden_parts) are not among them.
     pub hidden_patches: u64,
     /// Placed parts in the picture that other surfaces hide as a whole, so that no pass looked at their patches. 0 in
-    /// the first frames of a scene, and in scenes of few placed parts.
+    /// the first frames of a scene, and in scenes of few placed parts, with few patches a part, with several samples a
+    /// pixel, or with spline operands.
     pub hidden_parts: u64,
     /// Patches that passes looked at: those of placed parts in the picture, without `hidden_parts`.
     pub listed_patches: u64,

@@ -1,5 +1,5 @@
 // Shared by the passes that compute how finely patches are divided: finds the patches that may be visible. The entry
-// point's `factors_of` computes their segments. One thread for each patch instance in sight.
+// point's `factors_of` computes their segments. One thread for each listed patch instance.
 #ifndef BOUND_GLSL
 #define BOUND_GLSL
 
@@ -23,7 +23,7 @@ layout(scalar, binding = 8) buffer CountersBuffer { Counters counters; };
 layout(scalar, binding = 9) readonly buffer Cones { vec4 cones[]; }; // only with SCENE_HAS_CONES
 layout(binding = 10) uniform samplerBuffer points;                    // one a homogeneous control point
 
-#define IN_SIGHT_BINDING 11
+#define RUNS_BINDING 11
 #include "in_sight.glsl"
 #include "cone.glsl"
 
@@ -32,7 +32,7 @@ vec2 factors_of(Patch patch_, View view, uint instance, Seen seen);
 
 void main() {
     uint place = thread_number();
-    if (place >= frame.patch_instances_in_sight) return;
+    if (place >= frame.listed_patch_instances) return;
     uint patch_instance = patch_instance_at(place);
     FaceInstance fi = face_instances[patch_instances[patch_instance]];
     Face face = faces[fi.face];

@@ -29,8 +29,8 @@ struct PartList {
     uint list;  // LIST_*
 };
 
-// The patch instances of the listed parts.
-struct ListedPatches {
+// The dispatches over the patch instances of listed parts.
+struct ListDispatches {
     uvec3 threads; // workgroups of passes with a thread for each
     uvec3 blocks;  // workgroups of prefix sums with two elements for each, and one more
     uint scanned;  // the number of these elements

@@ -158,7 +158,7 @@ struct Frame {
     float chord_px;     // budget of a trim curve's linear segments
     float table_density; // pixels a model unit of the trim table, for every view; 0: those of this view
     uint fixed_factor;  // of every patch; 0: the factor of pass `bound`
-    uint patch_instances_in_sight; // placed patches of placed parts that are in sight; of listed ones (parts.glsl)
+    uint listed_patch_instances; // which passes over patches look at (in_sight.glsl)
     uint run_count;     // runs of consecutive patch instances among them (in_sight.glsl)
     uint cell_count;
     uint bin_count;     // of all strips of all placed faces
@@ -258,7 +258,7 @@ struct Factors {
     uint splits; // sub-patches along u | along v << 16; powers of two
 };
 
-// A run of consecutive patch instances in sight (in_sight.glsl).
+// A run of consecutive listed patch instances (in_sight.glsl).
 struct PatchRun {
     uint place; // of its first one, among all in sight
     uint patch_instance; // its first one

@@ -14,11 +14,11 @@ layout(scalar, binding = 3) readonly buffer Patches { Patch patches[]; };
 layout(scalar, binding = 4) readonly buffer PatchInstances { uint patch_instances[]; };
 layout(scalar, binding = 5) readonly buffer Taus { uint taus[]; };
 layout(scalar, binding = 6) writeonly buffer FactorsBuffer { Factors factors[]; };
-// numbers of sub-patches and of tessellated vertices of each patch instance in sight: first of all plain patch
+// numbers of sub-patches and of tessellated vertices of each listed patch instance: first of all plain patch
 // instances, then of all trimmed ones
 layout(scalar, binding = 7) writeonly buffer SubPatchCounts { uint sub_patch_counts[]; };
 layout(scalar, binding = 8) writeonly buffer VertexCounts { uint vertex_counts[]; };
-#define IN_SIGHT_BINDING 9
+#define RUNS_BINDING 9
 #include "in_sight.glsl"
 
 uint power_of_two(uint x) { return x <= 1u ? 1u : 1u << (findMSB(x - 1u) + 1); }
@@ -61,7 +61,7 @@ void write(uint place, uint patch_instance, uint patch_) {
     uint sub_patches = drawn ? splits.x * splits.y : 0u;
     uint vertices = sub_patches * (most.x + 1u) * (most.y + 1u);
     uint plain = side_of(patches[patch_].shape) == SIDE_INSIDE ? 1u : 0u;
-    uint as_trimmed = frame.patch_instances_in_sight + place;
+    uint as_trimmed = frame.listed_patch_instances + place;
     sub_patch_counts[place] = sub_patches * plain;
     sub_patch_counts[as_trimmed] = sub_patches * (1u - plain);
     vertex_counts[place] = vertices * plain;

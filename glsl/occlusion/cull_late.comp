@@ -2,8 +2,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `cull_late`: finds the patches that are hidden behind the surfaces drawn so far. Other patches that pass
-// `cull_early` removed are drawn now; hidden patches are not drawn first in the next frame. One thread for each patch
-// instance in sight. Twin: src/twin/occlusion.rs.
+// `cull_early` removed are drawn now; hidden patches are not drawn first in the next frame. One thread for each
+// listed patch instance. Twin: src/twin/occlusion.rs.
 #include "scene.glsl"
 #include "view.glsl"
 #include "tiles.glsl"
@@ -23,7 +23,7 @@ layout(scalar, binding = 9) buffer Taus { uint taus[]; };
 layout(scalar, binding = 10) writeonly buffer Hidden { uint hidden[]; };
 layout(scalar, binding = 11) readonly buffer Outside { uvec2 outside[]; }; // for each patch: behind.glsl
 layout(scalar, binding = 12) buffer CountersBuffer { Counters counters; };
-#define IN_SIGHT_BINDING 13
+#define RUNS_BINDING 13
 #include "in_sight.glsl"
 
 #include "patch.glsl"
@@ -31,7 +31,7 @@ layout(scalar, binding = 12) buffer CountersBuffer { Counters counters; };
 
 void main() {
     uint place = thread_number();
-    if (place >= frame.patch_instances_in_sight) return;
+    if (place >= frame.listed_patch_instances) return;
     uint patch_instance = patch_instance_at(place);
     uint tau = taus[patch_instance];
     if (tau == 0u) {

@@ -9,7 +9,7 @@
 
 layout(local_size_x = 64) in;
 #include "thread.glsl"
-layout(scalar, push_constant) uniform Push { PartList push; };
+layout(scalar, push_constant) uniform Push { uint parts_in_sight; } push;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer PartsInSight { PartInSight parts[]; };
 layout(scalar, binding = 2) readonly buffer Farthest { float farthest[]; };
@@ -20,7 +20,7 @@ uvec2 pixel_of(uint packed) { return uvec2(packed & 0xffffu, packed >> 16); }
 
 void main() {
     uint n = thread_number();
-    if (n >= push.parts) return;
+    if (n >= push.parts_in_sight) return;
     PartInSight part = parts[n];
     bool is_hidden = all_pixels_nearer(pixel_of(part.low), pixel_of(part.high), part.depth);
     hidden_now[part.instance] = is_hidden ? 1u : 0u;

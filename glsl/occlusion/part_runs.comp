@@ -14,8 +14,8 @@ layout(scalar, binding = 0) buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer PartsInSight { PartInSight parts[]; };
 layout(scalar, binding = 2) readonly buffer PartCounts { uint part_counts[]; };
 layout(scalar, binding = 3) readonly buffer PartStarts { uint part_starts[]; }; // their prefix sums, and the total
-layout(scalar, binding = 4) writeonly buffer InSight { PatchRun runs[]; };
-layout(scalar, binding = 5) writeonly buffer Listed { ListedPatches listed; };
+layout(scalar, binding = 4) writeonly buffer Runs { PatchRun runs[]; };
+layout(scalar, binding = 5) writeonly buffer Dispatches { ListDispatches dispatches; };
 layout(scalar, binding = 6) buffer CountersBuffer { Counters counters; };
 
 const uint THREADS = 64u;      // of a workgroup in passes over patch instances
@@ -25,12 +25,12 @@ void main() {
     uint n = thread_number();
     uint patch_instances = part_starts[push.parts];
     if (n == 0u) {
-        frame.patch_instances_in_sight = patch_instances;
+        frame.listed_patch_instances = patch_instances;
         frame.run_count = part_starts[2u * push.parts] - patch_instances;
-        listed.threads = grid_of((patch_instances + THREADS - 1u) / THREADS);
+        dispatches.threads = grid_of((patch_instances + THREADS - 1u) / THREADS);
         uint scanned = 2u * patch_instances + 1u;
-        listed.blocks = grid_of((scanned + SCAN_BLOCK - 1u) / SCAN_BLOCK);
-        listed.scanned = scanned;
+        dispatches.blocks = grid_of((scanned + SCAN_BLOCK - 1u) / SCAN_BLOCK);
+        dispatches.scanned = scanned;
         if (push.list != LIST_ALL) counters.listed_patches += patch_instances;
     }
     if (n >= push.parts) return;

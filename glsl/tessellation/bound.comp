@@ -2,7 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `bound`: finds the patches that may be visible, and bounds how finely each must be divided. One thread for each
-// patch instance in sight. Twin: src/twin/bound.rs.
+// listed patch instance. Twin: src/twin/bound.rs.
 #include "bound.glsl"
 #include "factor.glsl"
 

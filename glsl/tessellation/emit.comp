@@ -26,11 +26,11 @@ struct Draw {
 };
 layout(scalar, binding = 5) buffer Draws { Draw draws[]; }; // plain, then trimmed: draw_capacity each
 layout(scalar, binding = 6) buffer CountersBuffer { Counters counters; };
-#define IN_SIGHT_BINDING 7
+#define RUNS_BINDING 7
 #include "in_sight.glsl"
 
 void main() {
-    uint n = frame.patch_instances_in_sight;
+    uint n = frame.listed_patch_instances;
     uint place = thread_number();
     if (place >= n) return;
     if (place == 0u) {

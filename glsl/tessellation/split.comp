@@ -2,7 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `split`: one number of segments for each shared side, and enough sub-patches that no number exceeds the
-// hardware's limit. One thread for each patch instance in sight. Twin: src/twin/split.rs.
+// hardware's limit. One thread for each listed patch instance. Twin: src/twin/split.rs.
 #include "split.glsl"
 
 uint first_patch_instance;
@@ -24,7 +24,7 @@ uint tau_at(ivec2 place, uint axis, int steps) {
 
 void main() {
     uint place_ = thread_number();
-    if (place_ >= frame.patch_instances_in_sight) return;
+    if (place_ >= frame.listed_patch_instances) return;
     uint patch_instance = patch_instance_at(place_);
     FaceInstance fi = face_instances[patch_instances[patch_instance]];
     Face face = faces[fi.face];

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `split` in scenes where faces share sides (Link). One thread a patch instance in sight. Twin: src/twin/split.rs.
+// Pass `split` in scenes where faces share sides (Link). One thread a listed patch instance. Twin: src/twin/split.rs.
 //
 // Numbers of segments are compared as numbers for the whole curve of the ring: a side that is a quarter of it needs
 // four times as many there, and gets a quarter of the result.
@@ -84,7 +84,7 @@ uint splits_beyond(uint patch_, uint side) {
 
 void main() {
     uint place_ = thread_number();
-    if (place_ >= frame.patch_instances_in_sight) return;
+    if (place_ >= frame.listed_patch_instances) return;
     uint patch_instance = patch_instance_at(place_);
     FaceInstance fi = face_instances[patch_instances[patch_instance]];
     instance_of_patch_0 = fi.first_patch_instance - faces[fi.face].first_patch;

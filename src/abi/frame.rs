@@ -29,7 +29,7 @@ pub struct Frame {
     pub chord_px: f32,
     pub table_density: f32,
     pub fixed_factor: u32,
-    pub patch_instances_in_sight: u32,
+    pub listed_patch_instances: u32,
     pub run_count: u32,
     pub cell_count: u32,
     pub bin_count: u32,

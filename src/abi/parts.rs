@@ -23,10 +23,10 @@ pub struct PartList {
     pub list: u32,
 }
 
-/// The patch instances of the listed parts, and the dispatches over them.
+/// The dispatches over the patch instances of listed parts.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
-pub struct ListedPatches {
+pub struct ListDispatches {
     pub threads: [u32; 3],
     pub blocks: [u32; 3],
     pub scanned: u32,

@@ -26,9 +26,9 @@ fn compare(gpu: &Gpu, frame: &Frame, given: &Chain, expected: &Chain) -> Result<
         sub_patches: &sub_patches,
         draws: &draws,
         counters: &counters,
-        in_sight: &gpu.upload("patch instances in sight", &[PatchRun::default()]),
+        runs: &gpu.upload("runs of patch instances", &[PatchRun::default()]),
     };
-    gpu.run(|cmd| pass.record(cmd, &bindings, frame.patch_instances_in_sight));
+    gpu.run(|cmd| pass.record(cmd, &bindings, frame.listed_patch_instances));
     let (mut twin_list, mut twin_draws, mut twin_counters) = (list, empty, Counters::default());
     twin::emit::emit(
         frame,
@@ -62,7 +62,7 @@ fn a_difference_is_seen() {
     // a patch instance in several sub-patches, plain or trimmed
     let slot = chain.split.sub_patch_counts.iter().position(|&count| count > 1).unwrap();
     let mut other = chain.clone();
-    other.split.factors[slot % frame.patch_instances_in_sight as usize].splits += 1;
+    other.split.factors[slot % frame.listed_patch_instances as usize].splits += 1;
     assert_eq!(compare(&gpu, frame, &other, &chain).unwrap_err().buffer, "sub-patches");
     let mut other = chain.clone();
     // all later patch instances come one draw later

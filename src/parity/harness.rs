@@ -188,7 +188,7 @@ pub(super) struct SceneBuffers {
     pub curves: TexelBuffer,
     pub curve_points: TexelBuffer,
     pub curve_instances: TexelBuffer,
-    pub in_sight: Buffer,
+    pub runs: Buffer,
 }
 
 impl SceneBuffers {
@@ -208,7 +208,7 @@ impl SceneBuffers {
             curves: gpu.upload_texels("curves", &d.curves, Texel::U32x4),
             curve_points: gpu.upload_texels("curve points", &d.curve_points, Texel::Numbers),
             curve_instances: gpu.upload_texels("curve instances", &d.curve_instances, Texel::Words),
-            in_sight: gpu.upload("patch instances in sight", &case.runs),
+            runs: gpu.upload("runs of patch instances", &case.runs),
         }
     }
 
@@ -231,7 +231,7 @@ impl SceneBuffers {
             counters,
             cones,
             points: &self.points,
-            in_sight: &self.in_sight,
+            runs: &self.runs,
         }
     }
 
@@ -253,7 +253,7 @@ impl SceneBuffers {
             factors,
             sub_patch_counts: counts[0],
             vertex_counts: counts[1],
-            in_sight: &self.in_sight,
+            runs: &self.runs,
             links,
         }
     }

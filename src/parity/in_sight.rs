@@ -29,20 +29,20 @@ fn two_thirds(mut case: Case) -> Case {
         }
         place += patch_instances.end - patch_instances.start;
     }
-    case.frame = Frame { patch_instances_in_sight: place, run_count: runs.len() as u32, ..case.frame };
+    case.frame = Frame { listed_patch_instances: place, run_count: runs.len() as u32, ..case.frame };
     case.runs = runs;
     case
 }
 
 /// The values of the patch instances in sight, in the order of their places.
 fn gathered<T: Copy>(case: &Case, all: &[T]) -> Vec<T> {
-    (0..case.frame.patch_instances_in_sight).map(|place| all[patch_instance_at(&case.runs, place) as usize]).collect()
+    (0..case.frame.listed_patch_instances).map(|place| all[patch_instance_at(&case.runs, place) as usize]).collect()
 }
 
 /// The values of all patch instances, with `untouched` for those out of sight.
 fn masked<T: Copy>(case: &Case, all: &[T], untouched: T) -> Vec<T> {
     let mut left = vec![untouched; all.len()];
-    (0..case.frame.patch_instances_in_sight)
+    (0..case.frame.listed_patch_instances)
         .map(|place| patch_instance_at(&case.runs, place) as usize)
         .for_each(|i| left[i] = all[i]);
     left
@@ -51,11 +51,11 @@ fn masked<T: Copy>(case: &Case, all: &[T], untouched: T) -> Vec<T> {
 /// The GPU gets `given`; the twins get `case`, which also decides which patch instances are in sight.
 fn compare(gpu: &Gpu, given: &Case, case: &Case) -> Result<(), Mismatch> {
     let all = Chain::new(&Case {
-        frame: Frame { patch_instances_in_sight: case.data.patch_instances.len() as u32, ..case.frame },
+        frame: Frame { listed_patch_instances: case.data.patch_instances.len() as u32, ..case.frame },
         ..case.clone()
     });
     let (s, n, total) =
-        (SceneBuffers::new(gpu, given), case.frame.patch_instances_in_sight, case.data.patch_instances.len());
+        (SceneBuffers::new(gpu, given), case.frame.listed_patch_instances, case.data.patch_instances.len());
 
     let taus = gpu.upload("taus", &vec![UNTOUCHED; total]);
     let counters = gpu.upload("counters", &[Counters::default()]);
@@ -98,7 +98,7 @@ fn compare(gpu: &Gpu, given: &Case, case: &Case) -> Result<(), Mismatch> {
         sub_patches: &sub_patches,
         draws: &draws,
         counters: &counters,
-        in_sight: &s.in_sight,
+        runs: &s.runs,
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, n));
     // the twin gets only the patch instances in sight, and numbers them by their places
@@ -129,9 +129,7 @@ fn cases() -> Vec<Case> {
 fn parity() {
     let gpu = Gpu::new();
     for case in cases() {
-        assert!(
-            case.runs.len() > 1 && (case.frame.patch_instances_in_sight as usize) < case.data.patch_instances.len()
-        );
+        assert!(case.runs.len() > 1 && (case.frame.listed_patch_instances as usize) < case.data.patch_instances.len());
         compare(&gpu, &case, &case).unwrap();
     }
     gpu.finish();

@@ -42,13 +42,8 @@ fn compare_cull_early(gpu: &Gpu, case: &Case, all: bool, given: &[u32], expected
     let (hidden, taus) = (gpu.upload("hidden", given), gpu.upload("taus", &twin_taus));
     let counters = gpu.upload("counters", &[Counters::default()]);
     let pass = cull_early::CullEarly::new(gpu.device(), all).unwrap();
-    let bindings = cull_early::Bindings {
-        frame: &s.frame,
-        hidden: &hidden,
-        taus: &taus,
-        counters: &counters,
-        in_sight: &s.in_sight,
-    };
+    let bindings =
+        cull_early::Bindings { frame: &s.frame, hidden: &hidden, taus: &taus, counters: &counters, runs: &s.runs };
     gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
     let marked = twin::occlusion::cull_early(expected, &mut twin_taus);
     same("taus", &gpu.read(&taus, n), &twin_taus)?;
@@ -138,7 +133,7 @@ fn compare_cull_late(
         hidden: &hidden,
         outside: &outside,
         counters: &counters,
-        in_sight: &s.in_sight,
+        runs: &s.runs,
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
     let on_gpu: Vec<u32> = gpu.read(&hidden, n);

@@ -4,7 +4,7 @@ use super::Random;
 use super::chain::UNTOUCHED;
 use super::harness::{Gpu, Mismatch, same};
 use crate::abi::{
-    Counters, Frame, LIST_ALL, LIST_APPEARING, LIST_FIRST, ListedPatches, PartInSight, PartList, PatchRun,
+    Counters, Frame, LIST_ALL, LIST_APPEARING, LIST_FIRST, ListDispatches, PartInSight, PartList, PatchRun,
 };
 use crate::frame::occlusion::cull_parts::{self, CullParts};
 use crate::frame::occlusion::part_counts::{self, PartCounts};
@@ -75,7 +75,7 @@ fn compare(gpu: &Gpu, list: u32, given: &Parts, expected: &Parts) -> Result<(), 
     let starts = gpu.upload("starts", &twin_starts);
     let counts = gpu.upload("counts", &whole);
     let runs = gpu.upload("runs", &vec![UNTOUCHED_RUN; n + 1]);
-    let listed = gpu.upload("listed", &[ListedPatches::default()]);
+    let dispatches = gpu.upload("dispatches", &[ListDispatches::default()]);
     let pass = PartRuns::new(gpu.device()).unwrap();
     let bindings = part_runs::Bindings {
         frame: &frame,
@@ -83,11 +83,11 @@ fn compare(gpu: &Gpu, list: u32, given: &Parts, expected: &Parts) -> Result<(), 
         counts: &counts,
         starts: &starts,
         runs: &runs,
-        listed: &listed,
+        dispatches: &dispatches,
         counters: &counters,
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, push));
-    let (mut twin_runs, twin_listed) = twin::parts::part_runs(
+    let (mut twin_runs, twin_dispatches) = twin::parts::part_runs(
         list,
         &expected.in_sight,
         (&twin_counts, &twin_starts),
@@ -96,7 +96,7 @@ fn compare(gpu: &Gpu, list: u32, given: &Parts, expected: &Parts) -> Result<(), 
     );
     twin_runs.resize(n + 1, UNTOUCHED_RUN);
     same("runs", &gpu.read(&runs, n + 1), &twin_runs)?;
-    same("listed", &gpu.read(&listed, 1), &[twin_listed])?;
+    same("dispatches", &gpu.read(&dispatches, 1), &[twin_dispatches])?;
     same("frame", &gpu.read(&frame, 1), &[twin_frame])?;
     same("counters", &gpu.read(&counters, 1), &[twin_counters])
 }
@@ -142,7 +142,7 @@ fn what_appears_completes_what_was_drawn_first() {
         let mut frame = Frame { most_groups: 1 << 16, ..Frame::default() };
         let of = (counts.as_slice(), starts.as_slice());
         let (runs, _) = twin::parts::part_runs(list, &parts.in_sight, of, &mut frame, &mut counters);
-        (0..frame.patch_instances_in_sight).map(|place| patch_instance_at(&runs, place)).collect::<Vec<_>>()
+        (0..frame.listed_patch_instances).map(|place| patch_instance_at(&runs, place)).collect::<Vec<_>>()
     };
     // before the test, `now` is the result of the frame before
     let (first, appearing, all) =
@@ -163,7 +163,7 @@ fn compare_cull(gpu: &Gpu, parts: &Parts, given: &Farthest, expected: &Farthest)
     let pass = CullParts::new(gpu.device()).unwrap();
     let bindings =
         cull_parts::Bindings { frame: &frame, parts_in_sight: &parts_in_sight, farthest: &farthest, hidden_now: &now };
-    gpu.run(|cmd| pass.record(cmd, &bindings, PartList { parts: parts.in_sight.len() as u32, list: LIST_ALL }));
+    gpu.run(|cmd| pass.record(cmd, &bindings, parts.in_sight.len() as u32));
     let mut twin = parts.now.clone();
     for part in &parts.in_sight {
         twin[part.instance as usize] = u32::from(twin::parts::cull_part(part, expected));

@@ -44,7 +44,7 @@ pub(super) fn constants(
         chord_px: budget.chord as f32,
         table_density: table.map_or(0.0, TableView::density),
         fixed_factor: input.settings.levels.fixed().unwrap_or(0),
-        patch_instances_in_sight: in_sight.patch_instances,
+        listed_patch_instances: in_sight.patch_instances,
         run_count: in_sight.runs.len() as u32,
         cell_count: counts.cells,
         bin_count: counts.bins,

@@ -121,7 +121,7 @@ impl Slot {
             write_views(buffer, loaded, input.camera.pixel_matrix(), &in_sight);
         }
         self.write_in_sight(device, &in_sight)?;
-        self.write_parts(device, loaded, (input.camera, &in_sight))?;
+        self.write_parts(device, loaded, (input.camera, &in_sight), history)?;
         self.centres.write(device, &loaded.data, input.camera, &mut self.retired)?;
         let centre = constants(device, loaded, input, formats, (history.table.as_ref(), &in_sight));
         self.constants.write(0, &[centre]);
@@ -156,18 +156,24 @@ impl Slot {
         Ok(())
     }
 
-    /// Writes the placed parts in sight, for occlusion culling of whole parts.
+    /// Writes the placed parts in sight, for occlusion culling of whole parts. A frame that reuses its view does not
+    /// read them, and only a frame that tests for occlusion reads where they may be drawn.
     fn write_parts(
         &mut self,
         device: &Device,
         loaded: &Loaded,
         (camera, in_sight): (&Camera, &InSight),
+        history: &History,
     ) -> Result<(), GpuError> {
         if !loaded.counts.hides_parts {
             self.retired.extend(self.parts_in_sight.take().map(Retired::Buffer));
             return Ok(());
         }
-        let parts = loaded.data.parts_in_sight(camera, &in_sight.parts);
+        if history.reuses_view {
+            return Ok(());
+        }
+        let tested = history.occlusion.tests().then_some(camera);
+        let parts = loaded.data.parts_in_sight(tested, &in_sight.parts);
         let bytes = size_of_val(parts.as_slice()) as u64;
         if self.parts_in_sight.as_ref().is_none_or(|b| b.bytes() < bytes) {
             let made = upload_buffer(device, "parts in sight", bytes.next_power_of_two())?;

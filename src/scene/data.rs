@@ -163,7 +163,7 @@ impl SceneData {
             self.outside = Vec::new();
         }
         if self.hides_parts() {
-            self.find_drawn();
+            self.find_drawn_boxes();
         }
         self
     }

@@ -14,7 +14,7 @@
 
 use super::data::SceneData;
 use super::view::view;
-use crate::abi::{self, PatchRun};
+use crate::abi::{self, FaceInstance, PatchRun};
 use crate::model::Camera;
 use glam::{DAffine3, DMat4, DVec3, DVec4};
 use rayon::prelude::*;
@@ -71,19 +71,34 @@ pub(crate) struct InSight {
     pub patch_instances: u32,
 }
 
+/// The faces of a placed part.
+struct PlacedFaces<'a> {
+    first: FaceInstance,
+    /// The same for copies of a part: its first face, and how many it has.
+    part: (u32, usize),
+    patches: &'a [abi::Patch],
+}
+
+/// The faces of each placed part that has some, from the last part to the first.
+fn placed_faces(data: &SceneData) -> impl Iterator<Item = PlacedFaces<'_>> {
+    data.face_instances.chunk_by(|a, b| a.instance == b.instance).rev().map(move |faces| {
+        let (first, last) = (faces[0], faces[faces.len() - 1]);
+        let from = data.faces[first.face as usize].first_patch as usize;
+        let to = data.faces.get(last.face as usize + 1).map_or(data.patches.len(), |next| next.first_patch as usize);
+        PlacedFaces { first, part: (first.face, faces.len()), patches: &data.patches[from..to] }
+    })
+}
+
 /// The boxes of all placed parts of a scene.
 pub(super) fn boxes(data: &SceneData) -> Vec<PlacedBox> {
     let mut boxes = vec![PlacedBox::default(); data.instances.len()];
     let mut known: HashMap<(u32, usize), (DVec3, DVec3)> = HashMap::new();
     let patch_instances = data.patch_instances.len() as u32;
     let mut end = patch_instances;
-    for faces in data.face_instances.chunk_by(|a, b| a.instance == b.instance).rev() {
-        let (first, last) = (faces[0], faces[faces.len() - 1]);
-        let from = data.faces[first.face as usize].first_patch as usize;
-        let to = data.faces.get(last.face as usize + 1).map_or(data.patches.len(), |next| next.first_patch as usize);
-        let (low, high) = *known.entry((first.face, faces.len())).or_insert_with(|| {
+    for PlacedFaces { first, part, patches } in placed_faces(data) {
+        let (low, high) = *known.entry(part).or_insert_with(|| {
             let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-            data.patches[from..to].iter().fold(nothing, |(low, high), patch| {
+            patches.iter().fold(nothing, |(low, high), patch| {
                 let [least, most] = [patch.box_min, patch.box_max].map(|p| DVec3::from(p.map(f64::from)));
                 (low.min(least), high.max(most))
             })

@@ -188,7 +188,7 @@ impl Joinable {
         let hides = self.hides || data.hides_with(patches);
         let hides_parts = self.hides_parts || data.hides_parts_with([parts, patches]);
         if self.hides_parts {
-            data.find_drawn();
+            data.find_drawn_boxes();
         }
         let is_same = hides == self.hides && hides_parts == self.hides_parts;
         (self.kinds.has(Kinds::of(&data)) && is_same).then_some(data)

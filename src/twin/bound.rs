@@ -11,7 +11,7 @@ use glam::Vec3;
 /// `tau_u | tau_v << 16` of each patch instance; 0 for a patch instance that is not visible. Counts factors above
 /// [`MOST_SEGMENTS`] in `counters.clamps`.
 pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u32> {
-    (0..frame.patch_instances_in_sight as usize)
+    (0..frame.listed_patch_instances as usize)
         .map(|patch_instance| {
             let (placed, face, patch) = scene.patch_instance(patch_instance);
             let view = &scene.views[placed.instance as usize];

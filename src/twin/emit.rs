@@ -37,7 +37,7 @@ pub fn emit(
     (sub_patches, draws): (&mut [SubPatch], &mut [Draw]),
     counters: &mut Counters,
 ) {
-    let n = frame.patch_instances_in_sight as usize;
+    let n = frame.listed_patch_instances as usize;
     counters.plain += sub_patch_starts[n];
     counters.trimmed += sub_patch_starts[2 * n] - sub_patch_starts[n];
     if sub_patch_starts[2 * n] > frame.sub_patch_capacity {

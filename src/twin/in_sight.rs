@@ -1,4 +1,4 @@
-//! Twin of `glsl/include/in_sight.glsl`: the patch instances in sight, numbered without gaps.
+//! Twin of `glsl/include/in_sight.glsl`: the listed patch instances, numbered without gaps.
 
 use crate::abi::PatchRun;
 

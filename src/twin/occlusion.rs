@@ -23,8 +23,10 @@
 //! The push in units of u depends on the place; here it is computed at the cell's corners and doubled. For faces with
 //! cells that are left out ([`is_outside`]), all sides of a cell count as borders.
 //!
-//! **A fragment that fails the depth test changes nothing:** neither visibility nor depth, and a skirt counts only
-//! before the visible surface. Fronts are moved back, never forward, so they are not nearer than this bound.
+//! **A fragment that fails the depth test changes neither visibility nor depth.** Fronts are moved back, never forward,
+//! so they are not nearer than this bound. A skirt stores its depth without a depth test. Each pixel has the nearest
+//! one of its skirts, and pass `gap_find` compares it with the visible surface, so a skirt behind that surface does not
+//! count. `docs/design/culling.md` has the two exceptions.
 //!
 //! Rounding is covered by a pixel on each side, and by `DEPTH_ROUNDING` of the depth.
 

@@ -4,7 +4,7 @@
 use super::grid::grid_of;
 use super::occlusion::Farthest;
 use crate::abi::constants::part_runs::{SCAN_BLOCK, THREADS};
-use crate::abi::{Counters, Frame, LIST_ALL, LIST_APPEARING, LIST_FIRST, ListedPatches, PartInSight, PatchRun};
+use crate::abi::{Counters, Frame, LIST_ALL, LIST_APPEARING, LIST_FIRST, ListDispatches, PartInSight, PatchRun};
 
 /// Whether a list has a part that was hidden `before` and is hidden `now`.
 pub fn is_listed(list: u32, before: bool, now: bool) -> bool {
@@ -54,10 +54,10 @@ pub fn part_runs(
     (counts, starts): (&[u32], &[u32]),
     frame: &mut Frame,
     counters: &mut Counters,
-) -> (Vec<PatchRun>, ListedPatches) {
+) -> (Vec<PatchRun>, ListDispatches) {
     let n = parts.len();
     let (patch_instances, all) = (starts[n], starts[2 * n]);
-    frame.patch_instances_in_sight = patch_instances;
+    frame.listed_patch_instances = patch_instances;
     frame.run_count = all - patch_instances;
     if list != LIST_ALL {
         counters.listed_patches += patch_instances;
@@ -67,7 +67,7 @@ pub fn part_runs(
     let scanned = 2 * patch_instances + 1;
     let groups = |threads: u32, group: u32| grid_of(frame, threads.div_ceil(group));
     let (threads, blocks) = (groups(patch_instances, THREADS), groups(scanned, SCAN_BLOCK));
-    (begins.map(run).collect(), ListedPatches { threads, blocks, scanned })
+    (begins.map(run).collect(), ListDispatches { threads, blocks, scanned })
 }
 
 /// Whether a part in sight is hidden behind the farthest depths.

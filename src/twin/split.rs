@@ -42,7 +42,7 @@ pub struct Split {
 
 /// Decides the segments of each patch instance's sides from the factors of all patches of its part.
 pub fn split(frame: &Frame, scene: &Scene<'_>, taus: &[u32]) -> Split {
-    let n = frame.patch_instances_in_sight as usize;
+    let n = frame.listed_patch_instances as usize;
     let mut out =
         Split { factors: Vec::with_capacity(n), sub_patch_counts: vec![0; 2 * n], vertex_counts: vec![0; 2 * n] };
     for patch_instance in 0..n {

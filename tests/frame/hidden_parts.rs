@@ -3,10 +3,11 @@
 
 use crate::shapes;
 use crate::support::{assert_identical, assert_silent, render, watched_with};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 use selvedge::headless::HeadlessRenderer;
-use selvedge::model::{Camera, Instance, Model, Projection};
+use selvedge::model::{Camera, Instance, LoopAt, Model, Part, Projection};
 use selvedge::picture::{EdgeSettings, Picture, SceneSettings, Smooth, TrimWay};
+use std::f64::consts::FRAC_PI_2;
 
 const SIZE: (u32, u32) = (200, 150);
 /// Parts along each side of the hall.
@@ -21,14 +22,25 @@ fn middle() -> DVec3 {
     DVec3::splat(0.5 * APART * f64::from(SIDE - 1))
 }
 
+/// Where the block is: before the hall.
+fn place_of_block() -> DAffine3 {
+    DAffine3::from_translation(middle() - DVec3::Y * (middle().y + BLOCK_HALF + 8.0))
+}
+
 /// A block before a hall of cubes and plates. The block is instance 0.
 pub fn hall() -> Model {
-    let mut model = Model::default();
-    model.parts.extend(shapes::cube().parts.into_iter().chain(shapes::plate().parts));
+    let block = place_of_block() * DAffine3::from_scale(DVec3::splat(BLOCK_HALF / shapes::CUBE_HALF));
+    hall_of([shapes::cube(), shapes::plate()], (shapes::cube(), block))
+}
+
+/// Something before a hall of two shapes, of which the first is three times in four. It is instance 0, and its part is
+/// the last one.
+fn hall_of(shapes: [Model; 2], (before, place): (Model, DAffine3)) -> Model {
+    let parts: Vec<Part> = shapes.into_iter().chain([before]).flat_map(|shape| shape.parts).collect();
+    assert_eq!(parts.len(), 3);
+    let mut model = Model { parts, ..Model::default() };
     let placed = |part: usize, transform: DAffine3| Instance { part, ..shapes::placed(transform, None) };
-    let scale = BLOCK_HALF / shapes::CUBE_HALF;
-    let before = middle() - DVec3::Y * (middle().y + BLOCK_HALF + 8.0);
-    model.instances.push(placed(0, DAffine3::from_translation(before) * DAffine3::from_scale(DVec3::splat(scale))));
+    model.instances.push(placed(2, place));
     for nth in 0..SIDE * SIDE * SIDE {
         let place = APART * DVec3::new((nth % SIDE).into(), (nth / SIDE % SIDE).into(), (nth / SIDE / SIDE).into());
         let turned = DAffine3::from_rotation_y(0.7 * f64::from(nth)) * DAffine3::from_rotation_x(0.4);
@@ -50,8 +62,13 @@ fn from(eye: DVec3) -> Camera {
 }
 
 /// From before the block, `aside` of its middle.
-fn before_the_block(aside: DVec3) -> Camera {
+pub fn before_the_block(aside: DVec3) -> Camera {
     from(middle() - DVec3::Y * 220.0 + aside)
+}
+
+/// From the other side, where nothing hides the hall.
+pub fn behind_the_hall() -> Camera {
+    from(middle() + DVec3::new(10.0, 220.0, 0.0))
 }
 
 /// The picture of a renderer that has drawn nothing else.
@@ -87,7 +104,7 @@ fn nothing_shows_that_parts_are_left_out() {
     // before the block; aside in small steps, so that parts appear at its border; from the side and from behind, where
     // everything appears in one frame; before it again; in a parallel view; among the parts
     let steps = [0.0, 1.0, 90.0, 93.0, 97.0, 130.0].map(|x| before_the_block(DVec3::X * x));
-    let around = [DVec3::new(-200.0, 0.0, 30.0), DVec3::new(10.0, 220.0, 0.0)].map(|eye| from(middle() + eye));
+    let around = [from(middle() + DVec3::new(-200.0, 0.0, 30.0)), behind_the_hall()];
     let again = before_the_block(DVec3::Z);
     let parallel = Camera { projection: Projection::Orthographic { height: 90.0 }, ..again };
     let within = from(DVec3::new(4.5, 4.5, 4.5));
@@ -155,23 +172,112 @@ fn what_lay_behind_a_part_that_moves_is_seen_at_once() {
     assert_silent(other);
 }
 
-/// Parts that leave the picture and return, hidden and shown by the host.
+/// Parts that are hidden, leave the picture and return when nothing hides them any more.
 #[test]
 fn parts_that_return_are_seen() {
     let model = hall();
-    let camera = before_the_block(DVec3::X * 95.0);
+    let mut without = model.clone();
+    without.instances.remove(0);
+    let camera = before_the_block(DVec3::ZERO);
     let beside = Camera { target: camera.eye - DVec3::Y, ..camera };
     let mut renderer = watched_with(&model, editable());
-    let first = render(&mut renderer, &camera);
-    for _ in 0..2 {
-        for _ in 0..2 {
-            assert_identical(&render(&mut renderer, &camera), &first, "again");
-        }
+    let mut other = watched_with(&model, editable());
+    let with_block = alone(&mut other, &model, editable(), &camera);
+    let without_block = alone(&mut other, &without, editable(), &camera);
+    for round in 0..2 {
+        let pictures = [(); 4].map(|()| render(&mut renderer, &camera));
+        pictures.iter().for_each(|picture| assert_identical(picture, &with_block, &format!("with it, {round}")));
+        let hidden = pictures[3].stats.hidden_parts;
+        assert!(hidden > 150, "{hidden} parts are hidden before they leave the picture, {round}");
         render(&mut renderer, &beside);
         renderer.set_visible(0, false).unwrap();
         render(&mut renderer, &beside);
-        assert!(render(&mut renderer, &camera).face != first.face, "without the block, more is seen");
+        assert_identical(&render(&mut renderer, &camera), &without_block, &format!("without it, {round}"));
         renderer.set_visible(0, true).unwrap();
+        assert_identical(&render(&mut renderer, &camera), &with_block, &format!("with it again, {round}"));
     }
     assert_silent(renderer);
+    assert_silent(other);
+}
+
+/// A picture of another size begins anew, and hides parts, too.
+#[test]
+fn in_a_picture_of_another_size_parts_are_hidden_too() {
+    let small = |camera: Camera| Camera { size: (96, 72), ..camera };
+    let views = [DVec3::ZERO, DVec3::X].map(before_the_block);
+    let small_views = [DVec3::X, DVec3::X * 2.0].map(|aside| small(before_the_block(aside)));
+    let views: Vec<Camera> = views.into_iter().chain(small_views).chain(views).collect();
+    let pictures = same_as_alone(&hall(), editable(), &views);
+    for view in [1, 3, 5] {
+        let hidden = pictures[view][1].stats.hidden_parts;
+        assert!(hidden > 150, "{hidden} parts are hidden in view {view}");
+    }
+}
+
+/// Rational patches, trimmed and not, behind a mesh.
+#[test]
+fn curved_parts_behind_a_mesh_are_hidden() {
+    let ball = place_of_block() * DAffine3::from_scale(DVec3::splat(38.0));
+    let model = hall_of([shapes::sphere(), shapes::cylinder()], (shapes::ball(), ball));
+    let steps = [0.0, 1.0, 40.0, 60.0].map(|x| before_the_block(DVec3::X * x));
+    let views: Vec<Camera> = steps.into_iter().chain([behind_the_hall(), steps[0]]).collect();
+    let pictures = same_as_alone(&model, editable(), &views);
+    let hidden: Vec<u64> = pictures.iter().map(|[_, second]| second.stats.hidden_parts).collect();
+    assert!(hidden[1] > 150 && hidden[4] + 50 < hidden[1], "{hidden:?} parts are hidden");
+}
+
+/// A large plate stands before the hall. Its hole moves, and shows other parts in the frame of the edit.
+#[test]
+fn an_edit_shows_the_parts_that_lay_behind() {
+    let scale = DAffine3::from_scale(DVec3::splat(30.0 / shapes::PLATE_HALF));
+    let place = DAffine3::from_translation(middle() - DVec3::Y * (middle().y + 12.0));
+    let upright = place * DAffine3::from_rotation_x(FRAC_PI_2) * scale;
+    let mut changed = hall_of([shapes::cube(), shapes::plate()], (shapes::plate(), upright));
+    let camera = before_the_block(DVec3::ZERO);
+    let mut edited = watched_with(&changed, editable());
+    let mut other = watched_with(&changed, editable());
+    let [_, _, mut last] = [(); 3].map(|()| render(&mut edited, &camera));
+    assert!(last.stats.hidden_parts > 50, "{} parts are hidden", last.stats.hidden_parts);
+    let at = LoopAt { part: 2, face: 0, trim_loop: 1 };
+    for by in [DVec2::new(-1.0, 0.2), DVec2::new(0.6, -0.9), DVec2::new(0.2, 0.5)] {
+        let moved = changed.parts[2].faces[0].loops[1].translated(by).unwrap();
+        edited.edit_loop(at, &moved).unwrap();
+        changed.parts[2].faces[0].loops[1] = moved;
+        let expected = alone(&mut other, &changed, editable(), &camera);
+        assert!(expected.face != last.face, "hole by {by}: the same is seen");
+        for nth in 0..2 {
+            last = render(&mut edited, &camera);
+            assert_identical(&last, &expected, &format!("hole by {by}, picture {nth}"));
+        }
+        assert!(last.stats.hidden_parts > 50, "hole by {by}: {} parts are hidden", last.stats.hidden_parts);
+    }
+    assert_silent(edited);
+    assert_silent(other);
+}
+
+/// A view so close that the model is cut, and back.
+#[test]
+fn after_a_close_view_parts_are_hidden_again() {
+    let model = hall();
+    let settings = SceneSettings::default();
+    let afar = before_the_block(DVec3::ZERO);
+    // a corner of the block
+    let target = model.instances[0].transform.transform_point3(DVec3::splat(-shapes::CUBE_HALF));
+    let close = Camera { eye: target + DVec3::new(0.001, -0.003, 0.002), target, depth_range: (1e-4, 25.0), ..afar };
+    let mut renderer = watched_with(&model, settings);
+    let mut other = watched_with(&model, settings);
+    let [of_afar, of_close] = [afar, close].map(|camera| alone(&mut other, &model, settings, &camera));
+    assert!(of_close.face.iter().any(|face| *face != 0), "the corner is seen");
+    assert_ne!(of_close.stats.patches, of_afar.stats.patches, "nothing was cut out");
+    for round in 0..2 {
+        let pictures = [(); 3].map(|()| render(&mut renderer, &afar));
+        pictures.iter().for_each(|picture| assert_identical(picture, &of_afar, &format!("from afar, {round}")));
+        let hidden = pictures[2].stats.hidden_parts;
+        assert!(hidden > 150, "{hidden} parts are hidden, {round}");
+        for nth in 0..2 {
+            assert_identical(&render(&mut renderer, &close), &of_close, &format!("close up, {round}, {nth}"));
+        }
+    }
+    assert_silent(renderer);
+    assert_silent(other);
 }

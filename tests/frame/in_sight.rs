@@ -156,6 +156,7 @@ fn a_hundred_thousand_parts() {
             assert_identical(&draw(&mut renderer, &camera), &draw(&mut alone, &camera), &format!("picture {nth}"));
         }
     }
+    // the frustum alone leaves out so many: `hidden_parts.rs` tests what occlusion leaves out
     let stats = draw(&mut renderer, &corner).stats;
     assert!(stats.listed_patches < stats.patches / 50, "{} of {} patches", stats.listed_patches, stats.patches);
     // the view moves, so every pass runs; the least time of each is that without other programs

@@ -1,13 +1,14 @@
 //! Models come to a living scene and go. Every image is the same bit for bit as that of the whole, uploaded anew.
 
 use crate::cages;
+use crate::hidden_parts::{before_the_block, behind_the_hall, hall};
 use crate::living::{SIZE, assert_all_identical, camera, draw, scene, step, ways};
 use crate::shapes::{self, solids};
 use crate::support::{assert_identical, assert_silent, watched_with};
 use glam::{DAffine3, DVec3};
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::{Camera, Instance, Model};
-use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
+use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings, TrimWay};
 use selvedge::renderer::{InstanceError, RemoveError, RenderError};
 
 /// Rows of everything, with closed parts of several faces among them.
@@ -144,6 +145,45 @@ fn a_removed_model_is_as_one_that_was_never_there() {
         assert_silent(renderer);
         assert_silent(fresh);
     }
+}
+
+/// Among the cubes and plates of [`hall`], which lie on a grid of 9.
+fn among_hidden_parts() -> Model {
+    let mut model = shapes::cube();
+    let place = |n: u32| DVec3::new(4.5 + 9.0 * f64::from(n), 22.5, 22.5);
+    model.instances = (0..4).map(|n| shapes::placed(DAffine3::from_translation(place(n)), None)).collect();
+    model
+}
+
+/// Parts that come are hidden as wholes like the others, appear like the others, and go.
+#[test]
+fn what_comes_behind_a_block_is_hidden_with_the_parts_there() {
+    let (base, added) = (hall(), among_hidden_parts());
+    let settings = SceneSettings { trim: TrimWay::Exact, ..SceneSettings::default() };
+    let mut renderer = watched_with(&base, settings);
+    let mut fresh = watched_with(&base, settings);
+    let [before, behind] = [before_the_block(DVec3::ZERO), behind_the_hall()];
+    // every image of the renderer, and the number of parts that are hidden in the third
+    let mut hidden_of = |renderer: &mut HeadlessRenderer, whole: &Model, what: &str| {
+        fresh.upload_with(whole, settings).unwrap();
+        let [of_before, of_behind] = [before, behind].map(|camera| draw(&mut fresh, &camera));
+        let pictures = [(); 3].map(|()| draw(renderer, &before));
+        pictures.iter().for_each(|picture| assert_all_identical(picture, &of_before, what));
+        assert_all_identical(&draw(renderer, &behind), &of_behind, &format!("{what}, from behind"));
+        assert_all_identical(&draw(renderer, &before), &of_before, &format!("{what}, again"));
+        pictures[2].stats.hidden_parts
+    };
+    let hidden = hidden_of(&mut renderer, &base, "before");
+    assert!(hidden > 150, "{hidden} parts are hidden");
+    let id = renderer.add(&added).unwrap();
+    let joined = draw(&mut renderer, &before).stats.edit_bytes;
+    assert!(joined > 0, "the scene was made anew");
+    let with_added = hidden_of(&mut renderer, &both(&base, &added), "added");
+    assert_eq!(with_added, hidden + added.instances.len() as u64, "all of them are hidden");
+    renderer.remove(id).unwrap();
+    assert_eq!(hidden_of(&mut renderer, &base, "removed"), hidden);
+    assert_silent(renderer);
+    assert_silent(fresh);
 }
 
 /// What is copied for a model, and what is made, does not depend on the scene that it comes to.

@@ -98,7 +98,7 @@ fn only_a_scene_with_meshes_has_what_they_need() {
 
 /// Occlusion culling of whole parts exists only in scenes of many placed parts that have several patches each.
 #[test]
-fn only_a_scene_of_many_parts_knows_which_parts_lie_behind_others() {
+fn only_a_scene_of_many_parts_has_occlusion_culling_of_parts() {
     let of_parts = [
         "part counts",
         "part runs",
@@ -110,7 +110,7 @@ fn only_a_scene_of_many_parts_knows_which_parts_lie_behind_others() {
         "counts of parts",
         "starts of parts",
         "runs of listed parts",
-        "listed patches",
+        "dispatches of listed parts",
     ];
     let copies = |shape: Model, count: u32| {
         let place = |n: u32| DAffine3::from_translation(DVec3::X * 9.0 * f64::from(n));
@@ -128,7 +128,7 @@ fn only_a_scene_of_many_parts_knows_which_parts_lie_behind_others() {
 
 /// Occlusion culling exists only in scenes with many patches.
 #[test]
-fn only_a_scene_of_many_patches_knows_which_lie_behind_others() {
+fn only_a_scene_of_many_patches_has_occlusion_culling() {
     let of_hiding = ["hidden patches", "farthest depths", "patches outside"];
     let passes = ["cull early", "depth pyramid", "cull late", "reset (draws)"];
     let is_of_hiding = |name: &str| of_hiding.contains(&name) || passes.contains(&name);

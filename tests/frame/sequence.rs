@@ -1,6 +1,7 @@
 //! Several frames in flight: the pictures of one frame after another, bit for bit.
 
 use crate::hidden::crowd;
+use crate::hidden_parts::{before_the_block, behind_the_hall, hall};
 use crate::room::plates;
 use crate::shapes;
 use crate::support::{assert_identical, assert_silent, perspective, watched, watched_with};
@@ -78,6 +79,17 @@ fn patches_that_lie_behind_others() {
     let model = crowd();
     let settings = SceneSettings { trim: TrimWay::Exact, ..SceneSettings::default() };
     check(&model, settings, &turn(&model, 9), Outputs::ALL);
+}
+
+/// Hidden as wholes; they appear while other frames are in flight.
+#[test]
+fn placed_parts_that_lie_behind_others() {
+    let settings = SceneSettings { trim: TrimWay::Exact, ..SceneSettings::default() };
+    let steps = [0.0, 0.0, 1.0, 90.0, 93.0].map(|x| before_the_block(DVec3::X * x));
+    let cameras: Vec<Camera> = steps.into_iter().chain([behind_the_hall()]).chain(steps[1..].to_vec()).collect();
+    let pictures = check(&hall(), settings, &cameras, Outputs::ALL);
+    let hidden: Vec<u64> = pictures.iter().map(|picture| picture.stats.hidden_parts).collect();
+    assert!(hidden.iter().any(|parts| *parts > 150) && hidden[5] < 100, "{hidden:?} parts are hidden");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! A compute pipeline whose bindings, workgroup size and constants come from its shader.
 
-use crate::abi::ListedPatches;
+use crate::abi::ListDispatches;
+use crate::abi::constants::part_runs::THREADS;
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Resource};
 use crate::shaders::Shader;
 use std::mem::offset_of;
@@ -13,7 +14,7 @@ pub(crate) const MOST_THREADS: u32 = 1 << 31;
 pub(crate) enum Threads<'a> {
     /// Known on the CPU.
     Host(u32),
-    /// Counted by an earlier pass, which wrote [`ListedPatches`].
+    /// Counted by an earlier pass, which wrote [`ListDispatches`].
     Gpu(&'a Buffer),
 }
 
@@ -67,11 +68,15 @@ impl Kernel {
     }
 
     /// As [`record`](Self::record), for a number of threads that may come from the GPU.
+    ///
+    /// # Panics
+    /// If the GPU counted workgroups of another size than the shader has.
     pub(crate) fn record_threads(&self, cmd: &Commands<'_>, resources: &[Resource<'_>], threads: Threads<'_>) {
         match threads {
             Threads::Host(threads) => self.record(cmd, resources, threads),
-            Threads::Gpu(listed) => {
-                self.record_indirect(cmd, resources, (listed, offset_of!(ListedPatches, threads) as u64));
+            Threads::Gpu(dispatches) => {
+                assert_eq!(self.group, [THREADS, 1, 1], "pass `part_runs` counts workgroups of {THREADS} threads");
+                self.record_indirect(cmd, resources, (dispatches, offset_of!(ListDispatches, threads) as u64));
             }
         }
     }

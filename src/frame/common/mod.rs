@@ -9,7 +9,7 @@ pub(crate) mod room;
 pub mod scan;
 
 use super::Frame;
-use crate::abi::{Counters, ListedPatches};
+use crate::abi::{Counters, ListDispatches};
 use crate::gpu::{Access, Buffer, Commands, Device, GpuError, barrier};
 use crate::picture::TakenWay;
 use crate::scene::SceneData;
@@ -36,10 +36,10 @@ impl Passes {
     }
 }
 
-/// The patch instances that passes over patches look at: those of the placed parts in sight, or of listed ones
-/// (`occlusion/parts.rs`).
+/// The listed patch instances, which passes over patches look at: those of all placed parts in sight, or of a list of
+/// parts (`occlusion/parts.rs`).
 #[derive(Clone, Copy)]
-pub(crate) struct Listed<'a> {
+pub(crate) struct PatchList<'a> {
     /// Their [`PatchRun`](crate::abi::PatchRun)s.
     pub runs: &'a Buffer,
     /// One for each of them.
@@ -103,18 +103,18 @@ impl Common {
         threads: Threads<'_>,
         most: u32,
     ) {
-        let listed = match threads {
+        let dispatches = match threads {
             Threads::Host(patch_instances) => return self.scan(cmd, counts, starts, 2 * patch_instances),
-            Threads::Gpu(listed) => listed,
+            Threads::Gpu(dispatches) => dispatches,
         };
         let (sums, w) = (&self.sums, Access::COMPUTE_WRITE);
         cmd.after(w, w);
         // the start of one more element is the total; the sum that includes that element is not used
         let count = scan::Count::Gpu {
-            counts: listed,
-            index: (offset_of!(ListedPatches, scanned) / size_of::<u32>()) as u32,
-            arguments: listed,
-            offset: offset_of!(ListedPatches, blocks) as u64,
+            counts: dispatches,
+            index: (offset_of!(ListDispatches, scanned) / size_of::<u32>()) as u32,
+            arguments: dispatches,
+            offset: offset_of!(ListDispatches, blocks) as u64,
             capacity: 2 * most + 1,
         };
         let total_index = 2 * most + 1;

@@ -28,6 +28,9 @@ use crate::shaders::{self, constant};
 /// Elements that one workgroup scans.
 pub const BLOCK: u32 = 1024;
 
+// pass `part_runs` counts workgroups of prefix sums
+const _: () = assert!(BLOCK == crate::abi::constants::part_runs::SCAN_BLOCK);
+
 /// Most elements. The elements that fill the last row of workgroups have 32-bit numbers, too.
 pub const MAX_COUNT: u32 = 1 << 31;
 

@@ -21,7 +21,7 @@ pub(crate) struct Bindings<'a> {
     /// `hidden`.
     pub counters: &'a Buffer,
     /// [`PatchRun`](crate::abi::PatchRun)s of the listed patch instances.
-    pub in_sight: &'a Buffer,
+    pub runs: &'a Buffer,
 }
 
 impl CullEarly {
@@ -35,7 +35,7 @@ impl CullEarly {
 
     /// One thread for each listed patch instance.
     pub(crate) fn record<'t>(&self, cmd: &Commands<'_>, b: &Bindings<'_>, threads: impl Into<Threads<'t>>) {
-        let resources = [b.frame, b.hidden, b.taus, b.counters, b.in_sight].map(Into::into);
+        let resources = [b.frame, b.hidden, b.taus, b.counters, b.runs].map(Into::into);
         self.kernel.record_threads(cmd, &resources, threads.into());
     }
 }

@@ -38,7 +38,7 @@ pub(crate) struct Bindings<'a> {
     /// `hidden`.
     pub counters: &'a Buffer,
     /// [`PatchRun`](crate::abi::PatchRun)s of the listed patch instances.
-    pub in_sight: &'a Buffer,
+    pub runs: &'a Buffer,
 }
 
 impl CullLate {
@@ -68,7 +68,7 @@ impl CullLate {
             b.hidden.into(),
             b.outside.into(),
             b.counters.into(),
-            b.in_sight.into(),
+            b.runs.into(),
         ];
         self.kernel.record_threads(cmd, &resources, threads.into());
     }

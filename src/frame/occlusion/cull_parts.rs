@@ -2,7 +2,6 @@
 //!
 //! Reads: `frame`, `parts_in_sight`, `farthest`. Writes: `hidden_now`. Twin: `src/twin/parts.rs`.
 
-use crate::abi::PartList;
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
@@ -29,9 +28,9 @@ impl CullParts {
     }
 
     /// One thread for each part in sight.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, list: PartList) {
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, parts: u32) {
         let resources = [b.frame, b.parts_in_sight, b.farthest, b.hidden_now].map(Into::into);
-        self.kernel.bind(cmd, &resources, bytemuck::bytes_of(&list));
-        self.kernel.dispatch(cmd, list.parts);
+        self.kernel.bind(cmd, &resources, bytemuck::bytes_of(&parts));
+        self.kernel.dispatch(cmd, parts);
     }
 }

@@ -12,8 +12,9 @@
 //!
 //! The picture is the same, bit for bit, as with every patch drawn, whatever the previous frame contained. A culled
 //! patch would fail the depth test at each pixel, and its skirts lie behind visible surfaces; `twin::occlusion` has the
-//! derivation. One exception: of faces at exactly the same depth, another one may be drawn first and be visible. If the
-//! view has not changed since the last occlusion test, the test is skipped.
+//! derivation. One exception: of faces at exactly the same depth, another one may be drawn first and be visible; two
+//! rare ones are in `docs/design/culling.md`. If the view has not changed since the last occlusion test, the test is
+//! skipped.
 
 pub(crate) mod cull_early;
 pub(crate) mod cull_late;
@@ -24,7 +25,7 @@ pub(crate) mod part_runs;
 mod parts;
 
 use super::common::room::Room;
-use super::common::{Listed, reset};
+use super::common::{PatchList, reset};
 use super::{Frame, WRITE_TO_READ};
 use crate::abi::{BLOCK, LIST_FIRST, SQUARE, TILE};
 use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, barrier};
@@ -43,6 +44,13 @@ pub(crate) enum OcclusionState {
     Moved,
     /// The result of a test for this view.
     Same,
+}
+
+impl OcclusionState {
+    /// Whether the frame tests which patches are hidden.
+    pub(crate) fn tests(self) -> bool {
+        matches!(self, Self::Asks | Self::Moved)
+    }
 }
 
 /// The passes of scenes with occlusion culling.
@@ -108,8 +116,8 @@ impl Occlusion {
     }
 
     /// The patch instances of listed parts; `None` if all parts in sight count as listed.
-    pub(super) fn listed(&self) -> Option<Listed<'_>> {
-        self.parts.as_ref().map(Parts::listed)
+    pub(super) fn patch_list(&self) -> Option<PatchList<'_>> {
+        self.parts.as_ref().map(Parts::patch_list)
     }
 
     /// After `bound`: removes patches that were hidden in the previous frame.
@@ -118,15 +126,10 @@ impl Occlusion {
         let (w, r) = WRITE_TO_READ;
         let cleared = Access::TRANSFER_WRITE;
         barrier::buffers(cmd, &[(taus, w, w), (&self.hidden, cleared | w, r), (counters, w, w)]);
-        let Listed { runs: in_sight, threads } = frame.listed();
-        let bindings = cull_early::Bindings { frame: frame.constants, hidden: &self.hidden, taus, counters, in_sight };
+        let PatchList { runs, threads } = frame.patch_list();
+        let bindings = cull_early::Bindings { frame: frame.constants, hidden: &self.hidden, taus, counters, runs };
         self.passes.cull_early.record(cmd, &bindings, threads);
         cmd.after(w, w);
-    }
-
-    /// Whether this frame tests which patches are hidden.
-    pub(super) fn tests(&self, frame: &Frame<'_>) -> bool {
-        matches!(frame.occlusion, OcclusionState::Asks | OcclusionState::Moved)
     }
 
     /// After `visibility`: finds the hidden patches. Draws patches that were not drawn and may be visible.
@@ -145,7 +148,7 @@ impl Occlusion {
                 parts.appear(frame, cmd, &self.hidden);
             }
         }
-        let Listed { runs: in_sight, threads } = frame.listed();
+        let PatchList { runs, threads } = frame.patch_list();
         let bindings = cull_late::Bindings {
             frame: frame.constants,
             views: frame.views,
@@ -160,7 +163,7 @@ impl Occlusion {
             hidden: &self.hidden,
             outside: s.outside(),
             counters: &c.counters,
-            in_sight,
+            runs,
         };
         self.passes.cull_late.record(cmd, &bindings, threads);
         barrier::images(cmd, &[(&v.depth, r, Access::DEPTH_WRITE)]);

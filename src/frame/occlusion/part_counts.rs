@@ -6,8 +6,8 @@
 //!   begins a run        1   0   0   1        B follows A
 //! ```
 //!
-//! Reads: `parts_in_sight`, `hidden_now`. Writes: `hidden_before`, for the first list; other lists read it. Writes:
-//! `counts`, `counters`. Twin: `src/twin/parts.rs`.
+//! Reads: `parts_in_sight`, `hidden_now`; `hidden_before`, for the second and third list. Writes: `counts`, `counters`;
+//! `hidden_before`, for the first list. Twin: `src/twin/parts.rs`.
 
 use crate::abi::PartList;
 use crate::frame::common::kernel::Kernel;

@@ -2,11 +2,11 @@
 //!
 //! ```text
 //!   counts ──scan──▶ starts ─▶ runs: first place, first patch instance of each     part_counts has the counts
-//!                           ─▶ frame: patch_instances_in_sight, run_count
-//!                           ─▶ listed: dispatches
+//!                           ─▶ frame: listed_patch_instances, run_count
+//!                           ─▶ dispatches
 //! ```
 //!
-//! Reads: `parts_in_sight`, `counts`, `starts`. Writes: `frame`, `runs`, `listed`, `counters`.
+//! Reads: `parts_in_sight`, `counts`, `starts`. Writes: `frame`, `runs`, `dispatches`, `counters`.
 //! Twin: `src/twin/parts.rs`.
 
 use crate::abi::PartList;
@@ -31,8 +31,8 @@ pub(crate) struct Bindings<'a> {
     pub starts: &'a Buffer,
     /// [`PatchRun`](crate::abi::PatchRun)s of the patch instances of listed parts.
     pub runs: &'a Buffer,
-    /// [`ListedPatches`](crate::abi::ListedPatches).
-    pub listed: &'a Buffer,
+    /// [`ListDispatches`](crate::abi::ListDispatches).
+    pub dispatches: &'a Buffer,
     /// `listed_patches`.
     pub counters: &'a Buffer,
 }
@@ -44,7 +44,7 @@ impl PartRuns {
 
     /// One thread for each part in sight; one if there is none.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, list: PartList) {
-        let lists = [b.starts, b.runs, b.listed, b.counters];
+        let lists = [b.starts, b.runs, b.dispatches, b.counters];
         let resources: Vec<_> =
             [b.frame, b.parts_in_sight, b.counts].into_iter().chain(lists).map(Into::into).collect();
         self.kernel.bind(cmd, &resources, bytemuck::bytes_of(&list));

@@ -12,8 +12,9 @@
 //!
 //! A part is hidden if every pixel of a rectangle shows something nearer than a depth. Rectangle and depth come from
 //! a box around everything that is drawn of the part (`scene/in_sight/drawn.rs`). So every fragment of the part would
-//! fail the depth test, and the picture is the same bit for bit. A part that was hidden and is no longer certainly hidden is
-//! drawn in the same frame.
+//! fail the depth test. Its skirts store their depths without a depth test, but they lie behind the visible surface and
+//! do not count there (`twin::occlusion`). So the picture is the same bit for bit, with the exceptions in
+//! `docs/design/culling.md`. A part that was hidden and is no longer certainly hidden is drawn in the same frame.
 //!
 //! The lists are made on the GPU, so passes over patches take their number of threads from there
 //! ([`Threads::Gpu`]).
@@ -22,8 +23,8 @@ use super::cull_early::{self, CullEarly};
 use super::cull_parts::{self, CullParts};
 use super::part_counts::{self, PartCounts};
 use super::part_runs::{self, PartRuns};
-use crate::abi::{LIST_ALL, LIST_APPEARING, ListedPatches, PartList, PatchRun};
-use crate::frame::common::Listed;
+use crate::abi::{LIST_ALL, LIST_APPEARING, ListDispatches, PartList, PatchRun};
+use crate::frame::common::PatchList;
 use crate::frame::common::kernel::Threads;
 use crate::frame::common::room::Room;
 use crate::frame::{Frame, WRITE_TO_READ};
@@ -65,7 +66,7 @@ pub(crate) struct Parts {
     counts: Buffer,
     starts: Buffer,
     runs: Buffer,
-    listed: Buffer,
+    dispatches: Buffer,
 }
 
 impl Parts {
@@ -78,7 +79,7 @@ impl Parts {
             counts: room.words("counts of parts", 2 * n)?,
             starts: room.words("starts of parts", 2 * n + 1)?,
             runs: room.structs::<PatchRun>("runs of listed parts", n)?,
-            listed: room.indirect::<ListedPatches>("listed patches", 1)?,
+            dispatches: room.indirect::<ListDispatches>("dispatches of listed parts", 1)?,
         })
     }
 
@@ -88,8 +89,8 @@ impl Parts {
     }
 
     /// The patch instances of the last list.
-    pub(super) fn listed(&self) -> Listed<'_> {
-        Listed { runs: &self.runs, threads: Threads::Gpu(&self.listed) }
+    pub(super) fn patch_list(&self) -> PatchList<'_> {
+        PatchList { runs: &self.runs, threads: Threads::Gpu(&self.dispatches) }
     }
 
     /// Makes a list, one of `LIST_*`. Passes of the list before may still be at work.
@@ -114,7 +115,7 @@ impl Parts {
             counts: &self.counts,
             starts: &self.starts,
             runs: &self.runs,
-            listed: &self.listed,
+            dispatches: &self.dispatches,
             counters: &common.counters,
         };
         cmd.after(w | Access::UNIFORM_READ, w);
@@ -127,7 +128,7 @@ impl Parts {
         let (parts_in_sight, parts) = frame.parts_in_sight();
         let hidden_now = &self.hidden_now;
         let bindings = cull_parts::Bindings { frame: frame.constants, parts_in_sight, farthest, hidden_now };
-        self.passes.cull.record(cmd, &bindings, PartList { parts, list: LIST_ALL });
+        self.passes.cull.record(cmd, &bindings, parts);
     }
 
     /// After [`cull`](Self::cull): divides the patches of parts that appear, and lists them with the others. `hidden`:
@@ -138,8 +139,8 @@ impl Parts {
         frame.stages.tessellation.divide(frame, cmd);
         cmd.after(w, w);
         let (taus, counters) = (&frame.stages.tessellation.taus, &frame.stages.common.counters);
-        let Listed { runs: in_sight, threads } = self.listed();
-        let bindings = cull_early::Bindings { frame: frame.constants, hidden, taus, counters, in_sight };
+        let PatchList { runs, threads } = self.patch_list();
+        let bindings = cull_early::Bindings { frame: frame.constants, hidden, taus, counters, runs };
         self.passes.cull_all.record(cmd, &bindings, threads);
         self.list(frame, cmd, LIST_ALL);
     }

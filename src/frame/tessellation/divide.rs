@@ -4,7 +4,7 @@ use crate::bindings::Bounded;
 use crate::frame::Frame;
 #[cfg(feature = "baselines")]
 use crate::frame::baselines::slefe;
-use crate::frame::common::Listed;
+use crate::frame::common::PatchList;
 use crate::frame::tessellation::bound;
 use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::scene::{Division, SceneData};
@@ -29,7 +29,7 @@ impl DividePass {
     /// Writes `taus`, and counts clamps.
     pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, taus: &Buffer) {
         let s = frame.scene;
-        let Listed { runs, threads } = frame.listed();
+        let PatchList { runs, threads } = frame.patch_list();
         let bounded = Bounded {
             frame: frame.constants,
             views: frame.views,
@@ -42,7 +42,7 @@ impl DividePass {
             counters: &frame.stages.common.counters,
             cones: s.cones.as_ref(),
             points: &s.points,
-            in_sight: runs,
+            runs,
         };
         match self {
             Self::Bound(pass) => pass.record(cmd, &bounded, threads),

@@ -5,7 +5,7 @@
 //!    draw that covers it      |   0   |        1         |        2
 //! ```
 //!
-//! Reads: `frame`, `factors`, `sub_patch_starts`, `vertex_starts`, `in_sight`.
+//! Reads: `frame`, `factors`, `sub_patch_starts`, `vertex_starts`, `runs`.
 //! Writes: `sub_patches`, `draws`, `counters`.
 //! Twin: `src/twin/emit.rs`.
 
@@ -31,7 +31,7 @@ pub(crate) struct Bindings<'a> {
     pub draws: &'a Buffer,
     pub counters: &'a Buffer,
     /// [`PatchRun`](crate::abi::PatchRun)s of the listed patch instances.
-    pub in_sight: &'a Buffer,
+    pub runs: &'a Buffer,
 }
 
 impl Emit {
@@ -42,7 +42,7 @@ impl Emit {
 
     /// One thread for each listed patch instance.
     pub(crate) fn record<'t>(&self, cmd: &Commands<'_>, b: &Bindings<'_>, threads: impl Into<Threads<'t>>) {
-        let lists = [b.sub_patch_starts, b.vertex_starts, b.sub_patches, b.draws, b.counters, b.in_sight];
+        let lists = [b.sub_patch_starts, b.vertex_starts, b.sub_patches, b.draws, b.counters, b.runs];
         let resources: Vec<_> = [b.frame, b.factors].into_iter().chain(lists).map(Into::into).collect();
         self.kernel.record_threads(cmd, &resources, threads.into());
     }

@@ -17,7 +17,7 @@ pub(crate) mod split;
 
 pub(crate) use capacities::Capacities;
 
-use super::common::Listed;
+use super::common::PatchList;
 use super::common::room::Room;
 use super::{Frame, WRITE_TO_READ};
 use crate::abi::{Factors, SubPatch};
@@ -103,7 +103,7 @@ impl Tessellation {
     pub(super) fn split(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let Some(p) = &self.passes else { return };
         let (s, c) = (frame.scene, &frame.stages.common);
-        let Listed { runs: in_sight, threads } = frame.listed();
+        let PatchList { runs, threads } = frame.patch_list();
         let most = frame.counts.patch_instances;
         let (w, r) = WRITE_TO_READ;
         let split = split::Bindings {
@@ -116,7 +116,7 @@ impl Tessellation {
             factors: &self.factors,
             sub_patch_counts: &self.sub_patch_counts,
             vertex_counts: &self.vertex_counts,
-            in_sight,
+            runs,
             links: s.links.as_ref(),
         };
         p.split.record(cmd, &split, threads);
@@ -134,7 +134,7 @@ impl Tessellation {
             sub_patches: &self.sub_patches,
             draws: &c.draws,
             counters: &c.counters,
-            in_sight,
+            runs,
         };
         p.emit.record(cmd, &emit, threads);
         cmd.after(w, Access::VERTEX_READ | Access::INDIRECT_READ | w);

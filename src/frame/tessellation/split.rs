@@ -10,7 +10,7 @@
 //!    └───────────┴───────────┘
 //! ```
 //!
-//! Reads: `frame`, `face_instances`, `faces`, `patches`, `patch_instances`, `taus`, `in_sight`, `links`.
+//! Reads: `frame`, `face_instances`, `faces`, `patches`, `patch_instances`, `taus`, `runs`, `links`.
 //! Writes: `factors`, `sub_patch_counts`, `vertex_counts`.
 //! Twin: `src/twin/split.rs`.
 
@@ -38,7 +38,7 @@ pub(crate) struct Bindings<'a> {
     /// Vertices, likewise.
     pub vertex_counts: &'a Buffer,
     /// [`PatchRun`](crate::abi::PatchRun)s of the listed patch instances.
-    pub in_sight: &'a Buffer,
+    pub runs: &'a Buffer,
     /// Sides that faces share; `None` without any.
     pub links: Option<&'a Buffer>,
 }
@@ -67,7 +67,7 @@ impl Split {
             b.factors,
             b.sub_patch_counts,
             b.vertex_counts,
-            b.in_sight,
+            b.runs,
         ];
         let resources: Vec<_> = resources.into_iter().chain(b.links).map(Into::into).collect();
         self.kernel.record_threads(cmd, &resources, threads.into());

@@ -9,15 +9,20 @@
 //!     └───────────┘
 //! ```
 //!
-//! Every vertex of a triangle lies on the surface or on such a continuation. So every triangle lies in the box, its
-//! pixels within those of the corners, and its depths behind the nearest. Errors of single precision are covered by
-//! [`SINGLE_ROUNDING`], those of the rasteriser by a pixel on each side and by `DEPTH_ROUNDING`, as for patches
-//! (`twin::occlusion`).
+//! Every vertex of a triangle lies on the surface, on such a continuation, or on the side of a neighbour of the same
+//! part to which its own side is linked (`link.glsl`). So every triangle lies in the box, its pixels within those of
+//! the corners, and its depths behind the nearest.
+//!
+//! **Rounding.** The continued surface is evaluated in single precision, where the terms of a sum are larger than the
+//! sum: [`rounding_beyond`] widens the box. A vertex's X, Y, depth and W are each off by at most [`SINGLE_ROUNDING`] of
+//! the magnitudes of their terms, `dX` and `dW`. With the computed W, the pixel `X / W` is off by
+//! `|dX - (X / W) dW| / W`. Errors of the rasteriser are covered by a pixel on each side and by `DEPTH_ROUNDING`, as
+//! for patches (`twin::occlusion`).
 //!
 //! Source of the continuation: G. Farin, *Curves and Surfaces for CAGD*, 2002, section 5.4 (extrapolation by
 //! subdivision).
 
-use super::{CHUNK, Extent, PlacedBox, SINGLE_ROUNDING, SceneData};
+use super::{CHUNK, Extent, PlacedBox, PlacedFaces, SINGLE_ROUNDING, SceneData, placed_faces};
 use crate::abi::constants::behind::DEPTH_ROUNDING;
 use crate::abi::constants::push::MAX_PUSH;
 use crate::abi::{self, BORDER_U0, BORDER_U1, BORDER_V0, BORDER_V1, PartInSight, Side};
@@ -46,30 +51,26 @@ impl SceneData {
     }
 
     /// Finds the boxes around all that is drawn of each placed part. Needs the arrays that the GPU gets.
-    pub(in crate::scene) fn find_drawn(&mut self) {
+    pub(in crate::scene) fn find_drawn_boxes(&mut self) {
         let mut boxes = std::mem::take(&mut self.boxes);
         // copies of a part share their patches
         let mut known: HashMap<(u32, usize), Option<Extent>> = HashMap::new();
-        for faces in self.face_instances.chunk_by(|a, b| a.instance == b.instance) {
-            let (first, last) = (faces[0], faces[faces.len() - 1]);
-            let from = self.faces[first.face as usize].first_patch as usize;
-            let to =
-                self.faces.get(last.face as usize + 1).map_or(self.patches.len(), |next| next.first_patch as usize);
-            let drawn = *known.entry((first.face, faces.len())).or_insert_with(|| self.drawn(&self.patches[from..to]));
-            boxes[first.instance as usize].drawn = drawn;
+        for PlacedFaces { first, part, patches } in placed_faces(self) {
+            let of_part = *known.entry(part).or_insert_with(|| self.drawn_box(patches));
+            boxes[first.instance as usize].drawn = of_part;
         }
         self.boxes = boxes;
     }
 
     /// The box around all that may be drawn of these patches.
-    fn drawn(&self, patches: &[abi::Patch]) -> Option<Extent> {
-        let of_patches = patches.par_iter().map(|patch| self.drawn_of(patch));
+    fn drawn_box(&self, patches: &[abi::Patch]) -> Option<Extent> {
+        let of_patches = patches.par_iter().map(|patch| self.drawn_bounds(patch));
         let bounds = of_patches.try_reduce(|| Bounds::EMPTY, |a, b| Some(a.union(b)))?;
         (!bounds.is_empty()).then(|| Extent::between(bounds.min, bounds.max))
     }
 
     /// The same of one patch: empty if it is never drawn.
-    fn drawn_of(&self, patch: &abi::Patch) -> Option<Bounds> {
+    fn drawn_bounds(&self, patch: &abi::Patch) -> Option<Bounds> {
         // an edit may change on which side of the loops a patch lies
         let is_editable = self.edit.is_some();
         if patch.side() == Side::Outside && !is_editable {
@@ -84,21 +85,28 @@ impl SceneData {
         let (degree_u, degree_v) = patch.degrees();
         let points = &self.points[patch.first as usize..][..(degree_u + 1) * (degree_v + 1)];
         let points = points.iter().map(|p| DVec4::from(p.map(f64::from))).collect();
-        let skirts = skirts(&Patch { degree_u, degree_v, points }, borders);
-        skirts.iter().try_fold(own, |all, skirt| {
-            let is_bounded = skirt.points.iter().all(|p| p.w > 0.0);
+        let patch = Patch { degree_u, degree_v, points };
+        let rounding = rounding_beyond(&patch, borders);
+        skirts(&patch, borders).iter().try_fold(own, |all, skirt| {
+            let least = skirt.points.iter().map(|p| p.w).fold(f64::INFINITY, f64::min) - rounding.w;
+            if least <= 0.0 {
+                return None;
+            }
             let (min, max) = skirt.bounds();
-            is_bounded.then(|| all.union(Bounds { min, max }))
+            let off = (rounding.truncate() + min.abs().max(max.abs()) * rounding.w) / least;
+            Some(all.union(Bounds { min: min - off, max: max + off }))
         })
     }
 
-    /// Where the placed parts of these numbers may be drawn, in their order.
-    pub(crate) fn parts_in_sight(&self, camera: &Camera, parts: &[u32]) -> Vec<PartInSight> {
-        let pixels = camera.pixel_matrix();
+    /// The placed parts of these numbers, in their order, and where a camera may draw them. Without a camera, none is
+    /// hidden.
+    pub(crate) fn parts_in_sight(&self, camera: Option<&Camera>, parts: &[u32]) -> Vec<PartInSight> {
+        let view = camera.map(|camera| (camera.pixel_matrix(), camera));
         let of = |&n: &u32| {
             let placed = &self.boxes[n as usize];
-            let (depth, [low, high]) =
-                placed.in_picture(pixels, self.placements[n as usize], camera).unwrap_or((NEVER_HIDDEN, [0; 2]));
+            let drawn =
+                view.and_then(|(pixels, camera)| placed.in_picture(pixels, self.placements[n as usize], camera));
+            let (depth, [low, high]) = drawn.unwrap_or((NEVER_HIDDEN, [0; 2]));
             PartInSight {
                 instance: n,
                 first_patch_instance: placed.first,
@@ -114,6 +122,8 @@ impl SceneData {
 
 /// No reversed depth exceeds it.
 const NEVER_HIDDEN: f32 = 1.0;
+/// Most pixels along a side of a picture in which parts are hidden: 16 bits number a column or a row.
+const MOST_PIXELS: u32 = 1 << 16;
 
 /// The surface from each of these borders on, as far as skirts reach, and beyond the corners between two of them.
 fn skirts(patch: &Patch, borders: u32) -> Vec<Patch> {
@@ -129,12 +139,30 @@ fn skirts(patch: &Patch, borders: u32) -> Vec<Patch> {
     along_u.into_iter().chain(beyond_v).collect()
 }
 
+/// Roundings of an evaluation for each degree: weights, their powers, products and sums, and a place that is rounded.
+const ROUNDINGS_OF_A_DEGREE: f64 = 16.0;
+
+/// Bounds the rounding errors of the homogeneous coordinates of the surface beyond these borders, in the evaluation in
+/// single precision. At `t = 1 + MAX_PUSH` the magnitudes of the Bernstein polynomials of degree `n` add up to
+/// `(|t| + |1 - t|)^n`, while the polynomials themselves add up to 1.
+pub(super) fn rounding_beyond(patch: &Patch, borders: u32) -> DVec4 {
+    let most = 1.0 + 2.0 * f64::from(MAX_PUSH);
+    let growth = |both: u32, degree: usize| if borders & both == 0 { 1.0 } else { most.powi(degree as i32) };
+    let growth = growth(BORDER_U0 | BORDER_U1, patch.degree_u) * growth(BORDER_V0 | BORDER_V1, patch.degree_v);
+    let roundings = ROUNDINGS_OF_A_DEGREE * (patch.degree_u + patch.degree_v) as f64;
+    let magnitudes = patch.points.iter().fold(DVec4::ZERO, |all, p| all.max(p.abs()));
+    0.5 * f64::from(f32::EPSILON) * roundings * growth * magnitudes
+}
+
 impl PlacedBox {
     /// A reversed depth that nothing drawn of the part exceeds, and the first and last pixel of a rectangle with all
     /// that is drawn, column and row in 16 bits each. `None` if the part reaches the near plane or is beside the
-    /// picture, or if its box is not known.
+    /// picture, if its box is not known, or if 16 bits do not number the picture's pixels.
     fn in_picture(&self, pixels: DMat4, placement: DAffine3, camera: &Camera) -> Option<(f32, [u32; 2])> {
         let drawn = self.drawn?;
+        if camera.size.0.max(camera.size.1) > MOST_PIXELS {
+            return None;
+        }
         let rows = (pixels * DMat4::from(placement)).transpose();
         let [x, y, depth, w] = [rows.x_axis, rows.y_axis, rows.z_axis, rows.w_axis];
         let rounding = f64::from(DEPTH_ROUNDING);
@@ -143,7 +171,7 @@ impl PlacedBox {
         let nearest = of_depth.middle - of_depth.reach - SINGLE_ROUNDING * of_depth.terms;
         let of_w = drawn.range(w);
         // in a parallel view W is 1
-        let least_w = of_w.middle - of_w.reach;
+        let least_w = of_w.middle - of_w.reach - SINGLE_ROUNDING * of_w.terms;
         if nearest < near * (1.0 + rounding) || least_w <= 0.0 {
             return None;
         }
@@ -155,7 +183,8 @@ impl PlacedBox {
             let at = corners.map(|corner| row.dot(corner) / w.dot(corner));
             let low = at.into_iter().fold(f64::INFINITY, f64::min);
             let high = at.into_iter().fold(f64::NEG_INFINITY, f64::max);
-            let beyond = 1.0 + SINGLE_ROUNDING * drawn.range(row).terms / least_w;
+            let terms = drawn.range(row).terms + low.abs().max(high.abs()) * of_w.terms;
+            let beyond = 1.0 + SINGLE_ROUNDING * terms / least_w;
             let first = (low - beyond).floor().max(0.0);
             let last = (high + beyond).ceil().min(f64::from(size) - 1.0);
             (first <= last).then_some([first as u32, last as u32])

@@ -1,6 +1,7 @@
 //! Culled parts are nowhere in the picture, and visible parts are not culled: compared with pass `bound`, patch by
 //! patch.
 
+use super::drawn::rounding_beyond;
 use super::*;
 use crate::abi::{BORDER_U0, BORDER_U1, BORDER_V0, BORDER_V1, Counters, Side};
 use crate::fixtures::{Case, Random};
@@ -140,7 +141,7 @@ fn nothing_is_drawn_beside_the_rectangle_or_before_the_depth() {
         assert!(data.hides_parts());
         assert!(data.patches.iter().all(|patch| patch.side() == Side::Boundary), "every patch has skirts");
         let in_sight = data.in_sight(&camera, Reach { beside_px: 1.0, beyond_px: 1.0 });
-        let parts = data.parts_in_sight(&camera, &in_sight.parts);
+        let parts = data.parts_in_sight(Some(&camera), &in_sight.parts);
         for part in parts.iter().filter(|part| part.depth < 1.0) {
             checked += 1;
             let own = data.boxes[part.instance as usize].patches;
@@ -179,4 +180,34 @@ fn continued(data: &SceneData, patch: &abi::Patch) -> Vec<DVec3> {
     let (u, v) = (range([BORDER_U0, BORDER_U1]), range([BORDER_V0, BORDER_V1]));
     let at = |(low, high): (f64, f64), k: usize| low + (high - low) * k as f64 / 8.0;
     (0..9).flat_map(|j| (0..9).map(move |i| (i, j))).map(|(i, j)| surface.point(at(u, i), at(v, j))).collect()
+}
+
+/// By de Casteljau's algorithm in single precision, in the corner between two continued borders.
+#[test]
+fn a_continued_surface_is_rounded_by_less_than_its_bound() {
+    let mut random = Random::new(7);
+    let mut most: f64 = 0.0;
+    for _ in 0..50 {
+        let mut coordinate = || f64::from(random.range(-1.0, 1.0) as f32);
+        let points = (0..42).map(|_| DVec4::new(coordinate(), coordinate(), coordinate(), 1.0)).collect();
+        let patch = Patch { degree_u: 6, degree_v: 5, points };
+        let (u, v) = (1.0 + twin::MAX_PUSH, -twin::MAX_PUSH);
+        let exact = patch.point(u.into(), v.into());
+        let bound = rounding_beyond(&patch, BORDER_U1 | BORDER_V0);
+        for axis in 0..3 {
+            let rows = patch.points.chunks(7).map(|row| in_single(row.iter().map(|p| p[axis] as f32).collect(), u));
+            let off = (f64::from(in_single(rows.collect(), v)) - exact[axis]).abs();
+            assert!(off <= bound[axis], "{off} where the bound is {}", bound[axis]);
+            most = most.max(off);
+        }
+        assert!(rounding_beyond(&patch, 0).max_element() < 1.1e-5, "the bound between the borders");
+    }
+    assert!(most > 2e-5, "{most}: terms as large as their sum would do");
+}
+
+fn in_single(mut values: Vec<f32>, t: f32) -> f32 {
+    while values.len() > 1 {
+        values = values.windows(2).map(|pair| (1.0 - t) * pair[0] + t * pair[1]).collect();
+    }
+    values[0]
 }

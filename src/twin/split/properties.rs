@@ -35,7 +35,7 @@ impl Grid {
         let shapes: Vec<Patch> = (0..patches)
             .map(|_| Patch { shape: Patch::pack_shape((1, 1), false, random.pick(&sides), 0), ..Default::default() })
             .collect();
-        let frame = Frame { patch_instances_in_sight: patches as u32, ..Default::default() };
+        let frame = Frame { listed_patch_instances: patches as u32, ..Default::default() };
         let scene = Scene {
             face_instances: &[FaceInstance::default()],
             faces: &[face],
