@@ -1,7 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `edge_line`: a rectangle around each chord, half a pixel wider than its line. One instance a chord.
+// Pass `edge_line`: a rectangle around each chord, half a pixel wider than its line and the folds beside it. One
+// instance a chord.
 #include "scene.glsl"
 #include "edges.glsl"
 
@@ -26,6 +27,7 @@ void main() {
     along = size > 0.0 ? along / size : vec2(1.0, 0.0);
     vec2 across = vec2(-along.y, along.x);
     float reach = push.half_px[c.style & EDGE_STYLE] + 0.5 + ROUNDED_PX;
+    if (c.style >> EDGE_SEEDS != 0u) reach = max(reach, push.half_px.x + 0.5 + SEED_REACH_PX);
     // two triangles: 0 1 2, 2 1 3
     const uint CORNERS[6] = uint[](0u, 1u, 2u, 2u, 1u, 3u);
     uint corner = CORNERS[gl_VertexIndex];

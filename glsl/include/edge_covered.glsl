@@ -83,7 +83,13 @@ bool is_covered(EdgePoint e, ivec2 at) {
         if (SCENE_HAS_MESHES_OR_SOLIDS && is_read && sees_nothing(seen.x)) {
             seen = imageLoad(meshes_and_solids, around).xy;
         }
-        if (!sees_nothing(seen.x) && !sees_other(seen.x)) covered = patch_covers(e, seen);
+#ifndef SOLIDS_BY_DEPTH
+        bool operand = SOLIDS_HAVE_PATCHES && sees_operand(seen.x);
+        if (operand) seen.y = imageLoad(operand_uv, around).x;
+#else
+        const bool operand = false;
+#endif
+        if (!sees_nothing(seen.x) && (operand || !sees_other(seen.x))) covered = patch_covers(e, seen);
         else if (SCENE_HAS_MESHES && sees_mesh(seen.x)) covered = triangle_covers(e, seen);
     }
     return covered;

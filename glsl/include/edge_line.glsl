@@ -5,7 +5,8 @@
 //        │            its point nearest to the centre ─▶ parameter ─▶ the exact point of the edge ─▶ seen, or hidden
 //        · pixel
 //
-// The trim test is that of one way (trim.glsl).
+// Beside smooth edges the folds of their curved faces are drawn, too: pass `edge_fold` finds those that a pixel's centre
+// sees. The trim test is that of one way (trim.glsl).
 #include "scene.glsl"
 #include "view.glsl"
 #include "edges.glsl"
@@ -80,6 +81,13 @@ bool is_own_triangle(uint instance, uint triangle) { return is_own(instance, OWN
 const bool OWN_PATCHES_HIDE = false;
 #include "edge_seen.glsl"
 #include "edge_covered.glsl"
+#include "fold.glsl"
+
+// Of a piece: single precision.
+const float SEED_ROUNDED = 1e-4;
+
+// Outlines of curved faces are drawn.
+layout(constant_id = 43) const bool DRAWS_FOLDS = false;
 
 // What Newton's method leaves of the way to the edge's place, and what the sheet bends on it.
 const float ON_SHEET_PX = 1.0 / 64.0;
@@ -87,10 +95,14 @@ const float ON_SHEET_PX = 1.0 / 64.0;
 const float DASH = 8.0;
 const float GAP = 6.0;
 
-// The exact point of the edge at a share of the chord.
-EdgePoint point_at(Chord c, float share, EdgePiece piece, View view) {
+// The parameter of the edge's piece at a share of the chord.
+float parameter_at(Chord c, float share) {
     float from = share * c.w.x;
-    float t = mix(c.t.x, c.t.y, from / (from + (1.0 - share) * c.w.y));
+    return mix(c.t.x, c.t.y, from / (from + (1.0 - share) * c.w.y));
+}
+
+// The exact point of the edge.
+EdgePoint point_at(float t, EdgePiece piece, View view) {
     uint n = piece.degree;
     float rest = 1.0 - t;
     vec4 p = vec4(0.0);
@@ -127,6 +139,39 @@ bool is_near_own(EdgePoint e) {
     return near;
 }
 
+// The fold of a curved face so close to the smooth edge `e` that no pixel's centre may see the face between them: the
+// share of the pixel that its line covers, and its point next to the pixel.
+float fold_beside(vec4 face_beside, vec4 ends, float t, EdgePoint e, View view, out EdgePoint point) {
+    Face face = face_at(uint(face_beside.x));
+    ivec2 count = ivec2(face.count_u, face.count_v);
+    ivec2 place = place_of(face, int(face_beside.y));
+    vec2 beside = mix(ends.xy, ends.zw, (t - SEED_END) / (1.0 - 2.0 * SEED_END));
+    Patch patch_ = patch_at(patch_in(face, place));
+    vec2 uv = (beside - patch_.domain.xy) / patch_.domain.zw;
+    bool arrived = false; // tested by the loop's condition, not by a `break`: see refine.glsl
+    for (uint hop = 0u; hop < MAX_HOPS && !arrived; ++hop) {
+        ivec2 next = clamp(place + way_beyond(uv, BEYOND), ivec2(0), count - 1);
+        Patch there = patch_at(patch_in(face, next));
+        arrived = next == place || side_of(there.shape) == SIDE_OUTSIDE;
+        if (arrived) continue;
+        patch_ = there;
+        place = next;
+        uv = (beside - patch_.domain.xy) / patch_.domain.zw;
+    }
+    Sample s;
+    vec2 fold;
+    point = e;
+    if (!find_fold(face, place.y * count.x + place.x, view, uv, gl_FragCoord.xy, s, fold)) return 0.0;
+    point = EdgePoint(s.q.xy / s.q.w, seen_from_eye(s.q), vec2(FOLD_SHEET_PX, e.slack.y));
+    vec2 run = ends.zw - ends.xy;
+    bool is_in_face = dot(fold - beside, face_beside.z * vec2(-run.y, run.x)) > 0.0;
+    // and ends where the edge does
+    float ahead = dot(fold - ends.xy, run) / dot(run, run) * (1.0 - 2.0 * SEED_END) + SEED_END;
+    is_in_face = is_in_face && abs(ahead - 0.5) <= 0.5 + SEED_ROUNDED;
+    bool is_close = distance(point.pixel, e.pixel) <= SEED_REACH_PX;
+    return is_in_face && is_close ? line_coverage(length(s.miss), push.half_px.x) : 0.0;
+}
+
 void main() {
     Chord c = chords[chord];
     vec2 along = c.b - c.a;
@@ -134,19 +179,32 @@ void main() {
     float size = dot(along, along);
     float share = size > 0.0 ? clamp(dot(from, along) / size, 0.0, 1.0) : 0.0;
     float half_px = push.half_px[c.style & EDGE_STYLE];
-    float covered = line_coverage(length(from - share * along), half_px);
+    float covered = (c.style & EDGE_UNDRAWN) != 0u ? 0.0 : line_coverage(length(from - share * along), half_px);
     ivec2 at = ivec2(gl_FragCoord.xy);
-    uint steps = uint(covered * LINE_STEPS + 0.5);
-    uint best = LINE_SEEN | steps << LINE_COVERAGE | chord;
-    if (steps == 0u || imageLoad(lines, at).x >= best) return;
     PieceInstance piece_instance = piece_instances[c.piece_instance];
     EdgePiece piece = edge_pieces[piece_instance.piece];
-    EdgePoint e = point_at(c, share, piece, view_at(piece_instance.placement));
-    bool near = (c.style & EDGE_NEAR) == 0u || is_near_own(e);
-    if (!near || !is_seen(e, at) || is_covered(e, at)) {
-        steps = uint(covered * dash(along, gl_FragCoord.xy, half_px) * LINE_STEPS + 0.5);
-        if (push.hidden == 0u || steps == 0u) return;
-        best = steps << LINE_COVERAGE | chord;
+    View view = view_at(piece_instance.placement);
+    float t = parameter_at(c, share);
+    EdgePoint e = point_at(t, piece, view);
+    // the edge, then the folds beside it
+    uint folds = DRAWS_FOLDS ? c.style >> EDGE_SEEDS & EDGE_MOST_SEEDS : 0u;
+    for (uint k = 0u; k <= folds; ++k) {
+        bool is_edge = !DRAWS_FOLDS || k == 0u;
+        EdgePoint p = e;
+        if (!is_edge) {
+            int texel = int(piece.first + piece.degree + 1u + SEED_TEXELS * (k - 1u));
+            covered = fold_beside(texelFetch(edge_points, texel), texelFetch(edge_points, texel + 1), t, e, view, p);
+        }
+        uint steps = uint(covered * LINE_STEPS + 0.5);
+        uint what = is_edge ? chord : LINE_FOLD;
+        uint best = LINE_SEEN | steps << LINE_COVERAGE | what;
+        if (steps == 0u || imageLoad(lines, at).x >= best) continue;
+        bool near = !is_edge || (c.style & EDGE_NEAR) == 0u || is_near_own(p);
+        if (!near || !is_seen(p, at) || is_covered(p, at)) {
+            steps = is_edge ? uint(covered * dash(along, gl_FragCoord.xy, half_px) * LINE_STEPS + 0.5) : 0u;
+            if (push.hidden == 0u || steps == 0u) continue;
+            best = steps << LINE_COVERAGE | what;
+        }
+        imageAtomicMax(lines, at, best);
     }
-    imageAtomicMax(lines, at, best);
 }

@@ -40,6 +40,18 @@ const uint EDGE_THIN = 1u;
 const uint EDGE_BOLD = 2u; // outlines of sections
 const uint EDGE_STYLE = 3u;
 const uint EDGE_NEAR = 4u; // beside it: drawn only where a pixel around sees a face of its own
+const uint EDGE_UNDRAWN = 8u; // only folds beside it are drawn
+// A smooth edge's curved faces, of which folds close to it are drawn: their number, from this bit on.
+const uint EDGE_SEEDS = 4u;
+const uint EDGE_MOST_SEEDS = 3u;
+
+// Behind the control points of a piece of such an edge, two texels a face: its number in the scene, a patch of it, 1
+// if it lies left of the piece in (u, v) and else -1; (u, v) of the domain beside the piece, SEED_END from its ends: at
+// the ends themselves a closed edge is in two places of the face.
+const uint SEED_TEXELS = 2u;
+const float SEED_END = 0.015625;
+// So far from its edge a fold is drawn from there. Farther away a pixel's centre sees the face between them.
+const float SEED_REACH_PX = 1.5;
 
 // In the list of own faces: the number of a triangle instead of a face.
 const uint OWN_TRIANGLE = 0x80000000u;

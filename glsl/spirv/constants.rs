@@ -101,18 +101,14 @@ pub mod edge_divide {
     pub const EDGE_TOLERANCE_PX: f32 = 0.09;
 }
 pub mod edge_fold {
-    pub const FOLD_BESIDE: f32 = 0.25;
-    pub const FOLD_COSINE: f32 = 0.2;
-    pub const FOLD_FAR_PX: f32 = 16.0;
     pub const FOLD_REACH_PX: f32 = 1.5;
-    pub const FOLD_SHEET_PX: f32 = 0.25;
-    pub const FOLD_STEPS: u32 = 12;
     pub const SAME_PLACE: f32 = 0.05;
 }
 pub mod edge_line {
     pub const DASH: f32 = 8.0;
     pub const GAP: f32 = 6.0;
     pub const ROUNDED_PX: f32 = 0.0625;
+    pub const SEED_ROUNDED: f32 = 1e-4;
 }
 pub mod edge_seen {
     pub const ARRIVED_PX: f32 = 0.05;
@@ -126,9 +122,12 @@ pub mod edges {
     pub const CHANGE_STYLE: u32 = 16;
     pub const EDGE_BOLD: u32 = 2;
     pub const EDGE_FULL: u32 = 0;
+    pub const EDGE_MOST_SEEDS: u32 = 3;
     pub const EDGE_NEAR: u32 = 4;
+    pub const EDGE_SEEDS: u32 = 4;
     pub const EDGE_STYLE: u32 = 3;
     pub const EDGE_THIN: u32 = 1;
+    pub const EDGE_UNDRAWN: u32 = 8;
     pub const FOLD_NUMBER: u32 = 0xffffffff;
     pub const LINES_FOLDS: u32 = 8;
     pub const LINES_SHARP: u32 = 1;
@@ -145,6 +144,9 @@ pub mod edges {
     pub const LINE_THIN: u32 = 2;
     pub const MOST_HALF_PX: f32 = 100.0;
     pub const OWN_TRIANGLE: u32 = 0x80000000;
+    pub const SEED_END: f32 = 0.015625;
+    pub const SEED_REACH_PX: f32 = 1.5;
+    pub const SEED_TEXELS: u32 = 2;
     pub const SOLID_NUMBER: u32 = 0xfffffffe;
 }
 pub mod exact {
@@ -164,6 +166,13 @@ pub mod face_point {
 pub mod factor {
     pub const SPARE: f32 = 0.125;
     pub const UP: f32 = 1.00001;
+}
+pub mod fold {
+    pub const FOLD_BESIDE: f32 = 0.25;
+    pub const FOLD_COSINE: f32 = 0.2;
+    pub const FOLD_FAR_PX: f32 = 16.0;
+    pub const FOLD_SHEET_PX: f32 = 0.25;
+    pub const FOLD_STEPS: u32 = 12;
 }
 pub mod gap_candidate {
     pub const ABSENT: u32 = 0;

@@ -1,6 +1,9 @@
 //! Lines along edges. Twins of `glsl/include/edges.glsl`.
 
-pub use crate::abi::constants::edges::{EDGE_BOLD, EDGE_FULL, EDGE_NEAR, EDGE_THIN, OWN_TRIANGLE, SOLID_NUMBER};
+pub use crate::abi::constants::edges::{
+    EDGE_BOLD, EDGE_FULL, EDGE_MOST_SEEDS, EDGE_NEAR, EDGE_SEEDS, EDGE_THIN, EDGE_UNDRAWN, OWN_TRIANGLE, SEED_END,
+    SOLID_NUMBER,
+};
 use bytemuck::{Pod, Zeroable};
 
 /// A rational Bézier piece of an edge.

@@ -11,8 +11,9 @@
 
 use super::data::SceneData;
 use super::deep_zoom::KnownEdges;
+use super::fold_seeds::{PartFaces, seeds};
 use crate::abi;
-use crate::model::{Edges, Model, Part};
+use crate::model::{EdgeKind, Edges, Model, Part};
 use crate::picture::{EdgeChoice, EdgeSettings, LineStyle};
 use glam::{DAffine3, DVec3, DVec4};
 use rayon::prelude::*;
@@ -42,8 +43,9 @@ pub(crate) struct Placing<'a> {
     pub placed: &'a [Option<u32>],
     /// The first triangle, in the scene, of each mesh of each part.
     pub first_triangles: &'a [Vec<u32>],
-    /// Number of faces in the scene.
-    pub faces: usize,
+    /// The scene's.
+    pub faces: &'a [abi::Face],
+    pub patches: &'a [abi::Patch],
 }
 
 impl SceneData {
@@ -59,7 +61,8 @@ impl SceneData {
             parts: &self.parts,
             placed: &placed,
             first_triangles: &self.meshes.first_triangles,
-            faces: self.faces.len(),
+            faces: &self.faces,
+            patches: &self.patches,
         };
         self.edges = Some(EdgeData::of(settings, &of, &edges, &mut self.placements));
         Ok(())
@@ -105,7 +108,7 @@ impl EdgeData {
         placements: &mut Vec<DAffine3>,
     ) -> Self {
         let edges = found.get().unwrap_or_default();
-        let mut data = Self::new(settings, of.faces, found.clone());
+        let mut data = Self::new(settings, of.faces.len(), found.clone());
         let mut number = 1;
         let drawn: Vec<Drawn> = (0..of.model.parts.len())
             .map(|part| {
@@ -134,12 +137,20 @@ impl EdgeData {
     /// Adds the edges of a part; the first has number `number`.
     fn push_part(&mut self, of: &Placing<'_>, part: usize, edges: &Edges, number: u32) {
         let (origin, first_face) = of.parts[part];
+        let beside = PartFaces { part: &of.model.parts[part], first_face, faces: of.faces, patches: of.patches };
         for (edge, number) in edges.edges.iter().zip(number..) {
-            let Some(style) = self.settings.style(edge.kind) else { continue };
+            let style = self.settings.style(edge.kind);
+            let may_fold = self.settings.silhouettes && edge.kind == EdgeKind::Smooth;
+            let (count, texels) = may_fold.then(|| seeds(edge, edges.reach, &beside)).unwrap_or_default();
+            if style.is_none() && count == 0 {
+                continue;
+            }
             let own = edge.uses.iter().map(|u| (first_face + u.face) as u32).collect();
-            self.push_line(number, style, own, edges.deviation, 0);
-            for span in &edge.curve {
+            let flags = count << abi::EDGE_SEEDS | if style.is_none() { abi::EDGE_UNDRAWN } else { 0 };
+            self.push_line(number, style.unwrap_or(LineStyle::Full), own, edges.deviation, flags);
+            for (nth, span) in edge.curve.iter().enumerate() {
                 self.push_piece(&span.piece.points, origin);
+                self.points.extend(texels.get(nth).into_iter().flatten());
             }
         }
         let first = number + edges.edges.len() as u32;
@@ -153,7 +164,7 @@ impl EdgeData {
     }
 
     /// Adds an edge with its own faces, as keys or triangles. It lies at most `off` from these faces, in units of the
-    /// part. `flags`: 0, or [`EDGE_NEAR`](abi::EDGE_NEAR).
+    /// part. `flags`: bits of its style beside the width, `EDGE_*`.
     pub(super) fn push_line(&mut self, number: u32, style: LineStyle, own: Vec<u32>, off: f64, flags: u32) {
         let style = match style {
             LineStyle::Full => abi::EDGE_FULL,

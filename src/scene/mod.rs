@@ -26,6 +26,7 @@ mod exact;
 mod face;
 mod fine;
 mod flatten;
+mod fold_seeds;
 mod in_sight;
 mod instance;
 mod join;

@@ -3,13 +3,16 @@
 use crate::shapes;
 use crate::support::{assert_silent, orthographic, perspective, watched_with};
 use glam::{DAffine3, DVec2, DVec3};
+use selvedge::construct::{Chain, extruded_solid};
 use selvedge::edges::flatten::{Flattening, LinePoint};
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
-use selvedge::model::{Camera, EdgeKind, Model};
+use selvedge::model::{Camera, EdgeKind, Model, Projection};
 use selvedge::picture::{
     BadEdges, EdgeChoice, EdgeSettings, FrameSettings, Outputs, Picture, Samples, SceneSettings, TangentEdges,
 };
 use selvedge::renderer::RenderError;
+use selvedge::spline::BSpline;
+use selvedge_check::drawing::{DrawingSettings, LineImage, judge_lines};
 use selvedge_check::{EdgeTracer, Tracer, Visibility};
 
 const SIZE: (u32, u32) = (160, 120);
@@ -136,6 +139,44 @@ fn a_balls_outline_is_where_it_folds() {
     let stray = marked.iter().filter(|(at, _)| !outline.iter().any(|p| p.distance(*at) <= HALF + 0.5)).count();
     let bare = outline.iter().filter(|p| !marked.iter().any(|(at, _)| at.distance(**p) <= HALF + 0.5)).count();
     assert_eq!((bare, stray), (0, 0), "of {} pixels", marked.len());
+}
+
+/// A block of which one edge is rounded.
+fn rounded_block(radius: f64) -> Model {
+    let point = |x: f64, y: f64, w: f64| DVec3::new(x * w, y * w, w);
+    let line = |a, b| BSpline::new(1, vec![0.0, 0.0, 1.0, 1.0], vec![a, b]).unwrap();
+    let corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0 - radius), (2.0 - radius, 2.0), (0.0, 2.0)];
+    let [a, b, c, d, e] = corners.map(|(x, y)| point(x, y, 1.0));
+    let arc = vec![c, point(2.0, 2.0, 0.5_f64.sqrt()), d];
+    let arc = BSpline::new(2, vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], arc).unwrap();
+    let profile: Chain = vec![line(a, b), line(b, c), arc, line(d, e), line(e, a)];
+    let part = extruded_solid(&[profile], DVec3::Z * 3.0).unwrap();
+    Model { parts: vec![part], instances: vec![shapes::placed(DAffine3::IDENTITY, None)], ..Model::default() }
+}
+
+/// A fillet that folds a third of a pixel beyond the edge where it begins, so that most centres beside the fold see the
+/// face before it, or nothing.
+#[test]
+fn a_fold_that_few_centres_see_is_a_line() {
+    let model = rounded_block(0.12);
+    let fillet = model.parts[0].faces[2].id;
+    let steep = 25f64.to_radians();
+    let from = DVec3::new(-steep.cos(), steep.sin(), 0.3);
+    let far = Camera::around(model.control_bounds(), from, DVec3::Y, 0.6, SIZE);
+    let height = model.control_bounds().diagonal();
+    for camera in [far, Camera { projection: Projection::Orthographic { height }, ..far }] {
+        let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
+        let picture = draw(&model, with(settings), &camera);
+        let asked = DrawingSettings { sharp: false, smooth: false, ..DrawingSettings::default() };
+        let image = LineImage { lines: &picture.edge, width: WIDTH, section_width: WIDTH };
+        let found = judge_lines(&model, &Tracer::new(&model), &camera, &asked, image).unwrap();
+        let seen = picture.face.iter().filter(|face| **face == fillet).count() as f64;
+        // points are half a pixel apart
+        let length = found.visible as f64 * selvedge_check::drawing::SPACING;
+        println!("{length} px, {seen} centres: {found:?}");
+        assert!(length > 30.0 && seen > 0.0 && seen < 0.6 * length, "{length} px, {seen} centres");
+        assert_eq!((found.missing, found.stray), (0, 0), "{found:?}");
+    }
 }
 
 /// A million times closer, at the hole of a plate: the picture shows a hundred-thousandth of the edge.

@@ -253,7 +253,8 @@ fn outlines_of_sections_are_bold_and_exact() {
 }
 
 /// Sections of a solid with equations, and of a part, whose edges and outlines are those of an operand without. No
-/// line is missing. Up to two of some 850 pixels are stray, one on either side of the picture: docs/design/edges.md.
+/// line is missing. The far side of the part's rim begins at the outline. The near side hides it, and centres beside
+/// the outline see nothing. Two of some 850 pixels of the solid with equations may be stray: docs/design/edges.md.
 #[test]
 fn the_programs_judge_of_sections() {
     let tube = selvedge::construct::shapes::tube(1.0, 0.5, 1.6).unwrap().part;
@@ -261,12 +262,13 @@ fn the_programs_judge_of_sections() {
     let instances = vec![crate::shapes::placed(at(0.0, 0.0, 0.0), None)];
     let spline = Model { parts: vec![tube], instances, ..Model::default() };
     let equations = solid("A-B", vec![post(1.0, low, 1.6), post(0.5, low - 1.0, 4.0)]);
-    for (name, model) in [("spline", spline), ("equations", equations)] {
+    for (name, model, stray) in [("spline", spline, 0), ("equations", equations, 2)] {
         let cut = model.section(DVec3::Z, low + 1.0).unwrap();
         for camera in [perspective(&cut, SIZE), orthographic(&cut, SIZE)] {
             let found = judged_by_program(&cut, &camera);
+            println!("{name}: {found:?}");
             assert!(found.visible > 100, "{name}: {found:?}");
-            assert!(found.missing == 0 && found.stray <= 2, "{name}: {found:?}");
+            assert!(found.missing == 0 && found.stray <= stray, "{name}: {found:?}");
         }
     }
 }

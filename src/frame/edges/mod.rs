@@ -59,12 +59,14 @@ impl Passes {
         let Some(edges) = data.edges.as_ref().filter(|_| data.has_lines()) else { return Ok(None) };
         let constants = constants(data);
         let kinds = line::Kinds { test, volume: data.volume.as_ref().and_then(SolidData::kinds) };
+        let folds = (constant::DRAWS_FOLDS, u32::from(edges.settings.silhouettes));
+        let with_folds: Vec<_> = constants.into_iter().chain([folds]).collect();
         let numbers = formats.numbers[0].then_some(NUMBER_FORMAT);
         Ok(Some(Self {
             settings: edges.settings,
             has_edge_image: formats.numbers[0],
             divide: divide::Divide::new(device)?,
-            line: line::Line::new(device, &constants, &kinds)?,
+            line: line::Line::new(device, &with_folds, &kinds)?,
             fold: (edges.settings.silhouettes && (data.has_patches || data.has_operands))
                 .then(|| fold::Fold::new(device, &constants))
                 .transpose()?,

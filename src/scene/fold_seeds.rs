@@ -1,0 +1,112 @@
+//! Where curved faces begin beside smooth edges: from there pass `edge_line` finds folds that are closer to the edge
+//! than pixels are to each other.
+//!
+//! ```text
+//!    plane  ════════●  smooth edge      pieces of the edge ─(u, v) beside both ends, on each curved face─▶ two texels
+//!                    ╲                                      behind the piece's control points
+//!              fillet │  fold
+//! ```
+
+use crate::abi::{self, Side};
+use crate::edges::Sheet;
+use crate::model::{Edge, EdgeUse, Part};
+use crate::spline::{Bezier, Control};
+use glam::{DVec2, DVec3, DVec4};
+
+/// Of a piece: near its ends.
+const ENDS: [f64; 2] = [abi::SEED_END as f64, 1.0 - abi::SEED_END as f64];
+/// Points of each trim curve among which the one next to a place is looked for.
+const SAMPLES: u32 = 24;
+/// Of the domain: so far within the face the patch is looked for.
+const WITHIN: f64 = 1e-5;
+/// Single precision has no odd integers beyond: numbers of faces and patches are stored as such.
+const MOST_NUMBER: usize = 1 << 24;
+
+/// The faces of a part in the scene's arrays.
+pub(super) struct PartFaces<'a> {
+    pub part: &'a Part,
+    pub first_face: usize,
+    /// Of the whole scene.
+    pub faces: &'a [abi::Face],
+    pub patches: &'a [abi::Patch],
+}
+
+/// A curved face beside an edge.
+struct Beside<'a> {
+    sheet: Sheet<'a>,
+    used: &'a EdgeUse,
+    curves: Vec<Bezier<DVec3>>,
+    /// Number of the curve, parameter, point.
+    samples: Vec<(usize, f64, DVec3)>,
+}
+
+impl<'a> Beside<'a> {
+    /// `None` of a plane.
+    fn new(part: &'a Part, used: &'a EdgeUse, reach: f64) -> Option<Self> {
+        let sheet = Sheet::new(&part.faces[used.face]);
+        if sheet.plane.is_some() {
+            return None;
+        }
+        let curves = sheet.along(used, reach);
+        let share = |k: u32| f64::from(k) / f64::from(SAMPLES);
+        let of = |(i, c): (usize, &Bezier<DVec3>)| {
+            (0..=SAMPLES).map(|k| (i, share(k), sheet.at(c, share(k)))).collect::<Vec<_>>()
+        };
+        let samples = curves.iter().enumerate().flat_map(of).collect();
+        Some(Self { sheet, used, curves, samples })
+    }
+
+    /// (u, v) of the trim curve next to a point, in shares of the domain.
+    fn place(&self, p: DVec3) -> Option<DVec2> {
+        let nearest = self.samples.iter().min_by(|a, b| a.2.distance_squared(p).total_cmp(&b.2.distance_squared(p)))?;
+        let (curve, mut t) = (&self.curves[nearest.0], nearest.1);
+        for _ in 0..4 {
+            let (h, dh) = curve.jet(t);
+            let uv = h.point();
+            let slope = (dh.truncate() - uv * dh.z) / h.z;
+            let jet = self.sheet.grid.jet(uv.x, uv.y);
+            let along = jet.du * slope.x + jet.dv * slope.y;
+            let step = (p - jet.point).dot(along) / along.length_squared();
+            t = if step.is_finite() { (t + step).clamp(0.0, 1.0) } else { t };
+        }
+        let ((u0, u1), (v0, v1)) = self.sheet.face.surface.domain();
+        Some((curve.point(t) - DVec2::new(u0, v0)) / DVec2::new(u1 - u0, v1 - v0))
+    }
+
+    /// The texels of a piece.
+    fn texels(&self, piece: &Bezier<DVec4>, of: &PartFaces<'_>) -> Option<[[f32; 4]; 2]> {
+        let [a, b] = ENDS.map(|t| self.place(piece.point(t)));
+        let (a, b) = (a?, b?);
+        // loops have the face on their left
+        let side = if self.used.forward { 1.0 } else { -1.0 };
+        let within = side * (b - a).perp().normalize_or_zero() * WITHIN;
+        let number = of.first_face + self.used.face;
+        let face = of.faces.get(number)?;
+        let first = face.first_patch as usize;
+        let patches = of.patches.get(first..first + (face.count_u * face.count_v) as usize)?;
+        let at = 0.5 * (a + b) + within;
+        let holds = |patch: &abi::Patch| {
+            let [u, v, width, height] = patch.domain.map(f64::from);
+            let share = (at - DVec2::new(u, v)) / DVec2::new(width, height);
+            patch.side() != Side::Outside && share.min_element() >= 0.0 && share.max_element() <= 1.0
+        };
+        let patch = patches.iter().position(holds)?;
+        let is_number = number.max(patch) < MOST_NUMBER;
+        let place = [a.x as f32, a.y as f32, b.x as f32, b.y as f32];
+        is_number.then_some([[number as f32, patch as f32, side as f32, 0.0], place])
+    }
+}
+
+/// Texels for the pieces of a smooth edge, as many for each: how many faces, and the texels of each piece.
+pub(super) fn seeds(edge: &Edge, reach: f64, of: &PartFaces<'_>) -> (u32, Vec<Vec<[f32; 4]>>) {
+    let most = abi::EDGE_MOST_SEEDS as usize;
+    let mut count = 0;
+    let mut texels = vec![Vec::new(); edge.curve.len()];
+    for beside in edge.uses.iter().filter_map(|used| Beside::new(of.part, used, reach)).take(most) {
+        let found: Option<Vec<_>> = edge.curve.iter().map(|span| beside.texels(&span.piece, of)).collect();
+        let Some(found) = found else { continue };
+        count += 1;
+        texels.iter_mut().zip(found).for_each(|(all, own)| all.extend(own));
+    }
+    (count, texels)
+}
