@@ -16,6 +16,7 @@ struct Given {
     uint kind;
     uint from;
     uint face;
+    uint instance;
     uint flags; // inside, away, and of its outline: ends
     float depth;
     float miss;
@@ -37,7 +38,9 @@ layout(push_constant) uniform Push { uint count; };
 
 Candidate candidate(uint k) {
     Given g = pixels[gl_GlobalInvocationID.x].given[k];
-    return Candidate(g.kind, g.from, g.face, (g.flags & 1u) != 0u, (g.flags & 2u) != 0u, g.depth, g.miss, g.slope, g.word);
+    bool inside = (g.flags & 1u) != 0u;
+    bool away = (g.flags & 2u) != 0u;
+    return Candidate(g.kind, g.from, g.face, g.instance, inside, away, g.depth, g.miss, g.slope, g.word);
 }
 
 Outline outline_of(Candidate c, vec2 pixel) {
