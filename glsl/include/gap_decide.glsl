@@ -25,6 +25,7 @@ struct Situation {
     bool other;        // a mesh or solid is behind the pixel
     float other_depth;
     bool cut_open;     // a volume trims the scene
+    bool in_solid;     // the eye is in a solid
     uvec2 seen;        // word of the visibility buffer
     Candidate own;     // the visible face; absent if there is none
 };
@@ -220,8 +221,10 @@ uvec2 decide(Situation s, Evidence e, vec2 pixel) {
     edge = edge || cut_open && e.near.kind == NEAR && e.near.depth < s.own.depth;
     if (edge) return e.near.word;
     if (e.present.kind == PRESENT) return e.present.word;
-    // rule "background": nothing is present, and the border of the visible face is no evidence
-    if (s.border ? s.empty : s.empty_beside) return uvec2(0u);
+    // rule "background": nothing is present, and the border of the visible face is no evidence. A ray that begins in a
+    // solid leaves it through a face
+    bool ends = s.border ? s.empty : s.empty_beside;
+    if (ends && !s.in_solid) return uvec2(0u);
     if (e.near.kind == NEAR) return e.near.word;
     if (!s.border && s.other) return uvec2(0u);
     return s.seen;

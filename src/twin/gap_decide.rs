@@ -110,6 +110,8 @@ pub struct Situation {
     pub other: Option<f32>,
     /// A volume trims the scene.
     pub cut_open: bool,
+    /// The eye is in a solid.
+    pub in_solid: bool,
     /// Word of the visibility buffer.
     pub seen: [u32; 2],
     /// The visible face; absent if there is none.
@@ -377,7 +379,8 @@ impl<'a> Evidence<'a> {
             return self.present.word;
         }
         // rule "background"
-        if if s.border { s.empty } else { s.empty_beside } {
+        let ends = if s.border { s.empty } else { s.empty_beside };
+        if ends && !s.in_solid {
             return [0; 2];
         }
         match (self.near.kind, s.other) {

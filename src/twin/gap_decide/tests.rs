@@ -179,6 +179,7 @@ fn a_mesh_or_solid_is_known_at_the_very_pixel() {
 #[test]
 fn where_nothing_is_present_the_background_shows() {
     shows(&nothing(), &[near(1, 0.9)], NOTHING);
+    shows(&Situation { in_solid: true, ..nothing() }, &[near(1, 0.9)], [1, 0]); // the ray leaves a solid
     let ends = Situation { empty_beside: true, ..back() };
     shows(&ends, &[near(1, 0.9)], NOTHING);
     shows(&ends, &[present(1, 2.0)], [1, 0]);

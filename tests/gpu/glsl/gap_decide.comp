@@ -25,7 +25,7 @@ struct Given {
     vec2 into;
 };
 struct Pixel {
-    uint flags; // border, isolated, empty, empty_beside, other_beside, other, cut_open
+    uint flags; // border, isolated, empty, empty_beside, other_beside, other, cut_open, in_solid
     float other_depth;
     uvec2 seen;
     uint count;
@@ -55,7 +55,7 @@ void main() {
     if (i >= count) return;
     uint flags = pixels[i].flags;
     Situation s = Situation(flag(flags, 0u), flag(flags, 1u), flag(flags, 2u), flag(flags, 3u), flag(flags, 4u),
-                            flag(flags, 5u), pixels[i].other_depth, flag(flags, 6u), pixels[i].seen,
+                            flag(flags, 5u), pixels[i].other_depth, flag(flags, 6u), flag(flags, 7u), pixels[i].seen,
                             candidate(MOST_CANDIDATES));
     Evidence e = no_evidence(s);
     for (uint k = 0u; k < pixels[i].count; ++k) consider(e, s, candidate(k));
