@@ -24,7 +24,7 @@ fn room() -> Model {
     thing.faces.iter_mut().for_each(|face| face.id += 10);
     model.parts.push(thing);
     let turn = DQuat::from_euler(EulerRot::XYZ, 0.3, 0.5, 0.2);
-    let place = DAffine3::from_scale_rotation_translation(DVec3::splat(0.2), turn, THING);
+    let place = DAffine3::from_scale_rotation_translation(DVec3::splat(0.12), turn, THING);
     model.instances.push(Instance { part: 1, ..shapes::placed(place, None) });
     model
 }
@@ -33,7 +33,7 @@ fn room() -> Model {
 fn a_thing_in_a_room_ends_at_its_borders() {
     let model = room();
     let around = Camera::around(model.control_bounds(), DVec3::X, DVec3::Z, 0.8, SIZE);
-    let mut camera = Camera { eye: DVec3::new(-0.7, -0.6, -0.1), target: THING, ..around };
+    let mut camera = Camera { eye: DVec3::new(-0.9, 0.1, 0.05), target: THING, ..around };
     camera.fit_depth(model.control_bounds());
     let tracer = Tracer::new(&model);
     assert_eq!(tracer.hits(&camera, DVec2::new(120.5, 90.5)).len(), 3, "the thing, and the wall behind it");
