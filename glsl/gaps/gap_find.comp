@@ -12,7 +12,8 @@
 //          31   row below                                · · b   · b ·   b · ·
 //
 // Where the eye is within a solid, all its faces are seen from behind. What sees nothing else within WIDE_BAND_PX, nor any
-// skirt, is not listed: the second step would find nobody to ask.
+// skirt, is not listed: the second step would find nobody to ask. A front between backs is listed, without the mark: a
+// crack in a face from behind shows the next front.
 #include "scene.glsl"
 #include "visible.glsl"
 
@@ -33,6 +34,7 @@ const int BAND = int(WIDE_BAND_PX);
 const int COLUMNS = LANES - 2 + 2 * BAND; // of the workgroup, and beside it
 
 shared uint patches_seen[LANES];
+shared uint backs_seen[LANES];
 shared uint full_columns; // of backs
 shared uint among_backs[COLUMNS];
 
@@ -55,6 +57,15 @@ uint backs_along(int column, int top, ivec2 size) {
         if (run > 2 * BAND) bits |= 1u << uint(row - BAND - top);
     }
     return bits;
+}
+
+// Of a column's bits and those of the columns beside it: which pixels have set ones on opposite sides.
+uint between(uint left, uint own, uint right) {
+    uint sides = left & right;
+    sides |= (own << 1) & (own >> 1);
+    sides |= (left << 1) & (right >> 1);
+    sides |= (left >> 1) & (right << 1);
+    return sides;
 }
 
 void main() {
@@ -89,8 +100,10 @@ void main() {
         }
     }
     patches_seen[lane] = patch_seen;
+    uint back = candidate & ~(has_skirt | nothing);
+    backs_seen[lane] = back;
     uint own = ((1u << uint(ROWS)) - 1u) << 1;
-    if ((candidate & ~(has_skirt | nothing) & own) == own) atomicAdd(full_columns, 1u);
+    if ((back & own) == own) atomicAdd(full_columns, 1u);
     barrier();
     int to_ask = full_columns > 0u ? COLUMNS : 0;
     for (int k = lane; k < to_ask; k += LANES) {
@@ -100,23 +113,21 @@ void main() {
     uint unasked = to_ask > 0 ? candidate : 0u;
     for (int k = 0; k <= 2 * BAND && unasked != 0u; ++k) unasked &= among_backs[clamp(lane - 1 + k, 0, COLUMNS - 1)];
     if (lane == 0 || lane == LANES - 1 || column >= size.x) return;
-    uint left = patches_seen[lane - 1];
-    uint right = patches_seen[lane + 1];
-    // bit by bit, of the row above and of the row below
-    uint between = left & right;
-    between |= (patch_seen << 1) & (patch_seen >> 1);
-    between |= (left << 1) & (right >> 1);
-    between |= (left >> 1) & (right << 1);
+    uint between_patches = between(patches_seen[lane - 1], patch_seen, patches_seen[lane + 1]);
+    uint between_backs = between(backs_seen[lane - 1], back, backs_seen[lane + 1]);
     uint behind_skirt = border_before & candidate;
     border_before &= ~candidate;
-    uint isolated = nothing & between & ~(candidate | border_before);
+    uint isolated = nothing & between_patches & ~(candidate | border_before);
+    uint front = patch_seen & between_backs & ~(candidate | border_before);
     candidate &= ~unasked;
-    for (uint left_over = (candidate | border_before | isolated) & own; left_over != 0u; left_over &= left_over - 1u) {
+    uint listed = (candidate | border_before | isolated | front) & own;
+    for (uint left_over = listed; left_over != 0u; left_over &= left_over - 1u) {
         uint k = uint(findLSB(left_over));
         ivec2 pixel = ivec2(column, top + int(k));
         uint bit = 1u << k;
         uint flags = (behind_skirt & bit) != 0u ? BACK_BEHIND_BORDER : 0u;
-        if ((candidate & bit) == 0u) {
+        if ((front & bit) != 0u) flags = FRONT_BETWEEN_BACKS;
+        if (((candidate | front) & bit) == 0u) {
             flags = (isolated & bit) != 0u ? BORDER_BEFORE | ISOLATED : BORDER_BEFORE;
             uvec2 seen = imageLoad(visibility, pixel).xy;
             imageStore(visibility, pixel, uvec4(seen.x | GAP_CANDIDATE, seen.y, 0u, 0u));

@@ -18,17 +18,18 @@ const uint FROM_FOLD = 2u;   // the pixel's own face, across a silhouette
 struct Candidate {
     uint kind;
     uint from;
-    uint face;   // of the scene, + 1; 0 for meshes and solids
-    bool inside; // its trims contain the centre
-    bool away;   // looks away from the viewer
+    uint face;     // of the scene, + 1; 0 for meshes and solids
+    uint instance; // of its part
+    bool inside;   // its trims contain the centre
+    bool away;     // looks away from the viewer
     float depth;
-    float miss;  // from the centre to the nearest point of its surface, pixels
-    vec2 slope;  // of its depth, a pixel
-    uvec2 word;  // for the visibility buffer
+    float miss;    // from the centre to the nearest point of its surface, pixels
+    vec2 slope;    // of its depth, a pixel
+    uvec2 word;    // for the visibility buffer
 };
 
 Candidate no_candidate() {
-    return Candidate(ABSENT, FROM_BESIDE, 0u, false, false, 3.0e38, 3.0e38, vec2(0.0), uvec2(0u));
+    return Candidate(ABSENT, FROM_BESIDE, 0u, 0u, false, false, 3.0e38, 3.0e38, vec2(0.0), uvec2(0u));
 }
 
 // Change of its depth within the gap radius.

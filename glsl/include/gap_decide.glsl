@@ -25,6 +25,7 @@ struct Situation {
     bool other;        // a mesh or solid is behind the pixel
     float other_depth;
     bool cut_open;     // a volume trims the scene
+    bool in_solid;     // the eye is in a solid
     uvec2 seen;        // word of the visibility buffer
     Candidate own;     // the visible face; absent if there is none
 };
@@ -52,6 +53,19 @@ bool own_on_pixel(Situation s) { return s.own.kind != ABSENT && s.own.miss <= ON
 
 // Candidates beyond this depth are ignored.
 float depth_limit(Situation s) { return is_interior(s) ? s.own.depth * (1.0 - SAME_DEPTH) : 3.0e38; }
+
+// Whether faces of two parts lie in each other: within rounding, neither is before the other.
+bool coincide(Candidate a, Candidate b) {
+    bool two_parts = a.face != 0u && b.face != 0u && a.instance != b.instance;
+    return two_parts && abs(a.depth - b.depth) <= 2.0 * SAME_DEPTH * max(a.depth, b.depth);
+}
+
+// Whether `a` is seen rather than `b`. Where parts touch, a front is; of two fronts or two backs, that of the lower
+// instance.
+bool precedes(Candidate a, Candidate b) {
+    if (!coincide(a, b)) return a.depth < b.depth;
+    return a.away != b.away ? b.away : a.instance < b.instance;
+}
 
 // A mesh or solid in the pixel itself.
 Candidate other_candidate(Situation s) {
@@ -84,10 +98,11 @@ void consider_touching(inout Evidence e, Situation s, Candidate c) {
     if (touches && c.depth < e.touching.depth) e.touching = c;
 }
 
-// Rule "closest surface": among those that the back face does not hide. One before it is better than any behind it.
+// Rule "closest surface": among those that miss the centre. A surface that passes it is there, or behind the back face,
+// or the face has ended. One before the back face is better than any behind it.
 void consider_closest(inout Evidence e, Candidate c, bool before) {
-    bool hidden = !before && c.miss <= ON_PIXEL_PX;
-    if (!hidden && (before && !e.closest_before || before == e.closest_before && c.miss < e.closest.miss)) {
+    bool misses = c.miss > ON_PIXEL_PX;
+    if (misses && (before && !e.closest_before || before == e.closest_before && c.miss < e.closest.miss)) {
         e.closest = c;
         e.closest_before = before;
     }
@@ -97,7 +112,7 @@ void consider_closest(inout Evidence e, Candidate c, bool before) {
 void consider_near(inout Evidence e, Candidate c) {
     bool another = c.face != e.near.face;
     e.edge = e.edge || e.near.face != 0u && another;
-    if (c.depth < e.near.depth) {
+    if (precedes(c, e.near)) {
         if (another) e.second = e.near;
         e.near = c;
     } else if (another && c.depth < e.second.depth) {
@@ -119,9 +134,14 @@ void consider(inout Evidence e, Situation s, Candidate c) {
     consider_closest(e, c, before);
     consider_touching(e, s, c);
     if (!before) return;
-    if (c.kind == PRESENT && c.depth < e.present.depth) e.present = c;
+    if (c.kind == PRESENT && precedes(c, e.present)) e.present = c;
     if (c.kind == NEAR) consider_near(e, c);
     consider_corner(e, s, c);
+}
+
+// Whether a near face is before all that is present. It is not where it touches another part's face that is present.
+bool near_first(Evidence e) {
+    return e.near.kind == NEAR && e.near.depth < e.present.depth && !coincide(e.near, e.present);
 }
 
 // Whether `a` hides `b` up to a silhouette in which both end here:
@@ -155,9 +175,9 @@ void put_covering_first(inout Evidence e, vec2 pixel) {
 }
 
 // Rule "common silhouette", for the own face: whether the nearest candidate hides it up to the end of both.
-bool own_is_covered(Situation s, Evidence e, bool near_first, vec2 pixel) {
+bool own_is_covered(Situation s, Evidence e, vec2 pixel) {
     Candidate nearest = e.present;
-    if (near_first) nearest = e.near;
+    if (near_first(e)) nearest = e.near;
     bool ends = s.border && own_on_pixel(s) && s.own.kind == NEAR;
     return ends && nearest.kind != ABSENT && nearest.face != s.own.face && covers(nearest, s.own, pixel);
 }
@@ -170,8 +190,7 @@ bool own_has_grown(Situation s, Evidence e) {
 
 // Rule "interior back": the pixel shows a solid's inside through a gap.
 uvec2 behind_gap(Situation s, Evidence e) {
-    bool near_first = e.near.kind == NEAR && e.near.depth < e.present.depth;
-    if (e.present.kind == PRESENT && !near_first) return e.present.word;
+    if (e.present.kind == PRESENT && !near_first(e)) return e.present.word;
     if (e.near.kind == NEAR) return e.near.word;
     if (e.touching.kind == PRESENT) return e.touching.word;
     return e.closest.miss <= GAP_SLACK * frame.gap_radius_px ? e.closest.word : s.seen;
@@ -180,12 +199,12 @@ uvec2 behind_gap(Situation s, Evidence e) {
 uvec2 decide(Situation s, Evidence e, vec2 pixel) {
     put_covering_first(e, pixel);
     if (is_interior(s)) return behind_gap(s, e);
-    bool near_first = e.near.kind == NEAR && e.near.depth < e.present.depth;
-    bool covered = own_is_covered(s, e, near_first, pixel);
+    bool covered = own_is_covered(s, e, pixel);
+    bool covering_edge = covered && near_first(e);
     bool grown = false;
     // the own face is a candidate, too, unless rule "hidden third" or "common silhouette" excludes it
     bool third = s.own.kind == NEAR && e.corner;
-    if (s.border && own_on_pixel(s) && !covered && !third && s.own.depth < e.present.depth) {
+    if (s.border && own_on_pixel(s) && !covered && !third && precedes(s.own, e.present)) {
         grown = own_has_grown(s, e);
         if (s.own.inside || grown) {
             e.present = s.own;
@@ -196,14 +215,16 @@ uvec2 decide(Situation s, Evidence e, vec2 pixel) {
     bool patches_end = s.empty_beside || s.other_beside || e.present.kind == PRESENT;
     if (!s.border && s.other && patches_end && s.other_depth < e.present.depth) e.present = other_candidate(s);
     // rule "edge": two faces meet before all that is present. An isolated pixel has no edge near
-    bool edge = covered && near_first || e.edge && e.near.depth < e.present.depth && !grown && !s.isolated;
+    bool edge = covering_edge || e.edge && near_first(e) && !grown && !s.isolated;
     // rule "outline of the part": the inside of a part that the volume cuts open, and before it the border of one face
     bool cut_open = s.cut_open && s.border && own_on_pixel(s) && s.own.inside && s.own.away;
     edge = edge || cut_open && e.near.kind == NEAR && e.near.depth < s.own.depth;
     if (edge) return e.near.word;
     if (e.present.kind == PRESENT) return e.present.word;
-    // rule "background": nothing is present, and the border of the visible face is no evidence
-    if (s.border ? s.empty : s.empty_beside) return uvec2(0u);
+    // rule "background": nothing is present, and the border of the visible face is no evidence. A ray that begins in a
+    // solid leaves it through a face
+    bool ends = s.border ? s.empty : s.empty_beside;
+    if (ends && !s.in_solid) return uvec2(0u);
     if (e.near.kind == NEAR) return e.near.word;
     if (!s.border && s.other) return uvec2(0u);
     return s.seen;

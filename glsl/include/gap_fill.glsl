@@ -48,6 +48,13 @@ void main() {
     ivec2 at = candidate_pixel(listed);
     vec2 pixel = vec2(at) + 0.5;
     bool within = (listed & (BORDER_BEFORE | BACK_BEHIND_BORDER)) != 0u && among_backs(at);
+    uvec2 seen = imageLoad(visibility, at).xy;
+    bool marked = (seen.x & GAP_CANDIDATE) != 0u;
+    bool front = !marked && (listed & (BORDER_BEFORE | FRONT_BETWEEN_BACKS)) == FRONT_BETWEEN_BACKS;
+    if (front && !within) {
+        candidates[n].word = seen;
+        return;
+    }
     Situation situation = situation_at(listed, at, pixel, within);
     Evidence evidence = gather(situation, at, pixel, within);
     candidates[n].word = decide(situation, evidence, pixel);

@@ -64,6 +64,7 @@ Situation situation_at(uint listed, ivec2 at, vec2 pixel, bool within) {
 #else
     s.cut_open = false;
 #endif
+    s.in_solid = within;
     return s;
 }
 

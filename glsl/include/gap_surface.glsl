@@ -28,7 +28,7 @@ Candidate candidate_at(uvec2 seen, vec2 pixel, uint from, uint radius) {
     Sample s = refine_across(fi, face, view, patch_instance, unpack_uv(seen.y), pixel);
     Patch patch_ = patch_at(face.first_patch + patch_instance - fi.first_patch_instance);
     uvec2 word = uvec2(patch_instance + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0))));
-    Candidate c = Candidate(ABSENT, from, fi.face + 1u, false, true, s.q.z, length(s.miss), vec2(0.0), word);
+    Candidate c = Candidate(ABSENT, from, fi.face + 1u, fi.instance, false, true, s.q.z, length(s.miss), vec2(0.0), word);
     bool within = true;
 #ifdef WITHIN_VOLUME
     if (!in_volume(s.q, GAP_SLACK * frame.gap_radius_px)) return c;

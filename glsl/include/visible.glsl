@@ -20,6 +20,8 @@ const uint BORDER_BEFORE = 0x80000000u;
 const uint ISOLATED = 0x8000u;
 // Without BORDER_BEFORE: the visible surface is a candidate, and a skirt lies before it.
 const uint BACK_BEHIND_BORDER = 0x8000u;
+// The same, while the pixel has no mark: a front between back faces.
+const uint FRONT_BETWEEN_BACKS = BACK_BEHIND_BORDER;
 // Distance from a back face to which `gap_fill` searches for a front that it lies on.
 const uint WIDE_BAND_PX = 16u;
 const uint SEEN_KIND = 0x60000000u;

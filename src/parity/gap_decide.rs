@@ -19,6 +19,7 @@ struct Given {
     kind: u32,
     from: u32,
     face: u32,
+    instance: u32,
     flags: u32,
     depth: f32,
     miss: f32,
@@ -48,6 +49,7 @@ impl Given {
             kind: c.kind as u32,
             from: c.from as u32,
             face: c.face,
+            instance: c.instance,
             flags: bits(&[c.inside, c.away, c.outline.ends]),
             depth: c.depth,
             miss: c.miss,
@@ -63,7 +65,8 @@ impl Pixel {
         let mut given = [Given::default(); MOST_CANDIDATES + 1];
         given.iter_mut().zip(candidates).for_each(|(given, c)| *given = Given::new(c));
         given[MOST_CANDIDATES] = Given::new(&s.own);
-        let flags = [s.border, s.isolated, s.empty, s.empty_beside, s.other_beside, s.other.is_some(), s.cut_open];
+        let of_seen = [s.border, s.isolated, s.empty, s.empty_beside, s.other_beside, s.other.is_some()];
+        let flags = [&of_seen[..], &[s.cut_open, s.in_solid]].concat();
         let other_depth = s.other.unwrap_or_default();
         Self { flags: bits(&flags), other_depth, seen: s.seen, count: candidates.len() as u32, given }
     }
@@ -83,6 +86,7 @@ fn random_candidate(random: &mut Random, word: u32) -> Candidate {
         kind: random.pick(&[Kind::Absent, Kind::Near, Kind::Near, Kind::Present]),
         from: random.pick(&[From::Beside, From::Beside, From::Beside, From::Beyond, From::Fold]),
         face: random.integer(1, 4),
+        instance: random.integer(0, 2),
         inside,
         away,
         depth: 1.0 + random.integer(0, 12) as f32 / 64.0,
@@ -97,14 +101,15 @@ fn random_situation(random: &mut Random) -> (Situation, Vec<Candidate>) {
     let count = random.integer(0, MOST_CANDIDATES as u32);
     let candidates = (1..=count).map(|k| random_candidate(random, k)).collect();
     let mut flag = || random.integer(0, 3) == 1;
-    let (isolated, empty, other, cut_open) = (flag(), flag(), flag(), flag());
+    let (isolated, empty, other, cut_open, in_solid) = (flag(), flag(), flag(), flag(), flag());
     let (empty_beside, other_beside, border) = (flag(), flag(), !flag());
     let own = random_candidate(random, MOST_CANDIDATES as u32 + 1);
     let own = Candidate { from: From::Beside, ..own };
     let other = other.then(|| 1.0 + random.integer(0, 12) as f32 / 64.0);
     let own = if empty { Candidate::default() } else { own };
     let seen = if empty { [0; 2] } else { [77, 7] };
-    (Situation { border, isolated, empty, empty_beside, other_beside, other, cut_open, seen, own }, candidates)
+    let s = Situation { border, isolated, empty, empty_beside, other_beside, other, cut_open, in_solid, seen, own };
+    (s, candidates)
 }
 
 fn situations() -> Vec<(Situation, Vec<Candidate>)> {

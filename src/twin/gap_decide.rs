@@ -57,6 +57,8 @@ pub struct Candidate {
     pub from: From,
     /// Number in the scene, + 1; 0 for meshes and solids.
     pub face: u32,
+    /// Number of the instance of its part.
+    pub instance: u32,
     /// Its trims contain the centre.
     pub inside: bool,
     /// It is turned away from the viewer.
@@ -79,6 +81,7 @@ impl Default for Candidate {
             kind: Kind::Absent,
             from: From::Beside,
             face: 0,
+            instance: 0,
             inside: false,
             away: false,
             depth: FARTHEST,
@@ -107,6 +110,8 @@ pub struct Situation {
     pub other: Option<f32>,
     /// A volume trims the scene.
     pub cut_open: bool,
+    /// The eye is in a solid.
+    pub in_solid: bool,
     /// Word of the visibility buffer.
     pub seen: [u32; 2],
     /// The visible face; absent if there is none.
@@ -162,6 +167,24 @@ struct Evidence<'a> {
 /// A mesh or solid in the pixel itself.
 fn other_candidate(depth: f32) -> Candidate {
     Candidate { kind: Kind::Present, inside: true, depth, miss: 0.0, ..Candidate::default() }
+}
+
+/// Whether faces of two parts lie in each other: within rounding, neither is before the other.
+fn coincide(a: &Candidate, b: &Candidate) -> bool {
+    let two_parts = a.face != 0 && b.face != 0 && a.instance != b.instance;
+    two_parts && (a.depth - b.depth).abs() <= 2.0 * SAME_DEPTH * a.depth.max(b.depth)
+}
+
+/// Whether `a` is seen rather than `b`. Where parts touch, a front is; of two fronts or two backs, that of the lower
+/// instance.
+fn precedes(a: &Candidate, b: &Candidate) -> bool {
+    if !coincide(a, b) {
+        a.depth < b.depth
+    } else if a.away != b.away {
+        b.away
+    } else {
+        a.instance < b.instance
+    }
 }
 
 fn dot(a: [f32; 2], b: [f32; 2]) -> f32 {
@@ -228,7 +251,7 @@ impl<'a> Evidence<'a> {
             return;
         }
         match c.kind {
-            Kind::Present if c.depth < self.present.depth => self.present = *c,
+            Kind::Present if precedes(c, &self.present) => self.present = *c,
             Kind::Near => self.consider_near(c),
             _ => {}
         }
@@ -237,9 +260,9 @@ impl<'a> Evidence<'a> {
 
     /// Rule "closest surface".
     fn consider_closest(&mut self, c: &Candidate, before: bool) {
-        let hidden = !before && c.miss <= ON_PIXEL_PX;
+        let misses = c.miss > ON_PIXEL_PX;
         let closer = before == self.closest_before && c.miss < self.closest.miss;
-        if !hidden && (before && !self.closest_before || closer) {
+        if misses && (before && !self.closest_before || closer) {
             (self.closest, self.closest_before) = (*c, before);
         }
     }
@@ -257,7 +280,7 @@ impl<'a> Evidence<'a> {
     fn consider_near(&mut self, c: &Candidate) {
         let another = c.face != self.near.face;
         self.edge |= self.near.face != 0 && another;
-        if c.depth < self.near.depth {
+        if precedes(c, &self.near) {
             if another {
                 self.second = self.near;
             }
@@ -278,6 +301,12 @@ impl<'a> Evidence<'a> {
         self.met = c.face;
     }
 
+    /// A near face is before all that is present. It is not where it touches another part's face that is present.
+    fn near_first(&self) -> bool {
+        let (near, present) = (&self.near, &self.present);
+        near.kind == Kind::Near && near.depth < present.depth && !coincide(near, present)
+    }
+
     /// Rule "common silhouette", for two near ones.
     fn put_covering_first(&mut self) {
         let meet = self.second.kind == Kind::Near && !self.wholly_before(&self.near, &self.second);
@@ -287,8 +316,8 @@ impl<'a> Evidence<'a> {
     }
 
     /// Rule "common silhouette", for the own face.
-    fn own_is_covered(&self, near_first: bool) -> bool {
-        let nearest = if near_first { &self.near } else { &self.present };
+    fn own_is_covered(&self) -> bool {
+        let nearest = if self.near_first() { &self.near } else { &self.present };
         let ends = self.s.border && self.s.own_on_pixel() && self.s.own.kind == Kind::Near;
         ends && nearest.kind != Kind::Absent && nearest.face != self.s.own.face && covers(nearest, &self.s.own)
     }
@@ -301,8 +330,7 @@ impl<'a> Evidence<'a> {
 
     /// Rule "interior back".
     fn behind_gap(&self) -> [u32; 2] {
-        let near_first = self.near.kind == Kind::Near && self.near.depth < self.present.depth;
-        if self.present.kind == Kind::Present && !near_first {
+        if self.present.kind == Kind::Present && !self.near_first() {
             self.present.word
         } else if self.near.kind == Kind::Near {
             self.near.word
@@ -321,11 +349,11 @@ impl<'a> Evidence<'a> {
         if s.is_interior() {
             return self.behind_gap();
         }
-        let near_first = self.near.kind == Kind::Near && self.near.depth < self.present.depth;
-        let covered = self.own_is_covered(near_first);
+        let covered = self.own_is_covered();
+        let covering_edge = covered && self.near_first();
         let third = s.own.kind == Kind::Near && self.corner;
         let mut grown = false;
-        if s.border && s.own_on_pixel() && !covered && !third && s.own.depth < self.present.depth {
+        if s.border && s.own_on_pixel() && !covered && !third && precedes(&s.own, &self.present) {
             grown = self.own_has_grown();
             if s.own.inside || grown {
                 self.present = Candidate { kind: Kind::Present, ..s.own };
@@ -340,18 +368,19 @@ impl<'a> Evidence<'a> {
             _ => {}
         }
         // rule "edge"
-        let two = self.edge && self.near.depth < self.present.depth && !grown && !s.isolated;
+        let two = self.edge && self.near_first() && !grown && !s.isolated;
         // rule "outline of the part"
         let cut_open = s.cut_open && s.border && s.own_on_pixel() && s.own.inside && s.own.away;
         let outline = cut_open && self.near.kind == Kind::Near && self.near.depth < s.own.depth;
-        if covered && near_first || two || outline {
+        if covering_edge || two || outline {
             return self.near.word;
         }
         if self.present.kind == Kind::Present {
             return self.present.word;
         }
         // rule "background"
-        if if s.border { s.empty } else { s.empty_beside } {
+        let ends = if s.border { s.empty } else { s.empty_beside };
+        if ends && !s.in_solid {
             return [0; 2];
         }
         match (self.near.kind, s.other) {

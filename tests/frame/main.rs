@@ -62,4 +62,5 @@ mod trims;
 mod turned;
 #[path = "../watched/mod.rs"]
 mod watched;
+mod within;
 mod zoom;

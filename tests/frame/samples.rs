@@ -91,6 +91,31 @@ fn the_eye_within_a_solid() {
     assert_silent(renderer);
 }
 
+/// The eye within the bracket, near its edges: a pixel at an edge sees no background through it, and no face goes on
+/// before the next one.
+#[test]
+fn edges_seen_from_within_a_solid() {
+    let model = sample("bracket.step");
+    let tracer = Tracer::new(&model);
+    let mut renderer = watched(&model);
+    for (eye, target) in [
+        ([-28.998139178, 24.992704573, 5.520449613], [-29.001992833, 25.000260627, 5.489642693]),
+        ([-30.897668642, 3.598720278, 9.599823933], [-28.596533337, 4.738630623, 7.607425936]),
+        ([-32.00978415, -4.019200443, 11.00432869], [-32.00267684, -4.005425996, 11.004989663]),
+    ] {
+        let mut camera = Camera {
+            eye: DVec3::from_array(eye),
+            target: DVec3::from_array(target),
+            ..Camera::around(model.control_bounds(), VIEWS[0], DVec3::Z, 35f64.to_radians(), (640, 360))
+        };
+        camera.fit_depth(model.control_bounds());
+        let picture = render(&mut renderer, &camera);
+        let j = judged(&tracer, &camera, &picture);
+        assert_eq!((j.wrong, j.given_up), (0, 0), "from {eye:?}: {:?}", j.mismatches);
+    }
+    assert_silent(renderer);
+}
+
 #[test]
 fn a_picture_one_pixel_off_is_seen() {
     let model = sample("bracket.step");

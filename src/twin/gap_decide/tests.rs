@@ -83,6 +83,7 @@ fn an_interior_back_gives_way_to_the_closest_surface() {
     shows(&interior(), &[beside(1, 0.9, 0.3), beside(2, 0.9, 0.2)], [2, 0]);
     shows(&interior(), &[beside(1, 0.9, 0.3), beside(2, 1.1, 0.2)], [1, 0]); // one before it is better
     shows(&interior(), &[beside(1, 0.9, 0.4)], SEEN);
+    shows(&interior(), &[beside(1, 0.9, 0.01)], SEEN); // it passes the centre, beyond the end of the face
 }
 
 #[test]
@@ -90,6 +91,37 @@ fn two_borders_before_what_is_present_are_an_edge() {
     shows(&nothing(), &[near(1, 0.9), near(2, 0.8), present(3, 1.0)], [2, 0]);
     shows(&nothing(), &[near(1, 0.9), near(2, 0.8), present(3, 0.7)], [3, 0]);
     shows(&nothing(), &[near(2, 0.9), near(2, 0.8), present(3, 1.0)], [3, 0]); // of one face
+}
+
+/// Faces 1 and 2 lie in each other, and rounding puts either first.
+#[test]
+fn of_two_parts_that_touch_the_front_of_the_lower_instance_shows() {
+    let of = |instance: u32, c: Candidate| Candidate { instance, ..c };
+    let farther = 0.9 * (1.0 + SAME_DEPTH);
+    for (a, b) in [(0.9, farther), (farther, 0.9)] {
+        let (low, high) = (of(0, present(1, a)), of(1, present(2, b)));
+        shows(&nothing(), &[low, high], [1, 0]);
+        shows(&nothing(), &[high, low], [1, 0]);
+        shows(&nothing(), &[high, Candidate { away: true, ..low }], [2, 0]);
+        shows(&before(of(1, present(9, a))), &[of(0, present(1, b))], [1, 0]);
+        shows(&before(of(0, present(9, a))), &[of(1, present(1, b))], [9, 0]);
+    }
+    // of one part, and farther apart, the nearer
+    shows(&nothing(), &[of(1, present(1, farther)), of(1, present(2, 0.9))], [2, 0]);
+    shows(&nothing(), &[of(0, present(1, 0.901)), of(1, present(2, 0.9))], [2, 0]);
+}
+
+/// Face 1 is the end of a pipe, 3 its wall; the end lies in face 2 of another part.
+#[test]
+fn the_end_of_a_part_within_another_part_s_face_is_not_before_it() {
+    let of = |instance: u32, c: Candidate| Candidate { instance, ..c };
+    let farther = 0.9 * (1.0 + SAME_DEPTH);
+    let pipe = [of(1, near(1, 0.9)), of(1, near(3, 0.95))];
+    let with = |face: Candidate| [pipe[0], pipe[1], face];
+    shows(&nothing(), &with(of(0, present(2, farther))), [2, 0]);
+    shows(&nothing(), &with(of(1, present(2, farther))), [1, 0]); // of the same part
+    shows(&nothing(), &with(of(0, present(2, 0.901))), [1, 0]); // behind it
+    shows(&interior(), &with(of(0, present(2, farther))), [2, 0]);
 }
 
 #[test]
@@ -147,6 +179,7 @@ fn a_mesh_or_solid_is_known_at_the_very_pixel() {
 #[test]
 fn where_nothing_is_present_the_background_shows() {
     shows(&nothing(), &[near(1, 0.9)], NOTHING);
+    shows(&Situation { in_solid: true, ..nothing() }, &[near(1, 0.9)], [1, 0]); // the ray leaves a solid
     let ends = Situation { empty_beside: true, ..back() };
     shows(&ends, &[near(1, 0.9)], NOTHING);
     shows(&ends, &[present(1, 2.0)], [1, 0]);

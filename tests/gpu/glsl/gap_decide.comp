@@ -16,6 +16,7 @@ struct Given {
     uint kind;
     uint from;
     uint face;
+    uint instance;
     uint flags; // inside, away, and of its outline: ends
     float depth;
     float miss;
@@ -24,7 +25,7 @@ struct Given {
     vec2 into;
 };
 struct Pixel {
-    uint flags; // border, isolated, empty, empty_beside, other_beside, other, cut_open
+    uint flags; // border, isolated, empty, empty_beside, other_beside, other, cut_open, in_solid
     float other_depth;
     uvec2 seen;
     uint count;
@@ -37,7 +38,9 @@ layout(push_constant) uniform Push { uint count; };
 
 Candidate candidate(uint k) {
     Given g = pixels[gl_GlobalInvocationID.x].given[k];
-    return Candidate(g.kind, g.from, g.face, (g.flags & 1u) != 0u, (g.flags & 2u) != 0u, g.depth, g.miss, g.slope, g.word);
+    bool inside = (g.flags & 1u) != 0u;
+    bool away = (g.flags & 2u) != 0u;
+    return Candidate(g.kind, g.from, g.face, g.instance, inside, away, g.depth, g.miss, g.slope, g.word);
 }
 
 Outline outline_of(Candidate c, vec2 pixel) {
@@ -52,7 +55,7 @@ void main() {
     if (i >= count) return;
     uint flags = pixels[i].flags;
     Situation s = Situation(flag(flags, 0u), flag(flags, 1u), flag(flags, 2u), flag(flags, 3u), flag(flags, 4u),
-                            flag(flags, 5u), pixels[i].other_depth, flag(flags, 6u), pixels[i].seen,
+                            flag(flags, 5u), pixels[i].other_depth, flag(flags, 6u), flag(flags, 7u), pixels[i].seen,
                             candidate(MOST_CANDIDATES));
     Evidence e = no_evidence(s);
     for (uint k = 0u; k < pixels[i].count; ++k) consider(e, s, candidate(k));
