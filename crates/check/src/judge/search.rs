@@ -85,6 +85,10 @@ impl Search<'_, '_> {
         if start == Answer::Tie {
             return Class::Tie;
         }
+        // a face that begins at the very centre is the nearest hit there or not, by rounding
+        if start == Answer::Yes {
+            return shift(0.0);
+        }
         let mut inner = 0.0;
         let mut before = [start; DIRECTIONS];
         let mut beyond = false;
@@ -268,5 +272,24 @@ impl Reach {
     pub fn near(&self, face: u32, pixel: DVec2) -> bool {
         let holds = |(lo, hi): &(DVec2, DVec2)| lo.cmple(pixel).all() && hi.cmpge(pixel).all();
         face == 0 || self.boxes.get(&face).is_some_and(|boxes| boxes.iter().any(holds))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::shapes::*;
+    use glam::DAffine3;
+
+    #[test]
+    fn what_is_right_at_the_centre_has_no_shift() {
+        let sheet = face(1, rectangle(DVec3::new(-0.5, -0.5, 0.0), DVec3::X, DVec3::Y), vec![]);
+        let tracer = Tracer::new(&model(vec![sheet], &[DAffine3::IDENTITY]));
+        let camera = view(DVec3::new(0.3, 0.2, 3.0));
+        let centre = DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1)) * 0.5;
+        let wanted = Wanted { face: 1, depth: None, fold: false };
+        let probe = &mut tracer.probe(&camera);
+        let search = Search { probe, centre, wanted, limit: 0.5, slack: 1e-6, touches: false };
+        assert_eq!(search.run(), Class::Shift(0.0));
     }
 }

@@ -6,6 +6,6 @@ mod facets;
 mod judge;
 mod patches;
 mod quadrics;
-mod shapes;
+pub(crate) mod shapes;
 mod snap;
 mod touching;
