@@ -141,7 +141,7 @@ impl EdgeData {
         for (edge, number) in edges.edges.iter().zip(number..) {
             let style = self.settings.style(edge.kind);
             let may_fold = self.settings.silhouettes && edge.kind == EdgeKind::Smooth;
-            let (count, texels) = may_fold.then(|| seeds(edge, edges.reach, &beside)).unwrap_or_default();
+            let (count, texels) = if may_fold { seeds(edge, edges.reach, &beside) } else { Default::default() };
             if style.is_none() && count == 0 {
                 continue;
             }
