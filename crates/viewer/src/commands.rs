@@ -166,8 +166,6 @@ impl Shortcut {
         };
         input.events.iter().any(|event| match event {
             egui::Event::Key { key, pressed: true, modifiers, .. } => *key == self.key && exact(*modifiers),
-            // Ctrl + C comes as this, with or without Shift
-            egui::Event::Copy => self.key == Key::C && exact(input.modifiers),
             _ => false,
         })
     }
@@ -188,11 +186,8 @@ mod tests {
     use super::*;
 
     fn after(key: Key, modifiers: Modifiers) -> Vec<Command> {
-        after_event(egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }, modifiers)
-    }
-
-    fn after_event(event: egui::Event, modifiers: Modifiers) -> Vec<Command> {
         let ctx = egui::Context::default();
+        let event = egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
         let input = egui::RawInput { events: vec![event], modifiers, ..Default::default() };
         let mut commands = Vec::new();
         let _ = ctx.run(input, |ctx| commands = pressed(ctx));
@@ -212,13 +207,5 @@ mod tests {
         assert_eq!(after(Key::Questionmark, SHIFT), [Command::Help]);
         assert_eq!(after(Key::H, Modifiers::ALT), []);
         assert_eq!(after(Key::Plus, SHIFT), [Command::Zoom(1.0)]);
-    }
-
-    /// A window sends the key of copying as an event of its own.
-    #[test]
-    fn the_key_of_copying_is_known() {
-        let held = |shift| Modifiers { ctrl: true, command: true, shift, ..Modifiers::NONE };
-        assert_eq!(after_event(egui::Event::Copy, held(true)), [Command::CopyCommand]);
-        assert_eq!(after_event(egui::Event::Copy, held(false)), []);
     }
 }

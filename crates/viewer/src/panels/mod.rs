@@ -275,6 +275,7 @@ pub fn show(
     egui::SidePanel::right("properties").default_width(240.0).show(ctx, |panel| properties::show(panel, ui, session));
     let rect = ctx.available_rect();
     overlay::show(ctx, rect, ui, session, facts);
+    status::loading(ctx, ui, facts);
     status::windows(ctx, ui, session, settings, facts);
     ui.pointer_taken = ctx.is_using_pointer() || ctx.is_pointer_over_area();
     rect

@@ -11,18 +11,11 @@ use selvedge_check::light;
 /// Steps of the strip that shows a scale.
 const STRIP_STEPS: usize = 32;
 
+/// Points between the window's bottom and the files that are being read.
+const LOADING_ABOVE: f32 = 40.0;
+
 /// Shows the line.
 pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &Session, facts: &Facts<'_>) {
-    for (path, stage, share) in &facts.loading {
-        panel.horizontal(|row| {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            let bar = egui::ProgressBar::new(share.unwrap_or(0.0)).text(format!("{name}: {stage}"));
-            row.add(bar.desired_width(320.0).animate(false));
-            if row.button("Cancel").clicked() {
-                ui.commands.push(Command::Cancel);
-            }
-        });
-    }
     panel.horizontal(|row| {
         badge(row, ui, session, facts);
         row.separator();
@@ -45,6 +38,26 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &Session, facts: &Facts<
                 ui.warnings = true;
             }
         });
+    });
+}
+
+/// Shows the files that are being read, over the picture: the view keeps its size.
+pub fn loading(ctx: &egui::Context, ui: &mut Ui, facts: &Facts<'_>) {
+    if facts.loading.is_empty() {
+        return;
+    }
+    let window = egui::Window::new("Reading").title_bar(false).resizable(false);
+    window.anchor(egui::Align2::CENTER_BOTTOM, [0.0, -LOADING_ABOVE]).show(ctx, |rows| {
+        for (path, stage, share) in &facts.loading {
+            rows.horizontal(|row| {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                let bar = egui::ProgressBar::new(share.unwrap_or(0.0)).text(format!("{name}: {stage}"));
+                row.add(bar.desired_width(320.0).animate(false));
+                if row.button("Cancel").clicked() {
+                    ui.commands.push(Command::Cancel);
+                }
+            });
+        }
     });
 }
 

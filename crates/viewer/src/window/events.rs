@@ -52,6 +52,7 @@ impl ApplicationHandler<Event> for App {
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(Opened { window, input, screen, .. }) = &mut self.opened else { return };
         let response = input.on_window_event(window, &event);
+        name_copying(input.egui_input_mut());
         match &event {
             WindowEvent::CloseRequested => events.exit(),
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
@@ -149,6 +150,15 @@ impl ApplicationHandler<Event> for App {
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
         tracing::info!("closing");
+    }
+}
+
+/// Ctrl + Shift + C comes as the event of copying, which has no modifiers: by the time of the frame they may be let go.
+/// It becomes the event of a key.
+fn name_copying(input: &mut egui::RawInput) {
+    let modifiers = input.modifiers;
+    if let Some(last) = input.events.last_mut().filter(|last| modifiers.shift && **last == egui::Event::Copy) {
+        *last = egui::Event::Key { key: egui::Key::C, physical_key: None, pressed: true, repeat: false, modifiers };
     }
 }
 
@@ -387,3 +397,21 @@ const ENDINGS: &[&str] = &[
     "step", "stp", "stpz", "p21", "iges", "igs", "obj", "stl", "3mf", "amf", "ply", "off", "gltf", "glb", "3dm", "bv",
     "csg", "asc", "selvedge", "toml", "gz",
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::name_copying;
+    use egui::{Event, Key, Modifiers, RawInput};
+
+    #[test]
+    fn copying_with_shift_is_a_key() {
+        let after = |modifiers: Modifiers| {
+            let mut input = RawInput { events: vec![Event::Copy], modifiers, ..RawInput::default() };
+            name_copying(&mut input);
+            input.events.remove(0)
+        };
+        let held = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+        assert!(matches!(after(held), Event::Key { key: Key::C, pressed: true, modifiers, .. } if modifiers == held));
+        assert_eq!(after(Modifiers::COMMAND), Event::Copy);
+    }
+}

@@ -140,9 +140,10 @@ fn script(display: &Display) {
     display.click(scene.edge());
     let selected = program.wait("selected ");
     assert!(selected.contains("edge ") || selected.contains("vertex "), "{selected}");
+    program.rest();
     display.click(scene.vertex());
     let selected = program.wait("selected ");
-    assert!(selected.contains("vertex "), "{selected}");
+    assert!(selected.contains("vertex "), "{}", program.all.join("\n"));
 
     // turned by the right button; all pixels come in the end
     let (width, height) = (scene.camera.size.0, scene.camera.size.1);
