@@ -129,7 +129,7 @@ fn thousands_of_primitives() {
         ("10 000 holes", solids::holes(100)),
         ("10 000 whose tools stand out", far_out),
     ];
-    right_at((36, 24), cases, false);
+    right_at((48, 32), cases, false);
 }
 
 /// A ray that needs more steps than the driver allows is counted, not silently drawn wrong.

@@ -46,7 +46,7 @@ impl App {
     /// Opens the device, with a renderer on it.
     pub fn open_device(&mut self, window: &Window) -> Result<(Waiter, Engine, Screen), ViewError> {
         let ViewOptions { device, validation, .. } = &self.options;
-        let options = DeviceOptions { device: device.clone(), validation: *validation, ..Default::default() };
+        let options = DeviceOptions { device: device.clone(), validation: *validation };
         let screen = Screen::new(window, &options)?;
         let engine = Engine::new(screen.renderer()?);
         self.devices += 1;

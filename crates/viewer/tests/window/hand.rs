@@ -12,6 +12,8 @@ use std::time::{Duration, Instant};
 const STILL: Duration = Duration::from_millis(700);
 /// Moves of one drag.
 const STEPS: u32 = 6;
+/// Between two of them, as of a hand: longer than a frame without a new picture.
+const STEP: Duration = Duration::from_millis(30);
 /// Size of the picture that Ctrl + Shift + S writes.
 pub const PICTURE: (u32, u32) = (1280, 720);
 
@@ -83,6 +85,7 @@ impl Display {
         std::thread::sleep(Duration::from_millis(200));
         self.xdotool(&format!("mousedown {button}"));
         for step in 1..=STEPS {
+            std::thread::sleep(STEP); // a press and a release within one frame are a click
             self.move_to((from + by * (f64::from(step) / f64::from(STEPS))).round());
         }
         self.xdotool(&format!("mouseup {button}"));
