@@ -170,7 +170,7 @@ mod tests {
         let mut found = Found::default();
         found.update(&world, "");
         let all: Vec<usize> = (0..world.model.instances.len()).collect();
-        assert_eq!(found.files, [all.clone()]);
+        assert_eq!(found.files, std::slice::from_ref(&all));
         found.files.clear();
         found.update(&world, "");
         assert!(found.files.is_empty(), "it is not searched again");
