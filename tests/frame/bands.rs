@@ -176,6 +176,7 @@ fn lengths_and_marks() {
 }
 
 #[test]
+#[ignore = "half a minute: tools/soak"]
 fn samples_of_spline_parts() {
     with_less_and_less(&of_samples()[0], Steps::Wide);
 }

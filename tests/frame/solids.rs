@@ -122,6 +122,7 @@ fn many_primitives() {
 
 /// Holes that give a tile more than 1024 leaves, and 10 001 of them: few pixels, because the reference is slow.
 #[test]
+#[ignore = "half a minute: tools/soak"]
 fn thousands_of_primitives() {
     let far_out = solids::holes_by(100, &solids::post(3.0, -5.0, 15.0));
     let cases = vec![
