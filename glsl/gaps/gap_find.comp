@@ -12,8 +12,8 @@
 //          31   row below                                · · b   · b ·   b · ·
 //
 // Where the eye is within a solid, all its faces are seen from behind. What sees nothing else within WIDE_BAND_PX, nor any
-// skirt, is not listed: the second step would find nobody to ask. A front between backs is listed, without the mark: a
-// crack in a face from behind shows the next front.
+// skirt, is not listed: the second step would have no candidate. A front between backs is listed, without the mark: through
+// a crack in a face that is seen from behind, the next front shows.
 #include "scene.glsl"
 #include "visible.glsl"
 

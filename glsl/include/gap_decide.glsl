@@ -98,8 +98,8 @@ void consider_touching(inout Evidence e, Situation s, Candidate c) {
     if (touches && c.depth < e.touching.depth) e.touching = c;
 }
 
-// Rule "closest surface": among those that miss the centre. A surface that passes it is there, or behind the back face,
-// or the face has ended. One before the back face is better than any behind it.
+// Rule "closest surface" compares surfaces that miss the centre. A surface that covers the centre is present, or lies
+// behind the back face, or its face ends before the centre. One before the back face is better than any behind it.
 void consider_closest(inout Evidence e, Candidate c, bool before) {
     bool misses = c.miss > ON_PIXEL_PX;
     if (misses && (before && !e.closest_before || before == e.closest_before && c.miss < e.closest.miss)) {

@@ -266,7 +266,6 @@ fn the_programs_judge_of_sections() {
         let cut = model.section(DVec3::Z, low + 1.0).unwrap();
         for camera in [perspective(&cut, SIZE), orthographic(&cut, SIZE)] {
             let found = judged_by_program(&cut, &camera);
-            println!("{name}: {found:?}");
             assert!(found.visible > 100, "{name}: {found:?}");
             assert!(found.missing == 0 && found.stray <= stray, "{name}: {found:?}");
         }

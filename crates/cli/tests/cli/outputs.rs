@@ -83,7 +83,7 @@ fn no_output_replaces_an_input() {
     {
         refused(call, "the same file as the input");
     }
-    // also those that a file of OpenSCAD's names, even where they are left out
+    // files that an OpenSCAD file names are inputs, too, even where the import leaves them out
     let csg = path("relief.csg");
     fs::write(&csg, "cube(size = 1); surface(file = \"in.png\");").unwrap();
     refused(&["render", &csg, "-o", &picture], "the same file as the input");

@@ -71,7 +71,7 @@ impl Joiner {
         Self { newest, to, joined: 0, done: 0 }
     }
 
-    /// Puts files together, in place of those that wait.
+    /// Starts to put these files together. Lists that still wait are dropped.
     pub fn join(&mut self, files: Vec<Arc<Loaded>>) {
         let number = self.newest() + 1;
         self.newest.store(number, Ordering::Relaxed);

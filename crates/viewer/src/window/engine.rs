@@ -141,7 +141,7 @@ impl Engine {
         let (to, from) = mpsc::channel();
         let thread = thread::spawn(move || {
             let result = caught(|| upload(&mut renderer, request));
-            // nobody waits for it when the window closes
+            // when the window closes, the receiver is gone
             drop(to.send(Uploaded { renderer, result }));
             done();
         });

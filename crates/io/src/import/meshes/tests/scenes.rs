@@ -60,7 +60,7 @@ fn metres_and_y_up_become_millimetres_and_z_up() {
     assert_eq!(super::super::recognise(&binary(&text(""), &data())), Some("glb"));
 }
 
-/// The limit on a file counts for its buffers, too; those that are read are inputs.
+/// Buffers of a file have the same limit as the file. Buffers that are read are listed as inputs.
 #[test]
 fn buffers_beside_the_file() {
     let folder = std::env::temp_dir().join(format!("selvedge-gltf-{}", std::process::id()));
