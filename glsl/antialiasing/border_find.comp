@@ -2,8 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `border_find`: the list of pixels beside another face, another thing, or a jump of the depth, in some rows of
-// the picture. One thread a column of 16 pixels, whose neighbours' columns it learns from the threads beside it; the
-// first and the last of a workgroup do nothing else.
+// the picture. One thread a column of 16 pixels; the nine pixels around go with it down the column.
 //
 //     a b c     another pixel among the eight around, in scenes with meshes or solids among b, d, e and g; or, of a surface
 //     d x e     that hides itself, a jump of J between two pixels: the depths of three pixels in a row bend by J, and climb
@@ -32,16 +31,13 @@ layout(scalar, push_constant) uniform Rows {
 
 const uint GROUP = 64u; // threads of a workgroup of the next steps
 const uint POINTS = 16u; // of a pixel
-const int LANES = 64;
 const int ROWS = 16;
 const uint OTHER = 0xffffffffu; // a mesh or solid, whichever
 const uint FACET = 0xfffffffeu; // a triangle of an operand, whichever
 // Of roots of linear light: steps of less leave no stair that is seen.
 const float TINT_STEP = 1.0 / 24.0;
 
-shared uint keys[(ROWS + 2) * LANES];
-shared float depths[(ROWS + 2) * LANES];
-shared uint tints[(ROWS + 2) * LANES]; // colours of meshes: roots of linear light, as bytes
+ivec2 inside(ivec2 at) { return clamp(at, ivec2(0), ivec2(frame.size) - 1); } // beside the picture as at its border
 
 // What is seen as one: a placed face, a placed mesh, a side of a solid, OTHER where it is not sampled; 0 where nothing
 // is.
@@ -58,47 +54,61 @@ uint key_at(ivec2 at, float depth) {
     return word_at(patch_instances, seen_patch_instance(word)) + 1u;
 }
 
-bool tints_differ(uint a, uint b) {
-    vec4 step_ = abs(unpackUnorm4x8(a) - unpackUnorm4x8(b));
-    return max(step_.x, max(step_.y, step_.z)) > TINT_STEP;
+vec3 tint_at(ivec2 at) { return sqrt(max(imageLoad(resolved, inside(at)).rgb, 0.0)); }
+
+// Whether the tint changes to a pixel to the sides, or above or below.
+bool is_crease(ivec2 at) {
+    const ivec2 ways[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
+    vec3 own = tint_at(at);
+    bool is = false;
+    for (int k = 0; k < 4; ++k) is = is || any(greaterThan(abs(tint_at(at + ways[k]) - own), vec3(TINT_STEP)));
+    return is;
+}
+
+// Three pixels beside each other.
+struct Three {
+    uvec3 keys;
+    vec3 depths;
+};
+
+Three three_around(ivec2 middle) {
+    Three three;
+    for (int k = 0; k < 3; ++k) {
+        ivec2 at = inside(middle + ivec2(k - 1, 0));
+        three.depths[k] = imageLoad(resolved, at).a;
+        three.keys[k] = key_at(at, three.depths[k]);
+    }
+    return three;
 }
 
 void main() {
-    int lane = int(gl_LocalInvocationID.x);
-    ivec2 first = ivec2(int(gl_WorkGroupID.x) * (LANES - 2) + lane - 1, int(top) + int(gl_WorkGroupID.y) * ROWS - 1);
-    ivec2 last = ivec2(frame.size) - 1;
-    for (int row = 0; row < ROWS + 2; ++row) {
-        ivec2 at = clamp(first + ivec2(0, row), ivec2(0), last); // beside the picture as at its border
-        vec4 seen = imageLoad(resolved, at);
-        keys[row * LANES + lane] = key_at(at, seen.a);
-        depths[row * LANES + lane] = seen.a;
-        if (SCENE_HAS_MESHES_OR_SOLIDS) tints[row * LANES + lane] = packUnorm4x8(vec4(sqrt(max(seen.rgb, 0.0)), 0.0));
-    }
-    barrier();
-    if (lane == 0 || lane == LANES - 1 || first.x > last.x) return;
-    const int ways[4] = int[](1, LANES, LANES - 1, LANES + 1);
+    ivec2 first = ivec2(gl_GlobalInvocationID.x, int(top) + int(gl_WorkGroupID.y) * ROWS);
+    if (first.x >= int(frame.size.x)) return;
+    Three above;
+    Three here = three_around(first - ivec2(0, 1));
+    Three below = three_around(first);
     uint listed = 0u;
-    for (int row = 1; row <= ROWS; ++row) {
-        int middle = row * LANES + lane;
-        uint key = keys[middle];
-        float here = depths[middle];
-        bool alone = true;
-        bool jump = false;
-        bool step_ = false;
-        // a straight border within a pixel is also between its centre and one to the sides, or above or below
-        int way_count = SCENE_HAS_MESHES_OR_SOLIDS ? 2 : 4;
-        for (int k = 0; k < way_count; ++k) {
-            int before = middle - ways[k];
-            int behind = middle + ways[k];
-            alone = alone && keys[before] == key && keys[behind] == key;
-            jump = jump || jumps(depths[before] - here, depths[behind] - here, here);
-            if (SCENE_HAS_MESHES_OR_SOLIDS) {
-                step_ = step_ || tints_differ(tints[before], tints[middle]) || tints_differ(tints[behind], tints[middle]);
-            }
+    for (int row = 0; row < ROWS; ++row) {
+        ivec2 at = first + ivec2(0, row);
+        above = here;
+        here = below;
+        below = three_around(at + ivec2(0, 1));
+        uint key = here.keys.y;
+        float depth = here.depths.y;
+        bool alone = here.keys == uvec3(key) && above.keys.y == key && below.keys.y == key;
+        vec4 before = vec4(here.depths.x, above.depths.yzx);
+        vec4 behind = vec4(here.depths.z, below.depths.yxz);
+        bvec4 jump = jumps(before - depth, behind - depth, depth);
+        bool crease = false;
+        if (SCENE_HAS_MESHES_OR_SOLIDS) {
+            // a straight border within a pixel is also between its centre and one to the sides, or above or below
+            jump.zw = bvec2(false);
+            crease = (sees_mesh(key) || key == FACET) && is_crease(at);
+        } else {
+            alone = alone && above.keys == uvec3(key) && below.keys == uvec3(key);
         }
         bool sampled = key != 0u && key != OTHER;
-        bool crease = SCENE_HAS_MESHES_OR_SOLIDS && (sees_mesh(key) || key == FACET) && step_;
-        if (first.y + row < int(end) && (!alone || sampled && jump || crease)) listed |= 1u << row;
+        if (at.y < int(end) && (!alone || sampled && any(jump) || crease)) listed |= 1u << row;
     }
     for (; listed != 0u; listed &= listed - 1u) {
         ivec2 at = first + ivec2(0, findLSB(listed));

@@ -2,13 +2,18 @@
 // evaluates the patches only, and pass `border_mean` mixes. One thread for each pixel of the list.
 //
 //     ┌────────────┐    sixteen points of the pixel, each in a row and a column of its own. At each point, the sheets
-//     │·  A  ╲     │    visible in the nine pixels around are evaluated, by their exact surfaces and trims; the nearest
-//     │    ·  ╲  B │    is visible. If there is none, the point shows the nearest of these pixels without a patch.
+//     │·  A  ╲     │    visible in the nine pixels around are evaluated, with their trims; the nearest is visible. If
+//     │    ·  ╲  B │    there is none, the point shows the nearest of these pixels without a patch.
 //     │  ·     ╲  ·│
 //     └────────────┘    a sheet has the colour of the pixel that shows it
 //
-// A sheet is one side of a face as it is seen: a face that hides a part of itself has several. The trim test is that of
-// one way (trim.glsl).
+// A sheet is one side of a face as it is seen: a face that hides a part of itself has several. Its exact surface is
+// evaluated three times, near the pixel's centre and beside it; between the points its terms of second order are enough,
+// beside a fold, too:
+//
+//     q(u, v) ≈ q + u qu + v qv + (u² quu + 2 u v quv + v² qvv) / 2      homogeneous pixels, from the middle on
+//
+// A plane is exact. The trim test is that of one way (trim.glsl).
 #include "scene.glsl"
 #include "view.glsl"
 
@@ -41,52 +46,78 @@ layout(scalar, binding = 10) readonly buffer Grids { BorderGrids grids; };
 layout(scalar, binding = 11) writeonly buffer SeenPoints { BorderPoint seen_points[]; };
 
 const uint MOST_SHEETS = 4u;
-// Required distance to the points, in pixels: far less than a sixteenth.
+// Required distance of a sheet's middle to the pixel's centre, in pixels: far less than a sixteenth.
 const float CLOSE_PX = 0.02;
+// From the middle to where the derivatives are taken again, of the patch: its second derivatives are differences.
+const float ASIDE = 1.0 / 64.0;
+// Two are enough, but for what is narrower than a pixel (steps are at most MAX_STEP) and beside folds, where each step
+// leaves a quarter of the distance.
+const uint POINT_STEPS = 8u;
 
-// A sheet, as visible in the pixel `at`.
+// A sheet near the pixel's centre.
 struct Sheet {
-    vec2 pixel; // where it is visible
     uint patch_instance;
     FaceInstance fi;
     Face face;
     Patch patch_;
-    View view;
-    vec2 uv;
-    mat2 uv_along; // change of (u, v) a pixel
+    vec2 middle; // (u, v) of the point nearest to the pixel's centre
+    vec2 seen;   // where the sheet is visible, from the middle
+    vec4 q;      // homogeneous pixel of the middle, and its derivatives
+    vec4 qu;
+    vec4 qv;
+    vec4 quu;
+    vec4 quv;
+    vec4 qvv;
 };
 
-Sheet sheet_at(ivec2 at) {
+// The sheet that is visible in the pixel `at`, near another pixel's centre.
+Sheet sheet_at(ivec2 at, vec2 centre) {
     uvec2 seen = imageLoad(visibility, at).xy;
     Sheet s;
-    s.pixel = vec2(at) + 0.5;
     s.patch_instance = seen_patch_instance(seen.x);
     s.fi = face_instance_at(face_instance_of(s.patch_instance));
     s.face = face_at(s.fi.face);
-    s.view = view_at(s.fi.instance);
     s.patch_ = patch_at(s.face.first_patch + s.patch_instance - s.fi.first_patch_instance);
-    // a word's (u, v) has 16 bits, which in a large patch are more than a pixel
-    Sample here = refine_to(s.patch_, s.view, unpack_uv(seen.y), s.pixel, CLOSE_PX);
-    mat2 along = pixels_along(here, s.view);
-    float det = determinant(along);
-    s.uv_along = mat2(0.0);
-    if (abs(det) >= 1e-12) s.uv_along = inverse(along);
-    s.uv = here.uv - s.uv_along * here.miss;
+    View view = view_at(s.fi.instance);
+    Sample middle = refine_to(s.patch_, view, unpack_uv(seen.y), centre, CLOSE_PX);
+    s.middle = middle.uv;
+    s.seen = unpack_uv(seen.y) - middle.uv;
+    s.q = middle.q;
+    s.qu = to_pixel(view, vec4(middle.jet.du, 0.0));
+    s.qv = to_pixel(view, vec4(middle.jet.dv, 0.0));
+    Net net = net_of(s.patch_);
+    vec4 du[2];
+    vec4 dv[2];
+    for (uint k = 0u; k < 2u; ++k) {
+        vec2 step_ = k == 0u ? vec2(ASIDE, 0.0) : vec2(0.0, ASIDE);
+        Sample beside = sample_at(s.patch_, net, view, s.middle + step_, centre);
+        du[k] = (to_pixel(view, vec4(beside.jet.du, 0.0)) - s.qu) / ASIDE;
+        dv[k] = (to_pixel(view, vec4(beside.jet.dv, 0.0)) - s.qv) / ASIDE;
+    }
+    s.quu = du[0];
+    s.quv = 0.5 * (dv[0] + du[1]);
+    s.qvv = dv[1];
     return s;
 }
 
 // Depth of a sheet at a point of the picture; UNSEEN if it is not there.
 float depth_at(Sheet s, vec2 pixel) {
-    vec2 step_ = s.uv_along * (pixel - s.pixel);
-    // beside a fold the step may lead anywhere
-    if (any(greaterThan(abs(step_), vec2(MAX_STEP * pieces_of(s.patch_.shape))))) step_ = vec2(0.0);
-    Sample there = refine_to(s.patch_, s.view, s.uv + step_, pixel, CLOSE_PX);
-    vec2 uv = there.uv - s.uv_along * there.miss; // the rest of the way
-    bool is = length(there.miss) <= ON_PIXEL_PX && is_there(s.fi, s.face, s.patch_instance, s.patch_, uv);
+    vec2 uv = s.seen;
+    vec2 miss;
+    vec4 q;
+    for (uint i = 0u; i < POINT_STEPS; ++i) {
+        vec4 qu = s.qu + uv.x * s.quu + uv.y * s.quv;
+        vec4 qv = s.qv + uv.x * s.quv + uv.y * s.qvv;
+        q = s.q + 0.5 * (uv.x * (s.qu + qu) + uv.y * (s.qv + qv));
+        miss = q.xy / q.w - pixel;
+        vec2 step_;
+        if (newton_step(pixels_along(q, qu, qv), miss, s.patch_, step_)) uv -= step_;
+    }
+    bool is = length(miss) <= ON_PIXEL_PX && is_there(s.fi, s.face, s.patch_instance, s.patch_, s.middle + uv);
 #ifdef WITHIN_VOLUME
-    is = is && in_volume(there.q, ON_PX);
+    is = is && in_volume(q, ON_PX);
 #endif
-    return is ? there.q.z : UNSEEN;
+    return is ? q.z : UNSEEN;
 }
 
 // Whether the face's depth jumps between the pixel and the one at `step_`: by more than to the other side.
@@ -134,7 +165,7 @@ void main() {
     }
     // a separate loop: threads that run together find their sheets at different pixels
     for (uint n = 0u; n < met_count; ++n) {
-        Sheet s = sheet_at(around(at, met_from[n]));
+        Sheet s = sheet_at(around(at, met_from[n]), vec2(at) + 0.5);
         for (uint i = 0u; i < BORDER_POINTS; ++i) {
             float depth = depth_at(s, vec2(at) + 0.5 + point_of(i));
             if (!(depth < depths[i])) continue;

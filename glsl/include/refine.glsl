@@ -49,26 +49,32 @@ Sample sample_at(Patch patch_, Net net, View view, vec2 uv, vec2 pixel) {
     return s;
 }
 
-// Change of the pixel with u, and with v: the columns of J.
+// Change of the pixel with u, and with v: the columns of J. `qu` and `qv` are the derivatives of the homogeneous pixel.
+mat2 pixels_along(vec4 q, vec4 qu, vec4 qv) {
+    vec2 p = q.xy / q.w;
+    return mat2((qu.xy - p * qu.w) / q.w, (qv.xy - p * qv.w) / q.w);
+}
+
 mat2 pixels_along(Sample s, View view) {
-    vec4 qu = to_pixel(view, vec4(s.jet.du, 0.0));
-    vec4 qv = to_pixel(view, vec4(s.jet.dv, 0.0));
-    vec2 p = s.q.xy / s.q.w;
-    return mat2((qu.xy - p * qu.w) / s.q.w, (qv.xy - p * qv.w) / s.q.w);
+    return pixels_along(s.q, to_pixel(view, vec4(s.jet.du, 0.0)), to_pixel(view, vec4(s.jet.dv, 0.0)));
 }
 
 bool misses(Sample s, float close) { return dot(s.miss, s.miss) >= close * close; }
 
-// The next step of Newton's method on the patch, if there is one.
-bool step_from(Patch patch_, Sample s, View view, float close, out vec2 step_) {
-    mat2 along = pixels_along(s, view);
+// The step J^-1 F in a patch, as long as it may be; false where J has no inverse.
+bool newton_step(mat2 along, vec2 miss, Patch patch_, out vec2 step_) {
     vec2 pu = along[0];
     vec2 pv = along[1];
     float det = pu.x * pv.y - pu.y * pv.x;
-    step_ = vec2(s.miss.x * pv.y - s.miss.y * pv.x, pu.x * s.miss.y - pu.y * s.miss.x) / det;
+    step_ = vec2(miss.x * pv.y - miss.y * pv.x, pu.x * miss.y - pu.y * miss.x) / det;
     vec2 steps = abs(step_) / (MAX_STEP * pieces_of(patch_.shape));
     step_ /= max(max(steps.x, steps.y), 1.0);
-    return misses(s, close) && abs(det) >= 1e-12;
+    return abs(det) >= 1e-12;
+}
+
+// The next step of Newton's method on the patch, if there is one.
+bool step_from(Patch patch_, Sample s, View view, float close, out vec2 step_) {
+    return newton_step(pixels_along(s, view), s.miss, patch_, step_) && misses(s, close);
 }
 
 // The sample after a step on a plane, whose derivatives are constant.

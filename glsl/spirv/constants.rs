@@ -38,7 +38,6 @@ pub mod border_cells {
 pub mod border_find {
     pub const FACET: u32 = 0xfffffffe;
     pub const GROUP: u32 = 64;
-    pub const LANES: i32 = 64;
     pub const OTHER: u32 = 0xffffffff;
     pub const POINTS: u32 = 16;
     pub const ROWS: i32 = 16;
@@ -46,6 +45,7 @@ pub mod border_find {
 pub mod border_mix {
     pub const CLOSE_PX: f32 = 0.02;
     pub const MOST_SHEETS: u32 = 4;
+    pub const POINT_STEPS: u32 = 8;
 }
 pub mod border_pixel {
     pub const JUMP_OF_CLIMB: f32 = 0.5;

@@ -27,7 +27,7 @@ use crate::shaders::{self, BORDER_MIX_PLAIN, TrimTest, constant};
 use std::ops::Range;
 
 /// Columns and rows of the picture that a workgroup of the first step looks for borders in.
-const PART: [u32; 2] = [62, 16];
+const PART: [u32; 2] = [64, 16];
 
 /// Points of a pixel.
 pub(crate) const POINTS: u32 = abi::constants::border_seen::BORDER_POINTS;
