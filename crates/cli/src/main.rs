@@ -28,7 +28,6 @@ mod export;
 mod heap;
 mod info;
 mod npy;
-mod openscad;
 mod output;
 mod path;
 mod progress;
