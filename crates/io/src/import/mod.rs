@@ -5,7 +5,7 @@
 //!                                                    ├▶ obj, bv ─────┤
 //!                                                    ├▶ rhino ───────┤
 //!                                                    ├▶ meshes ──────┤  STL, OFF, PLY, 3MF, AMF, glTF
-//!                                                    ├▶ scad, brlcad ┤  Boolean solids
+//!                                                    ├▶ scad, brlcad ┤  Boolean solids; .scad through openscad
 //!                                                    ├▶ scene ───────┤  by the file's name
 //!                                                    └▶ native ──────┘
 //! ```
