@@ -56,9 +56,9 @@ fn open_by(openscad: &Path, path: &Path, name: &str, options: &Options<'_>) -> R
     options.tell(Stage::Parse { bytes: text.len() as u64 });
     let files = OtherFiles::new(path.parent(), options);
     let mut import = decoded(&text, name, |text| scad::read(text, name, options, files))?;
-    let first = said.warnings.finish(&mut import.report);
-    import.warnings.splice(0..0, first);
-    Ok(import)
+    let mut warnings = said.warnings.finish(&mut import.report);
+    warnings.append(&mut import.warnings);
+    Ok(Import { warnings, ..import })
 }
 
 fn not_installed(name: &str) -> ImportError {
