@@ -1,6 +1,6 @@
 """Renders a folder of CAD files with Ray Data: depth, normals and face numbers into Parquet shards, and a manifest.
 
-    pip install "ray[data]" selvedge
+    tools/wheel && pip install "ray[data]" out/selvedge-*.whl
     python examples/ray_dataset.py FOLDER OUT --views iso front top --size 256 256 --workers 2
 
 Each worker has a renderer of its own, on a GPU or a CPU. Each file becomes one shard, OUT/shards/NAME-HASH.parquet, with

@@ -9,8 +9,8 @@
 //!  bound    tau per patch               density    height of each v-strip in pixels
 //!  split    segments per side           lines      scan lines per strip ──(scan)──▶ rows
 //!    │(scan) sub-patches, vertices      segments   chords per curve     ──(scan)──▶
-//!  emit     list and draws              sizes      dispatches
-//!    │                                  cross      count ──(scan)──▶ insert
+//!  emit     list and draws              dispatch_arguments
+//!    │                                  cross      count ──(scan)──▶ write
 //!    │                                  sort       flips of each row
 //!    └─────────────────┬──────────────────┘
 //!                      ▼

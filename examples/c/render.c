@@ -1,6 +1,6 @@
 // Draws a CAD file to a PNG file and tells how far away the nearest point is that the picture shows.
 //
-//     cc -std=c11 render.c $(pkg-config --cflags --libs selvedge) -o render
+//     cc -std=c11 render.c $(pkg-config --cflags --libs selvedge) -lm -o render
 //     ./render part.step part.png 640 480
 
 #include <math.h>

@@ -12,8 +12,8 @@
 //! ```
 //!
 //! The device belongs to the host: this layer records into the host's command buffers, and never submits, waits, or
-//! destroys a device. It contains no geometry. `unsafe` is confined to this layer (and `headless`, the host for tools
-//! and tests), so the passes need none.
+//! destroys a device. It contains no geometry. `unsafe` is confined to this layer, to `renderer`, which a host calls, and
+//! to `headless` and the viewer's window, which are hosts: the passes need none.
 
 #[doc(hidden)]
 pub mod barrier;

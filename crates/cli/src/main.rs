@@ -1,7 +1,7 @@
 //! The command line: draw a CAD model, describe it, prove the picture right, measure the cost.
 //!
 //! ```text
-//!   render   model ─▶ picture and images      info    content of a file      
+//!   render   model ─▶ picture and images      info    content of a file
 //!   check    picture against exact rays       bench   time and memory beside the error
 //!   trims    ways to trim, side by side       sweep   time against error, over many settings
 //!   report   all of these as one document
@@ -28,7 +28,6 @@ mod export;
 mod heap;
 mod info;
 mod npy;
-mod openscad;
 mod output;
 mod path;
 mod progress;

@@ -49,6 +49,7 @@ pub fn importing<T>(file: &str, work: impl FnOnce(&(dyn Fn(Stage) + Sync)) -> T)
 fn show(bar: &ProgressBar, file: &str, stage: Stage) {
     match stage {
         Stage::Read { bytes } => bar.set_message(format!("reading {file}, {}", HumanBytes(bytes))),
+        Stage::Program { .. } => bar.set_message(format!("{file}: openscad runs")),
         Stage::Parse { bytes } => bar.set_message(format!("parsing {file}, {}", HumanBytes(bytes))),
         Stage::Records { read, bytes } => {
             if bar.length() != Some(bytes) {
@@ -140,6 +141,8 @@ mod tests {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
         show(&bar, "a.step", Stage::Read { bytes: 2048 });
         assert_eq!(bar.message(), "reading a.step, 2.00 KiB");
+        show(&bar, "a.scad", Stage::Program { process: 7 });
+        assert_eq!(bar.message(), "a.scad: openscad runs");
         show(&bar, "a.step", Stage::Parse { bytes: 4096 });
         assert_eq!(bar.message(), "parsing a.step, 4.00 KiB");
         for read in [1024, 4096] {

@@ -2,7 +2,7 @@
 
 use crate::args::{EdgeArgs, FrameArgs, LookArgs, ReadArgs, SubdivideArgs};
 use crate::progress::{advancing, during, importing};
-use crate::{camera, device, openscad, output, target};
+use crate::{camera, device, output, target};
 use anyhow::{Error, Result, bail};
 use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer, PictureView};
@@ -37,11 +37,7 @@ fn described_within(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs, lim
     let start = Instant::now();
     let name = named(path);
     let step = limits.begin(Work::Reading);
-    let import = if openscad::is_program(path) {
-        during("running openscad", || openscad::open(path, facets(subdivide), &step))?
-    } else {
-        importing(&name, |tell| imported(path, &name, read, subdivide, (&step, tell)))?
-    };
+    let import = importing(&name, |tell| imported(path, &name, read, subdivide, (&step, tell)))?;
     step.test().map_err(beyond)?;
     tracing::info!("read {name} in {:.1?}", start.elapsed());
     if subdivide.subdivide.is_some() {
@@ -50,10 +46,6 @@ fn described_within(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs, lim
     }
     output::warnings(&import);
     Ok(import)
-}
-
-fn facets(subdivide: &SubdivideArgs) -> Facets {
-    if subdivide.as_openscad { Facets::AsWritten } else { Facets::Round }
 }
 
 /// The file's name in messages.
@@ -70,14 +62,15 @@ fn imported(
 ) -> Result<Import> {
     let folders = Folders::new(read.search.clone());
     let tell = |stage| {
-        step.check();
+        step.check_at(stage);
         tell(stage);
     };
     let options = Options {
         progress: Some(&tell),
         most_bytes: Some(read.most_bytes()),
         files: Some(&folders),
-        facets: facets(subdivide),
+        facets: if subdivide.as_openscad { Facets::AsWritten } else { Facets::Round },
+        run_openscad: true,
     };
     if subdivide.subdivide.is_some() && target::is_standard(path) {
         bail!("--subdivide reads a file, not standard input");

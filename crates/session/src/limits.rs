@@ -1,4 +1,4 @@
-//! Bounds of the work on a file: its time, and the memory of the process meanwhile.
+//! Bounds of the work on a file: its time, and the memory of the process meanwhile, with that of a program that runs.
 //!
 //! ```text
 //!   Limits ─ begin(Reading)   ─▶ Step: check, check, … ─▶ drop
@@ -9,14 +9,18 @@
 //! The work tests them itself: where reading reports progress, between two faces of an upload, between two frames, and
 //! before and after a picture. A frame that the device has begun is drawn to its end.
 
+use selvedge_io::import::Stage;
 use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
-use sysinfo::{Process, ProcessRefreshKind, ProcessesToUpdate, System};
+use sysinfo::{Pid, Process, ProcessRefreshKind, ProcessesToUpdate, System};
 
 /// Nanoseconds between two measurements of memory. One takes some tens of microseconds, and a face often takes less.
 const BETWEEN: u64 = 5_000_000;
+
+/// The same where another program runs: all processes are looked at, which takes some milliseconds.
+const BETWEEN_ALL: u64 = 50_000_000;
 
 /// A part of the work on a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +53,7 @@ pub enum Bound {
     Memory {
         /// The limit, bytes.
         most: u64,
-        /// Bytes that the process holds.
+        /// Bytes that the process holds, and with it a program that it runs.
         held: u64,
     },
 }
@@ -61,7 +65,7 @@ impl Bound {
             Self::Time(most) => format!("longer than the limit of {most:?}"),
             Self::Memory { most, held } => {
                 let [most, held] = [most, held].map(|bytes| bytes as f64 / f64::from(1 << 20));
-                format!("more memory than the limit of {most:.1} MiB: the process holds {held:.1} MiB")
+                format!("more memory than the limit of {most:.1} MiB: {held:.1} MiB")
             }
         }
     }
@@ -131,6 +135,11 @@ impl Step {
     /// # Errors
     /// [`Exceeded`].
     pub fn test(&self) -> Result<(), Exceeded> {
+        self.test_with(None)
+    }
+
+    /// The same with the memory of a program, by the number of its process, and of all that it has started.
+    fn test_with(&self, program: Option<u32>) -> Result<(), Exceeded> {
         let Limits { file, most_time, most_memory, spent } = &self.limits;
         let exceeded = |bound| Err(Exceeded { file: file.clone(), work: self.work, bound });
         let time = self.begun.elapsed() + Duration::from_nanos(spent.load(Ordering::Relaxed));
@@ -138,25 +147,29 @@ impl Step {
             return exceeded(Bound::Time(most));
         }
         let Some(most) = *most_memory else { return Ok(()) };
-        let held = self.held();
+        let held = self.held(program);
         if held > most { exceeded(Bound::Memory { most, held }) } else { Ok(()) }
     }
 
     /// Unwinds to [`guarded`](crate::guarded) if a limit is exceeded: progress callbacks cannot return an error.
     pub fn check(&self) {
-        if let Err(exceeded) = self.test() {
-            resume_unwind(Box::new(exceeded));
-        }
+        unwind(self.test());
     }
 
-    /// Most bytes that the process held, measured now and then: every thread sees that a limit was exceeded.
-    fn held(&self) -> u64 {
+    /// The same at a stage of an import: the memory of a program that it runs counts.
+    pub fn check_at(&self, stage: Stage) {
+        unwind(self.test_with(if let Stage::Program { process } = stage { Some(process) } else { None }));
+    }
+
+    /// Most bytes that were held, measured now and then: every thread sees that a limit was exceeded.
+    fn held(&self, program: Option<u32>) -> u64 {
         let now = nanoseconds(self.begun.elapsed());
         let due = self.due.load(Ordering::Relaxed);
-        let next = now.saturating_add(BETWEEN);
+        let next = now.saturating_add(if program.is_some() { BETWEEN_ALL } else { BETWEEN });
         let is_due = now >= due;
         if is_due && self.due.compare_exchange(due, next, Ordering::Relaxed, Ordering::Relaxed).is_ok() {
-            self.held.fetch_max(resident().unwrap_or(0), Ordering::Relaxed);
+            let beside = program.and_then(resident_of_all).unwrap_or(0);
+            self.held.fetch_max(resident().unwrap_or(0) + beside, Ordering::Relaxed);
         }
         self.held.load(Ordering::Relaxed)
     }
@@ -172,13 +185,41 @@ fn nanoseconds(time: Duration) -> u64 {
     u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
 }
 
+/// Unwinds with the error, if there is one.
+fn unwind(within: Result<(), Exceeded>) {
+    if let Err(exceeded) = within {
+        resume_unwind(Box::new(exceeded));
+    }
+}
+
 /// Bytes of memory that the process holds; `None` where the system does not tell.
 pub fn resident() -> Option<u64> {
     let own = sysinfo::get_current_pid().ok()?;
+    measured(ProcessesToUpdate::Some(&[own])).process(own).map(Process::memory)
+}
+
+/// Bytes that a process holds, and with it all that it has started; `None` where there is no such process.
+fn resident_of_all(process: u32) -> Option<u64> {
+    let system = measured(ProcessesToUpdate::All);
+    let first = system.process(Pid::from_u32(process))?;
+    let (mut held, mut parents) = (0, vec![first]);
+    // parents that changed while they were read may form a ring
+    let mut left: Vec<&Process> = system.processes().values().filter(|other| other.pid() != first.pid()).collect();
+    while let Some(parent) = parents.pop() {
+        held += parent.memory();
+        let (children, others): (Vec<_>, Vec<_>) =
+            left.into_iter().partition(|other| other.parent() == Some(parent.pid()));
+        left = others;
+        parents.extend(children);
+    }
+    Some(held)
+}
+
+fn measured(processes: ProcessesToUpdate<'_>) -> System {
     let mut system = System::new();
     let memory = ProcessRefreshKind::nothing().with_memory().without_tasks();
-    system.refresh_processes_specifics(ProcessesToUpdate::Some(&[own]), false, memory);
-    system.process(own).map(Process::memory)
+    system.refresh_processes_specifics(processes, false, memory);
+    system
 }
 
 #[cfg(test)]

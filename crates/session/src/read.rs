@@ -71,7 +71,7 @@ pub fn read(
     let step = Limits::new(&file, how.most_time, None).begin(Work::Reading);
     let tell = |stage: Stage| {
         stop.check();
-        step.check();
+        step.check_at(stage);
         progress(stage);
     };
     let folders = Folders::new(how.search.clone());
@@ -80,6 +80,8 @@ pub fn read(
         most_bytes: Some(how.most_bytes.unwrap_or_else(|| memory() / 4 * 3)),
         files: Some(&folders),
         facets: Facets::Round,
+        // a library starts no program
+        run_openscad: false,
     };
     let import = guarded(|| {
         Ok(match source {

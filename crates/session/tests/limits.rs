@@ -16,7 +16,7 @@ fn memory_is_that_of_the_process() {
     let Bound::Memory { most: told, held } = late.bound else { panic!("{late}") };
     assert!(told == most && held > most, "{late}");
     let [most, held] = [most, held].map(|bytes| bytes as f64 / f64::from(1 << 20));
-    let text = format!("reading it takes more memory than the limit of {most:.1} MiB: the process holds {held:.1} MiB");
+    let text = format!("reading it takes more memory than the limit of {most:.1} MiB: {held:.1} MiB");
     assert_eq!(late.to_string(), format!("a.step: {text}"));
     drop(large);
     assert!(step.test().is_err(), "other threads see it, too");

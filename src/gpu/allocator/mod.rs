@@ -6,8 +6,8 @@
 //!                                                        ◀── the host's own
 //! ```
 //!
-//! `headless` has the engine's own: it takes no crate, it tells what fits into the blocks that it has,
-//! and it is the same with and without the feature `gpu-allocator`.
+//! `headless` has the engine's own: it takes no crate, it computes what fits into the blocks that it has, and it is the
+//! same with and without the feature `gpu-allocator`.
 
 mod blocks;
 mod free_list;

@@ -1,5 +1,5 @@
-//! Places where a picture has to have lines of Boolean solids, or may have some: no file knows their edges, so rays
-//! tell.
+//! Places where a picture has to have lines of Boolean solids, or may have some: no file states their edges, so
+//! rays find them.
 //!
 //! ```text
 //!   ●────×──●     between the centres of neighbouring pixels: where the surface changes, a line has to be

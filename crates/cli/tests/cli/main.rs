@@ -4,6 +4,8 @@ mod devices;
 mod draw;
 mod many;
 mod missing;
+#[cfg(target_os = "linux")]
+mod openscad;
 mod outputs;
 mod reading;
 mod scenes;
@@ -241,54 +243,4 @@ fn pixel(path: &str, x: u32, y: u32) -> ((u32, u32), [u8; 4]) {
     let info = reader.next_frame(&mut bytes).unwrap();
     let at = 4 * (y * info.width + x) as usize;
     ((info.width, info.height), bytes[at..at + 4].try_into().unwrap())
-}
-
-/// The `openscad` on the path runs an OpenSCAD program: here a missing one, one that fails, one that writes a solid,
-/// one that never ends, and one that starts another and ends.
-#[test]
-#[cfg(unix)]
-fn openscad_runs_its_programs() {
-    use std::os::unix::fs::PermissionsExt;
-    let folder = std::env::temp_dir().join(format!("selvedge-openscad-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    let model = folder.join("a.scad");
-    std::fs::write(&model, "cube(2);").unwrap();
-    let run_with = |script: Option<&str>, more: &[&str]| {
-        let program = folder.join("openscad");
-        if let Some(script) = script {
-            std::fs::write(&program, format!("#!/bin/sh\n{script}\n")).unwrap();
-            std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
-        }
-        let mut command = Command::new(env!("CARGO_BIN_EXE_selvedge"));
-        let output = command.arg("info").arg(&model).args(more).env("PATH", &folder).output().unwrap();
-        (output.status.code(), text(&output.stdout), text(&output.stderr))
-    };
-    let run = |script: Option<&str>| run_with(script, &[]);
-    let (status, _, told) = run(None);
-    assert!(status == Some(2) && told.contains("apt install openscad"), "{told}");
-    let (status, _, told) = run(Some("echo 'ERROR: Parser error' >&2; exit 1"));
-    assert!(status == Some(2) && told.contains("openscad failed") && told.contains("Parser error"), "{told}");
-    let (status, out, told) = run(Some("echo 'WARNING: odd' >&2; echo 'cube(size = [2, 3, 4], center = false);'"));
-    assert!(status == Some(0) && out.contains("box 2.000 x 3.000 x 4.000 mm") && told.contains("odd"), "{out} {told}");
-    let (status, _, told) = run_with(Some("while :; do :; done"), &["--limit-s", "0.5"]);
-    assert!(status == Some(2) && told.contains("a.scad: reading it takes longer than the limit of 500ms"), "{told}");
-    // a script that has ended, and whose own program holds the pipes
-    let pid = folder.join("pid");
-    let script = format!("/bin/sleep 120 & echo $! > '{}'; echo 'cube(2);'", pid.display());
-    let begun = std::time::Instant::now();
-    let (status, _, told) = run_with(Some(&script), &["--limit-s", "0.5"]);
-    assert!(status == Some(2) && told.contains("more than --limit-s allows: "), "{told}");
-    assert!(begun.elapsed().as_secs() < 60, "it did not wait for the program");
-    #[cfg(target_os = "linux")]
-    {
-        // killed, its number may stay, without a command, until someone waits for it
-        let pid = std::fs::read_to_string(&pid).unwrap();
-        let lives = || std::fs::read(format!("/proc/{}/cmdline", pid.trim())).is_ok_and(|line| !line.is_empty());
-        let ended = (0..100).any(|_| {
-            std::thread::sleep(std::time::Duration::from_millis(50));
-            !lives()
-        });
-        assert!(ended, "the script's program lives on");
-    }
-    std::fs::remove_dir_all(&folder).unwrap();
 }

@@ -56,6 +56,9 @@ pub enum ImportError {
     /// Triangles, damaged or not built in; the file's name has the line, where there are lines.
     #[error("{file}: {message}")]
     Mesh { file: String, message: String },
+    /// `openscad` is not installed, or refuses its program.
+    #[error("{file}: {message}")]
+    OpenScad { file: String, message: String },
     /// Text that is not a Boolean solid's.
     #[error("{file}:{line}: {message}")]
     Solid { file: String, line: usize, message: String },
@@ -82,6 +85,7 @@ impl ImportError {
             | Self::Scene { file, .. }
             | Self::Construct { file, .. }
             | Self::Mesh { file, .. }
+            | Self::OpenScad { file, .. }
             | Self::Solid { file, .. } => file,
         }
     }

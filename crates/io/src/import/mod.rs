@@ -5,7 +5,7 @@
 //!                                                    ├▶ obj, bv ─────┤
 //!                                                    ├▶ rhino ───────┤
 //!                                                    ├▶ meshes ──────┤  STL, OFF, PLY, 3MF, AMF, glTF
-//!                                                    ├▶ scad, brlcad ┤  Boolean solids
+//!                                                    ├▶ scad, brlcad ┤  Boolean solids; .scad through openscad
 //!                                                    ├▶ scene ───────┤  by the file's name
 //!                                                    └▶ native ──────┘
 //! ```
@@ -31,6 +31,7 @@ mod locate;
 mod meshes;
 mod native;
 mod obj;
+mod openscad;
 mod parts;
 mod progress;
 mod reasons;
@@ -98,6 +99,9 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
 /// As [`open`].
 pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportError> {
     let name = path.display().to_string();
+    if options.run_openscad && openscad::is_program(path) {
+        return openscad::open(path, &name, options);
+    }
     let bytes = source::load(path, &name, options)?;
     let first = read(&bytes, &name, path.parent(), options)?;
     Ok(external::follow(first, &name, options, &|bytes, found| found_file(bytes, found, options)))

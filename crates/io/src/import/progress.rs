@@ -1,9 +1,9 @@
 //! Progress of an import, reported to the caller.
 //!
 //! ```text
-//!   Read ──▶ Parse ──▶ Records b/n … n/n ──▶ Bodies 0/n … ──▶ Faces 0/n ──▶ ... ──▶ Faces n/n
-//!            from one thread: records of STEP and OpenSCAD,       from any thread, in any order: of STEP and IGES
-//!            bodies of STEP alone
+//!   Read ──▶ Program … ──▶ Parse ──▶ Records b/n … n/n ──▶ Bodies 0/n … ──▶ Faces 0/n ──▶ … ──▶ Faces n/n
+//!            .scad alone            from one thread: records of         from any thread, in any order: of STEP
+//!                                   STEP and OpenSCAD, bodies of STEP   and IGES
 //! ```
 
 use super::{Facets, Files};
@@ -17,6 +17,11 @@ pub enum Stage {
     Read {
         /// Size of the file.
         bytes: u64,
+    },
+    /// The installed `openscad` runs the file: see [`Options::run_openscad`].
+    Program {
+        /// Number of its process; what it starts descends from that.
+        process: u32,
     },
     /// Text or binary data become records.
     Parse {
@@ -50,8 +55,9 @@ pub enum Stage {
 #[derive(Clone, Copy, Default)]
 pub struct Options<'a> {
     /// Called at the beginning of each stage, of STEP files before every body, after every face and some bytes of text,
-    /// and of IGES and OpenSCAD files between entities, from several threads: it should return at once. Files that a
-    /// file names have stages of their own.
+    /// of IGES and OpenSCAD files between entities, and a hundred times a second while `openscad` runs, from several
+    /// threads. It should return at once, or unwind to end the import. Files that a file names have stages of their
+    /// own.
     pub progress: Option<&'a (dyn Fn(Stage) + Sync)>,
     /// Most bytes of a file, before and after gzip is undone. Offsets are 32 bits wide: the limit is 4 GiB at most, and
     /// by default.
@@ -61,6 +67,10 @@ pub struct Options<'a> {
     pub files: Option<&'a dyn Files>,
     /// Whether round solids of OpenSCAD's files are round.
     pub facets: Facets,
+    /// Whether [`open_with`](super::open_with) runs a file that ends in `.scad` by the `openscad` on the path, and reads
+    /// what that writes. `openscad` and all that it starts end with the import. Without this, such a file is read as
+    /// flattened text.
+    pub run_openscad: bool,
 }
 
 impl fmt::Debug for Options<'_> {
@@ -71,6 +81,7 @@ impl fmt::Debug for Options<'_> {
             .field("most_bytes", &self.most_bytes)
             .field("files", &files)
             .field("facets", &self.facets)
+            .field("run_openscad", &self.run_openscad)
             .finish()
     }
 }

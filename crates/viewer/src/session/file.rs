@@ -70,7 +70,8 @@ impl Loader {
                 tell(LoaderEvent::Progress { stage, share });
             };
             let folders = Folders::new(Vec::new());
-            let options = Options { progress: Some(&progress), files: Some(&folders), ..Options::default() };
+            let options =
+                Options { progress: Some(&progress), files: Some(&folders), run_openscad: true, ..Options::default() };
             let read = catch_unwind(AssertUnwindSafe(|| import::open_with(&file, &options)));
             let event = match read {
                 _ if stop.load(Ordering::Relaxed) => LoaderEvent::Cancelled,
@@ -109,6 +110,7 @@ fn told(stage: Stage) -> (&'static str, Option<f32>) {
     let share = |done: f64, of: f64| Some(if of > 0.0 { (done / of) as f32 } else { 0.0 });
     match stage {
         Stage::Read { .. } => ("reading", None),
+        Stage::Program { .. } => ("running OpenSCAD", None),
         Stage::Parse { .. } => ("parsing", None),
         Stage::Records { read, bytes } => ("parsing", share(read as f64, bytes as f64)),
         Stage::Bodies { mapped, total } => ("bodies", share(mapped as f64, total as f64)),

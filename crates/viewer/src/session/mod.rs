@@ -3,7 +3,7 @@
 //! ```text
 //!   files ─merge─▶ World: one model, the parts of each file, edges of each part
 //!                     │
-//!   SceneState ───────┴─show─▶ Shown: the model that is drawn, and the world's instance of each of its own  
+//!   SceneState ───────┴─show─▶ Shown: the model that is drawn, and the world's instance of each of its own
 //!   (hidden, see-through, colours, sections, explosion; undone and redone)
 //! ```
 

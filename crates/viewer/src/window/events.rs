@@ -395,7 +395,7 @@ impl App {
 /// Endings of files that are read.
 const ENDINGS: &[&str] = &[
     "step", "stp", "stpz", "p21", "iges", "igs", "obj", "stl", "3mf", "amf", "ply", "off", "gltf", "glb", "3dm", "bv",
-    "csg", "asc", "selvedge", "toml", "gz",
+    "csg", "scad", "asc", "selvedge", "toml", "gz",
 ];
 
 #[cfg(test)]
