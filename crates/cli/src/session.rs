@@ -78,6 +78,7 @@ fn imported(
         most_bytes: Some(read.most_bytes()),
         files: Some(&folders),
         facets: facets(subdivide),
+        ..Options::default()
     };
     if subdivide.subdivide.is_some() && target::is_standard(path) {
         bail!("--subdivide reads a file, not standard input");

@@ -80,6 +80,7 @@ pub fn read(
         most_bytes: Some(how.most_bytes.unwrap_or_else(|| memory() / 4 * 3)),
         files: Some(&folders),
         facets: Facets::Round,
+        ..Options::default()
     };
     let import = guarded(|| {
         Ok(match source {
