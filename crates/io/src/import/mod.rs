@@ -107,8 +107,8 @@ pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportErr
     Ok(external::follow(first, &name, options, &|bytes, found| found_file(bytes, found, options)))
 }
 
-/// Reads a file that another one names, without previews. If it is a scene, the files that it names are read without their own
-/// references: a scene and an assembly cannot name each other without end.
+/// Reads a file that another one names, without previews. If it is a scene, the files that it names are read without
+/// their own references: a scene and an assembly cannot name each other without end.
 fn found_file(bytes: Vec<u8>, found: &str, options: &Options<'_>) -> Result<external::Read, ImportError> {
     let bytes = source::inflated(bytes, found, options.most_bytes())?;
     read(&bytes, found, Path::new(found).parent(), &Options { files: None, preview: None, ..*options })

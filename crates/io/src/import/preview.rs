@@ -6,7 +6,7 @@
 //! ```
 //!
 //! STEP and IGES files state all parts and instances before the first face is built, so an instance has the same number
-//! in each preview as in the end. An assembly in several files grows by a file at a time.
+//! in each preview as at the end. An assembly in several files grows by a file at a time.
 
 use super::Options;
 use crate::model::{Model, Part};
@@ -17,9 +17,9 @@ pub trait Preview: Sync {
     /// parts.
     fn is_due(&self) -> bool;
 
-    /// Takes the finished parts in their places. In one file all instances are there, with the numbers that they have in
-    /// the end, and parts that are not finished have no faces; of several files, the instances of those that are read.
-    /// Boolean solids come in the end. Maybe nothing of it can be drawn.
+    /// Takes the finished parts in their places. Of one file all instances are there, with the numbers that they have at
+    /// the end, and parts that are not finished have no faces. Of several files the instances of those that are read are
+    /// there. Boolean solids come at the end alone. Such a model may have nothing to draw.
     fn take(&self, model: Model);
 }
 

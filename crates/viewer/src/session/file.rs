@@ -72,7 +72,8 @@ struct GivenUp;
 const STEP: f32 = 0.02;
 
 impl Loader {
-    /// Begins to read; `tell` is called by the thread. Without a finder, parts in other files are found beside the file.
+    /// Begins to read; `tell` is called by the thread. Without a finder, parts in other files are found beside the
+    /// file.
     pub fn new(path: PathBuf, finder: Option<Finder>, tell: impl Fn(LoaderEvent) + Send + Sync + 'static) -> Self {
         let cancelled = Arc::new(AtomicBool::new(false));
         let previews = Arc::new(Schedule::new(Instant::now()));
@@ -189,15 +190,15 @@ mod tests {
 
     /// The last event, and the number of reports of progress before it.
     fn read(path: PathBuf, cancel: bool) -> (LoaderEvent, usize) {
-        let (last, mut before) = events(path, None, cancel);
+        let (last, mut before) = events(path, cancel);
         before.retain(|event| matches!(event, LoaderEvent::Progress { .. }));
         (last, before.len())
     }
 
     /// The last event, and all before it.
-    fn events(path: PathBuf, finder: Option<Finder>, cancel: bool) -> (LoaderEvent, Vec<LoaderEvent>) {
+    fn events(path: PathBuf, cancel: bool) -> (LoaderEvent, Vec<LoaderEvent>) {
         let (to, from) = mpsc::channel();
-        let mut loader = Loader::new(path, finder, move |event| to.send(event).expect("the test waits"));
+        let mut loader = Loader::new(path, None, move |event| to.send(event).expect("the test waits"));
         if cancel {
             loader.cancel();
         }

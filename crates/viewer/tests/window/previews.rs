@@ -79,6 +79,7 @@ fn the_first_parts_are_shown_before_the_rest_is_read() {
     display.click(at);
     let selected = program.wait("selected ");
     assert!(selected.contains(&format!("cylinder #{}", face.id)), "{selected}");
+    display.key("Escape");
     program.quiet();
 
     // both are in view
