@@ -71,6 +71,7 @@ fn imported(
         files: Some(&folders),
         facets: if subdivide.as_openscad { Facets::AsWritten } else { Facets::Round },
         run_openscad: true,
+        ..Options::default()
     };
     if subdivide.subdivide.is_some() && target::is_standard(path) {
         bail!("--subdivide reads a file, not standard input");

@@ -16,6 +16,7 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
         validation: args.validation,
         settings: args.settings.clone().or(usual),
         size: args.size.map(|size| (size.0, size.1)),
+        ..ViewOptions::default()
     })?;
     closed.messages.iter().for_each(|message| tracing::error!("validation: {message}"));
     Ok(if closed.messages.is_empty() { Outcome::Good } else { Outcome::Broken })

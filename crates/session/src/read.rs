@@ -82,6 +82,7 @@ pub fn read(
         facets: Facets::Round,
         // a library starts no program
         run_openscad: false,
+        ..Options::default()
     };
     let import = guarded(|| {
         Ok(match source {

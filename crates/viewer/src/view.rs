@@ -62,6 +62,8 @@ pub struct View {
     anchor: Option<(DVec2, DVec3)>,
     transition: Option<(Transition, Instant)>,
     moved: Option<Instant>,
+    /// Nothing has moved it since [`View::reset`].
+    untouched: bool,
     /// Chooses the size of pictures of a moving view.
     pub pacing: Pacing,
     /// The last result for the cursor.
@@ -88,6 +90,7 @@ impl Default for View {
             anchor: None,
             transition: None,
             moved: None,
+            untouched: true,
             pacing: Pacing::default(),
             hover: None,
         }
@@ -121,6 +124,7 @@ impl View {
         if camera != self.camera {
             self.camera = camera;
             self.moved = Some(now);
+            self.untouched = false;
         }
     }
 
@@ -145,6 +149,7 @@ impl View {
         if smooth {
             self.transition = Some((Transition::new(self.camera, to, self.bounds), now));
             self.moved = Some(now);
+            self.untouched = false;
         } else {
             self.set(to, now);
         }
@@ -167,6 +172,12 @@ impl View {
         let to = if self.is_parallel() { navigation::other_projection(&to) } else { to };
         self.set(navigation::fit(&to, &self.bounds.corners()), now);
         self.before.clear();
+        self.untouched = true;
+    }
+
+    /// It is still the first view of a model, as [`reset`](Self::reset) has left it.
+    pub fn is_untouched(&self) -> bool {
+        self.untouched
     }
 
     /// Some points in the picture, from the same direction.
@@ -372,6 +383,20 @@ mod tests {
         let wake = view.wake(later).expect("the still picture");
         assert_eq!((view.due(wake).scale, view.due(wake).camera.size), (1.0, (800, 600)));
         assert_eq!(view.wake(wake), None);
+    }
+
+    #[test]
+    fn a_move_touches_the_first_view_and_a_larger_model_does_not() {
+        let now = Instant::now();
+        for smooth in [false, true] {
+            let mut view = view(now);
+            view.set_bounds(Bounds { max: 2.0 * BOX.max, ..BOX });
+            assert!(view.is_untouched());
+            view.look_from(DVec3::Z, DVec3::Y, smooth, now);
+            assert!(!view.is_untouched());
+            view.reset(now);
+            assert!(view.is_untouched());
+        }
     }
 
     #[test]

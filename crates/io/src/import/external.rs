@@ -72,10 +72,8 @@ pub(super) type Reader<'r> = &'r dyn Fn(Vec<u8>, &str) -> Result<Read, ImportErr
 
 /// All files of a model.
 struct Library<'r> {
-    finder: Option<&'r dyn Files>,
+    options: Options<'r>,
     read: Reader<'r>,
-    /// Bytes of a file, at most.
-    most: u64,
     all: Vec<Loaded>,
     /// By their own names; none for those that cannot be read.
     known: HashMap<String, Option<usize>>,
@@ -91,8 +89,7 @@ pub(super) fn follow((mut import, mentions): Read, name: &str, options: &Options
     let bare = Path::new(name).file_name().map_or(name.into(), |n| n.to_string_lossy());
     let own = options.files.and_then(|files| files.find(&bare, name));
     let known = own.into_iter().map(|own| (own, Some(0))).collect();
-    let most = options.most_bytes();
-    let mut library = Library { finder: options.files, read, most, all: vec![first], known, import };
+    let mut library = Library { options: *options, read, all: vec![first], known, import };
     let mut next = 0;
     while next < library.all.len() {
         library.load_mentions(next);
@@ -116,21 +113,29 @@ impl Loaded {
 
 impl Library<'_> {
     fn load_mentions(&mut self, index: usize) {
-        let mentions = std::mem::take(&mut self.all[index].mentions);
         let from = self.all[index].name.clone();
-        for mention in &mentions {
-            let named = mention.documents.iter().filter_map(|names| names.first());
+        for nth in 0..self.all[index].mentions.len() {
+            self.options.preview(|| self.so_far());
+            let Mention { at, documents, .. } = &self.all[index].mentions[nth];
+            let (at, documents) = (*at, documents.clone());
+            let named = documents.iter().filter_map(|names| names.first());
             self.import.report.external_files.extend(named.clone().cloned());
-            let found = self.load(&mention.documents, &from);
+            let found = self.load(&documents, &from);
             if let Err(why) = &found {
                 self.import.report.missing_files.extend(named.cloned());
                 for (kind, message) in why {
-                    self.all[index].warnings.push(kind, || mention.at, || message.clone());
+                    self.all[index].warnings.push(kind, || at, || message.clone());
                 }
             }
             self.all[index].files.push(found.ok());
         }
-        self.all[index].mentions = mentions;
+    }
+
+    /// The parts of all files that are read, in their places.
+    fn so_far(&self) -> Model {
+        let mut model = self.import.model.clone();
+        Places::put_all(&self.all, &mut model);
+        model
     }
 
     /// The first of the documents that can be read; else why each cannot.
@@ -138,7 +143,7 @@ impl Library<'_> {
         let mut why = Vec::new();
         for names in documents {
             let named = names.first().map_or("", String::as_str);
-            let Some(finder) = self.finder else {
+            let Some(finder) = self.options.files else {
                 why.push((NOT_FOLLOWED, named.to_owned()));
                 continue;
             };
@@ -154,7 +159,9 @@ impl Library<'_> {
                 }
                 None => {}
             }
-            let bytes = finder.read(&own, self.most).map_err(|source| ImportError::Read { file: own.clone(), source });
+            let bytes = finder
+                .read(&own, self.options.most_bytes())
+                .map_err(|source| ImportError::Read { file: own.clone(), source });
             match bytes.and_then(|bytes| (self.read)(bytes, &own)) {
                 Ok(read) => return Ok(self.add(own, read)),
                 Err(error) => {
@@ -181,10 +188,7 @@ impl Library<'_> {
     /// Places every file in those that mention it.
     fn finish(self) -> Import {
         let Self { mut all, mut import, .. } = self;
-        let mut places = Places { all: &all, model: &mut import.model, visits: 0, faults: Vec::new() };
-        places.put(0, &(DAffine3::IDENTITY, None, String::new()), &mut Vec::new());
-        let faults = places.faults;
-        for (file, at, message) in faults {
+        for (file, at, message) in Places::put_all(&all, &mut import.model) {
             all[file].warnings.push(LEFT_OUT, || at, || message);
         }
         for file in all {
@@ -202,11 +206,20 @@ struct Places<'p> {
     all: &'p [Loaded],
     model: &'p mut Model,
     visits: usize,
-    /// Files, where in them, and what is wrong there.
-    faults: Vec<(usize, Place, String)>,
+    faults: Vec<Misplaced>,
 }
 
-impl Places<'_> {
+/// A file, where in it, and what is wrong there.
+type Misplaced = (usize, Place, String);
+
+impl<'p> Places<'p> {
+    /// Places all files as the first one says. Files that are not read yet are left out.
+    fn put_all(all: &'p [Loaded], model: &'p mut Model) -> Vec<Misplaced> {
+        let mut places = Self { all, model, visits: 0, faults: Vec::new() };
+        places.put(0, &(DAffine3::IDENTITY, None, String::new()), &mut Vec::new());
+        places.faults
+    }
+
     fn full(&self) -> bool {
         self.visits > MAX_INSTANCES || self.model.instances.len() + self.model.solids.len() > MAX_INSTANCES
     }

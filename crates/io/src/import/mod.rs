@@ -33,6 +33,9 @@ mod native;
 mod obj;
 mod openscad;
 mod parts;
+mod preview;
+#[cfg(test)]
+mod previewed;
 mod progress;
 mod reasons;
 mod report;
@@ -52,6 +55,7 @@ pub use camera::{Lens, NamedCamera, PictureSettings, Stance};
 pub use error::ImportError;
 pub use external::{Files, Folders};
 pub use obj::cage::Cage;
+pub use preview::Preview;
 pub(crate) use progress::FaceCount;
 pub use progress::{Options, Stage};
 pub use reasons::Reasons;
@@ -107,11 +111,11 @@ pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportErr
     Ok(external::follow(first, &name, options, &|bytes, found| found_file(bytes, found, options)))
 }
 
-/// Reads a file that another one names. If it is a scene, the files that it names are read without their own
-/// references: a scene and an assembly cannot name each other without end.
+/// Reads a file that another one names, without previews. If it is a scene, the files that it names are read without
+/// their own references: a scene and an assembly cannot name each other without end.
 fn found_file(bytes: Vec<u8>, found: &str, options: &Options<'_>) -> Result<external::Read, ImportError> {
     let bytes = source::inflated(bytes, found, options.most_bytes())?;
-    read(&bytes, found, Path::new(found).parent(), &Options { files: None, ..*options })
+    read(&bytes, found, Path::new(found).parent(), &Options { files: None, preview: None, ..*options })
 }
 
 /// Reads a stream to its end, as [`open_with`]; `name` is its name in messages, and its ending gives the format where

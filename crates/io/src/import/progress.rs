@@ -6,7 +6,7 @@
 //!                                   STEP and OpenSCAD, bodies of STEP   and IGES
 //! ```
 
-use super::{Facets, Files};
+use super::{Facets, Files, Preview};
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -59,6 +59,8 @@ pub struct Options<'a> {
     /// threads. It should return at once, or unwind to end the import. Files that a file names have stages of their
     /// own.
     pub progress: Option<&'a (dyn Fn(Stage) + Sync)>,
+    /// Takes the finished parts of STEP and IGES files and of assemblies in several files, while the rest is read.
+    pub preview: Option<&'a dyn Preview>,
     /// Most bytes of a file, before and after gzip is undone. Offsets are 32 bits wide: the limit is 4 GiB at most, and
     /// by default.
     pub most_bytes: Option<u64>,
@@ -76,8 +78,10 @@ pub struct Options<'a> {
 impl fmt::Debug for Options<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (progress, files) = (self.progress.map(|_| "Fn(Stage)"), self.files.map(|_| "Files"));
+        let preview = self.preview.map(|_| "Preview");
         f.debug_struct("Options")
             .field("progress", &progress)
+            .field("preview", &preview)
             .field("most_bytes", &self.most_bytes)
             .field("files", &files)
             .field("facets", &self.facets)

@@ -99,6 +99,7 @@ fn badge(row: &mut egui::Ui, ui: &mut Ui, session: &Session, facts: &Facts<'_>) 
     let (text, colour) = match () {
         () if session.world.is_empty() => ("no file".to_owned(), row.visuals().weak_text_color()),
         () if facts.busy => ("working".to_owned(), row.visuals().weak_text_color()),
+        () if session.world.is_partial() => ("being read".to_owned(), row.visuals().weak_text_color()),
         () if clamps > 0 => (format!("{clamps} places not as promised"), bad),
         () if incomplete => ("not all of the file".to_owned(), bad),
         () if facts.notice.is_some() => ("exact, with a note".to_owned(), bad),

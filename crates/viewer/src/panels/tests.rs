@@ -36,7 +36,7 @@ impl Bench {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/assembly.step");
         let import = selvedge_io::import::open(&path).expect("a sample");
         let mut session = Session::default();
-        session.open(World::new(&[Arc::new(Loaded { path, import })]));
+        session.open(World::new(&[Arc::new(Loaded { path, import, partial: false })]));
         session.world.find_edges();
         let (ui, settings, view) = (Ui::default(), Settings::default(), View::default());
         Self {

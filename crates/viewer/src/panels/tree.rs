@@ -55,7 +55,9 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
         let last = session.selection.last().and_then(Picked::instance);
         for (file, found) in world.files.iter().zip(&found.files) {
             egui::CollapsingHeader::new(&file.name).id_salt(&file.path).default_open(true).show(area, |list| {
-                if !file.complete {
+                if file.partial {
+                    list.weak("being read");
+                } else if !file.complete {
                     list.colored_label(list.visuals().warn_fg_color, "not complete").on_hover_text(&file.summary);
                 }
                 let to = last.filter(|_| ui.show_selection).and_then(|last| found.binary_search(&last).ok());
@@ -161,7 +163,7 @@ mod tests {
     fn world() -> Arc<World> {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/assembly.step");
         let import = selvedge_io::import::open(&path).expect("a sample");
-        Arc::new(World::new(&[Arc::new(Loaded { path, import })]))
+        Arc::new(World::new(&[Arc::new(Loaded { path, import, partial: false })]))
     }
 
     #[test]

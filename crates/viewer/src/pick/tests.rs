@@ -8,7 +8,7 @@ use std::sync::Arc;
 fn world() -> World {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/bracket.step");
     let import = selvedge_io::import::open(&path).expect("a sample");
-    let world = World::new(&[Arc::new(Loaded { path, import })]);
+    let world = World::new(&[Arc::new(Loaded { path, import, partial: false })]);
     world.find_edges();
     world
 }

@@ -107,7 +107,7 @@ mod tests {
     fn file(name: &str) -> Arc<Loaded> {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples").join(name);
         let import = selvedge_io::import::open(&path).expect("a sample");
-        Arc::new(Loaded { path, import })
+        Arc::new(Loaded { path, import, partial: false })
     }
 
     #[test]
@@ -148,10 +148,32 @@ mod tests {
         let gone = import.model.instances.remove(0);
         let name = "another".to_owned();
         import.model.instances.insert(1, selvedge::model::Instance { name, ..gone });
-        let after = World::new(&[Arc::new(Loaded { path: loaded.path.clone(), import })]);
+        let after = World::new(&[Arc::new(Loaded { path: loaded.path.clone(), import, partial: false })]);
         let mut state = SceneState::default();
         state.hidden.extend([0, 1, 2]);
         assert_eq!(Carried::new(&before, &after).state(&state).hidden, BTreeSet::from([0, 2]));
+    }
+
+    /// All instances have their numbers from the first preview on.
+    #[test]
+    fn the_state_of_a_preview_is_that_of_the_whole() {
+        let whole = file("assembly.step");
+        let mut import = whole.import.clone();
+        let done = import.model.instances[0].part;
+        let rest = import.model.parts.iter_mut().enumerate().filter(|(part, _)| *part != done);
+        rest.for_each(|(_, part)| part.faces.clear());
+        let faces = &import.model.parts[done].faces;
+        let face = faces.iter().position(|face| !face.loops.is_empty()).expect("a trimmed face");
+        let curve = &faces[face].loops[0];
+        let edit = curve.with_point(0, 0, curve.curves().next().expect("a curve").point(0.0) + 0.01).expect("a loop");
+        let mut session = Session::default();
+        session.open(World::new(&[Arc::new(Loaded { path: whole.path.clone(), import, partial: true })]));
+        assert!(session.world.is_partial() && !session.world.files[0].complete);
+        session.scene.change(|state| _ = state.hidden.insert(1));
+        session.scene.change(|state| _ = state.edits.insert((done, face, 0), edit));
+        let before = session.scene.clone();
+        assert_eq!((session.open(World::new(&[whole])), session.scene == before), (0, true));
+        assert!(!session.world.is_partial());
     }
 
     /// An edit belongs to a loop, not to a number.
@@ -159,7 +181,7 @@ mod tests {
     fn edits_of_loops_that_the_file_has_changed_go() {
         let loaded = file("assembly.step");
         let world = |import: &selvedge_io::import::Import| {
-            World::new(&[Arc::new(Loaded { path: loaded.path.clone(), import: import.clone() })])
+            World::new(&[Arc::new(Loaded { path: loaded.path.clone(), import: import.clone(), partial: false })])
         };
         let part = loaded.import.model.instances[0].part;
         let faces = &loaded.import.model.parts[part].faces;

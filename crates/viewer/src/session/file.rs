@@ -1,19 +1,38 @@
-//! Files read by a thread, with progress; reading can be stopped.
+//! Files read by a thread, with progress and previews; reading can be stopped.
 
-use selvedge_io::import::{self, Folders, Import, Options, Stage};
+use super::schedule::Schedule;
+use selvedge::model::Model;
+use selvedge_io::import::{self, Files, Folders, Import, Options, Preview, Stage};
+use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
+use std::time::Instant;
 
-/// A file that was read.
+/// A file that was read, or the beginning of one.
 #[derive(Debug)]
 pub struct Loaded {
     /// Where it is.
     pub path: PathBuf,
     /// Its content.
     pub import: Import,
+    /// It is being read: parts that are not finished have no faces, or are missing.
+    pub partial: bool,
+}
+
+/// Finds and reads parts of assemblies that stand in other files.
+#[derive(Clone)]
+pub struct Finder(
+    /// Called by the threads that read.
+    pub Arc<dyn Files + Send + Sync>,
+);
+
+impl fmt::Debug for Finder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Finder")
+    }
 }
 
 /// A message of the thread.
@@ -26,6 +45,8 @@ pub enum LoaderEvent {
         /// Of the stage.
         share: Option<f32>,
     },
+    /// Its finished parts, more than before.
+    Preview(Arc<Loaded>),
     /// It is read.
     Loaded(Arc<Loaded>),
     /// It cannot be read, or nothing of it can be drawn: the reason, with the file's name.
@@ -40,6 +61,7 @@ pub struct Loader {
     /// The file.
     pub path: PathBuf,
     cancelled: Arc<AtomicBool>,
+    previews: Arc<Schedule>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -50,10 +72,12 @@ struct GivenUp;
 const STEP: f32 = 0.02;
 
 impl Loader {
-    /// Begins to read; `tell` is called by the thread.
-    pub fn new(path: PathBuf, tell: impl Fn(LoaderEvent) + Send + Sync + 'static) -> Self {
+    /// Begins to read; `tell` is called by the thread. Without a finder, parts in other files are found beside the
+    /// file.
+    pub fn new(path: PathBuf, finder: Option<Finder>, tell: impl Fn(LoaderEvent) + Send + Sync + 'static) -> Self {
         let cancelled = Arc::new(AtomicBool::new(false));
-        let (stop, file) = (Arc::clone(&cancelled), path.clone());
+        let previews = Arc::new(Schedule::new(Instant::now()));
+        let (stop, file, schedule) = (Arc::clone(&cancelled), path.clone(), Arc::clone(&previews));
         let thread = thread::spawn(move || {
             let last = std::sync::Mutex::new(("", -1.0_f32));
             let progress = |stage: Stage| {
@@ -69,9 +93,19 @@ impl Loader {
                 }
                 tell(LoaderEvent::Progress { stage, share });
             };
-            let folders = Folders::new(Vec::new());
-            let options =
-                Options { progress: Some(&progress), files: Some(&folders), run_openscad: true, ..Options::default() };
+            let beside = Folders::new(Vec::new());
+            let files: &dyn Files = match &finder {
+                Some(finder) => &*finder.0,
+                None => &beside,
+            };
+            let begun = Begun { file: &file, schedule: &schedule, tell: &tell };
+            let options = Options {
+                progress: Some(&progress),
+                preview: Some(&begun),
+                files: Some(files),
+                run_openscad: true,
+                ..Options::default()
+            };
             let read = catch_unwind(AssertUnwindSafe(|| import::open_with(&file, &options)));
             let event = match read {
                 _ if stop.load(Ordering::Relaxed) => LoaderEvent::Cancelled,
@@ -80,7 +114,7 @@ impl Loader {
                     if summary.draws_nothing() {
                         LoaderEvent::Failed(format!("{}: {summary}", file.display()))
                     } else {
-                        LoaderEvent::Loaded(Arc::new(Loaded { path: file.clone(), import }))
+                        LoaderEvent::Loaded(Arc::new(Loaded { path: file.clone(), import, partial: false }))
                     }
                 }
                 Ok(Err(error)) => LoaderEvent::Failed(error.to_string()),
@@ -88,7 +122,7 @@ impl Loader {
             };
             tell(event);
         });
-        Self { path, cancelled, thread: Some(thread) }
+        Self { path, cancelled, previews, thread: Some(thread) }
     }
 
     /// Stops reading: the importer ends at its next report of progress, and sends only that it was stopped.
@@ -96,11 +130,41 @@ impl Loader {
         self.cancelled.store(true, Ordering::Relaxed);
     }
 
+    /// The last preview is shown: the next one may be made after a while.
+    pub fn shown(&self, now: Instant) {
+        self.previews.shown(now);
+    }
+
     /// Waits until the thread has ended.
     pub fn join(&mut self) {
         if let Some(thread) = self.thread.take() {
             // it has sent all its messages
             let _ = thread.join();
+        }
+    }
+}
+
+/// A file of which the first parts are finished.
+struct Begun<'a> {
+    file: &'a Path,
+    schedule: &'a Schedule,
+    tell: &'a (dyn Fn(LoaderEvent) + Sync),
+}
+
+impl Preview for Begun<'_> {
+    fn is_due(&self) -> bool {
+        self.schedule.is_due(Instant::now())
+    }
+
+    fn take(&self, model: Model) {
+        let now = Instant::now();
+        self.schedule.made(now);
+        let import = Import { model, ..Import::default() };
+        if import.summary().draws_nothing() {
+            self.schedule.shown(now);
+        } else {
+            let path = self.file.to_owned();
+            (self.tell)(LoaderEvent::Preview(Arc::new(Loaded { path, import, partial: true })));
         }
     }
 }
@@ -121,8 +185,10 @@ fn told(stage: Stage) -> (&'static str, Option<f32>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::mpsc;
-    use std::time::{Duration, Instant};
+    use std::io;
+    use std::sync::Mutex;
+    use std::sync::mpsc::{self, Receiver};
+    use std::time::Duration;
 
     fn sample(name: &str) -> PathBuf {
         PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../samples").join(name)
@@ -130,16 +196,23 @@ mod tests {
 
     /// The last event, and the number of reports of progress before it.
     fn read(path: PathBuf, cancel: bool) -> (LoaderEvent, usize) {
+        let (last, mut before) = events(path, cancel);
+        before.retain(|event| matches!(event, LoaderEvent::Progress { .. }));
+        (last, before.len())
+    }
+
+    /// The last event, and all before it.
+    fn events(path: PathBuf, cancel: bool) -> (LoaderEvent, Vec<LoaderEvent>) {
         let (to, from) = mpsc::channel();
-        let mut loader = Loader::new(path, move |event| to.send(event).expect("the test waits"));
+        let mut loader = Loader::new(path, None, move |event| to.send(event).expect("the test waits"));
         if cancel {
             loader.cancel();
         }
         loader.join();
         let mut all: Vec<_> = from.iter().collect();
         let last = all.pop().expect("an end");
-        assert!(all.iter().all(|e| matches!(e, LoaderEvent::Progress { .. })));
-        (last, all.len())
+        assert!(all.iter().all(|e| matches!(e, LoaderEvent::Progress { .. } | LoaderEvent::Preview(_))));
+        (last, all)
     }
 
     #[test]
@@ -147,6 +220,46 @@ mod tests {
         let (last, signs) = read(sample("bracket.step"), false);
         let LoaderEvent::Loaded(loaded) = last else { panic!("{last:?}") };
         assert!(loaded.import.model.face_count() > 5 && signs >= 3, "{signs}");
+    }
+
+    /// The bolt takes longer than a file without a preview, and the nut waits for the test.
+    struct Slow(Mutex<Receiver<()>>);
+
+    impl Files for Slow {
+        fn find(&self, name: &str, _: &str) -> Option<String> {
+            ["bolt.stp", "nut.stp"].contains(&name).then(|| name.to_owned())
+        }
+
+        fn read(&self, found: &str, _: u64) -> io::Result<Vec<u8>> {
+            if found == "bolt.stp" {
+                thread::sleep(Duration::from_millis(400));
+            } else {
+                self.0.lock().expect("one thread").recv().expect("the test lets it go on");
+            }
+            std::fs::read(sample("bracket.step"))
+        }
+    }
+
+    #[test]
+    fn finished_parts_come_before_the_rest_is_read() {
+        let ((to, from), (go_on, held)) = (mpsc::channel(), mpsc::channel());
+        let finder = Finder(Arc::new(Slow(Mutex::new(held))));
+        let path = sample("../crates/io/src/import/external/tests/pair.stp");
+        let mut loader = Loader::new(path, Some(finder), move |event| to.send(event).expect("the test waits"));
+        let next = || loop {
+            let event = from.recv_timeout(Duration::from_secs(60)).expect("an event");
+            if !matches!(event, LoaderEvent::Progress { .. }) {
+                return event;
+            }
+        };
+        let preview = next();
+        let LoaderEvent::Preview(bolt) = preview else { panic!("{preview:?}") };
+        assert!(bolt.partial && bolt.import.model.instances.len() == 1);
+        go_on.send(()).expect("the thread waits");
+        let end = next();
+        let LoaderEvent::Loaded(pair) = end else { panic!("{end:?}") };
+        assert!(!pair.partial && pair.import.model.instances.len() == 2);
+        loader.join();
     }
 
     #[test]

@@ -19,7 +19,7 @@ use std::thread;
 pub enum JoinerEvent {
     /// The files as one model. Edges are not found yet.
     Joined(u64, Arc<World>),
-    /// The edges of that are found.
+    /// The edges of that are found, unless it has previews.
     EdgesFound(u64),
     /// One of both failed, by a defect of the program: its panic.
     Failed(u64, String),
@@ -59,7 +59,10 @@ impl Joiner {
                     let world = Arc::new(join(&files));
                     tell(JoinerEvent::Joined(number, Arc::clone(&world)));
                     if !is_old(number) {
-                        world.find_edges();
+                        // another model follows a preview soon
+                        if !world.is_partial() {
+                            world.find_edges();
+                        }
                         tell(JoinerEvent::EdgesFound(number));
                     }
                 }));
@@ -123,6 +126,7 @@ pub(crate) fn reason(panic: &(dyn Any + Send)) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::PathBuf;
 
     /// The thread is held after its first model until two more lists wait.
     #[test]
@@ -152,6 +156,22 @@ mod tests {
         assert!(joiner.take(found).is_none() && joiner.is_idle());
         drop(joiner);
         assert!(from.recv().is_err(), "the thread ends");
+    }
+
+    /// They would be found again for the model that follows.
+    #[test]
+    fn edges_of_previews_are_not_found() {
+        let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../samples/bracket.step");
+        let import = selvedge_io::import::open(&path).expect("a sample");
+        let (to, from) = mpsc::channel();
+        let mut joiner = Joiner::new(move |event| to.send(event).expect("the test waits"));
+        for partial in [true, false] {
+            joiner.join(vec![Arc::new(Loaded { path: path.clone(), import: import.clone(), partial })]);
+            let joined = joiner.take(from.recv().expect("an event"));
+            let Some(Ok(world)) = joined else { panic!("{joined:?}") };
+            assert!(joiner.take(from.recv().expect("an event")).is_none() && joiner.is_idle());
+            assert_eq!((world.is_partial(), world.edges_of(0).is_none()), (partial, partial));
+        }
     }
 
     #[test]

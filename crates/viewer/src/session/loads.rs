@@ -6,7 +6,7 @@
 //!                          a is written ──REST──┘
 //! ```
 
-use super::{Loaded, Loader, LoaderEvent};
+use super::{Finder, Loaded, Loader, LoaderEvent};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -22,6 +22,8 @@ struct Load {
     loader: Loader,
     stage: &'static str,
     share: Option<f32>,
+    /// Its finished parts.
+    preview: Option<Arc<Loaded>>,
 }
 
 /// The end of a load.
@@ -33,10 +35,21 @@ pub struct Ended {
     pub result: Result<Arc<Loaded>, String>,
 }
 
+/// News of a load that was not given up.
+#[derive(Debug)]
+pub enum News {
+    /// More parts are finished: [`Loads::previews`] has them.
+    Preview(Arc<Loaded>),
+    /// It has ended.
+    Ended(Ended),
+}
+
 /// All files that are being read, each by a thread.
 #[derive(Debug, Default)]
 pub struct Loads {
     all: Vec<Load>,
+    /// Where parts in other files are found.
+    finder: Option<Finder>,
     /// Counts loads: the events of one that was given up have a number that is in `all` no more.
     begun: u64,
     /// Files that were written, and when.
@@ -44,6 +57,11 @@ pub struct Loads {
 }
 
 impl Loads {
+    /// No file yet. Without a finder, parts in other files are found beside the file that names them.
+    pub fn new(finder: Option<Finder>) -> Self {
+        Self { finder, ..Self::default() }
+    }
+
     /// Begins to read a file, unless it is being read. The thread calls `tell` with the number of the load, for
     /// [`take`](Self::take).
     pub fn begin(&mut self, path: PathBuf, tell: impl Fn(u64, LoaderEvent) + Send + Sync + 'static) {
@@ -52,23 +70,38 @@ impl Loads {
         }
         self.begun += 1;
         let number = self.begun;
-        let loader = Loader::new(path, move |event| tell(number, event));
-        self.all.push(Load { number, loader, stage: "reading", share: None });
+        let loader = Loader::new(path, self.finder.clone(), move |event| tell(number, event));
+        self.all.push(Load { number, loader, stage: "reading", share: None, preview: None });
     }
 
-    /// Takes an event of a load; returns the end of one that was not given up.
-    pub fn take(&mut self, number: u64, event: LoaderEvent) -> Option<Ended> {
+    /// Takes an event of a load; returns the news of one that was not given up. The previews of a load go with its end.
+    pub fn take(&mut self, number: u64, event: LoaderEvent) -> Option<News> {
         let nth = self.all.iter().position(|load| load.number == number)?;
-        if let LoaderEvent::Progress { stage, share } = event {
-            (self.all[nth].stage, self.all[nth].share) = (stage, share);
-            return None;
-        }
+        let result = match event {
+            LoaderEvent::Progress { stage, share } => {
+                (self.all[nth].stage, self.all[nth].share) = (stage, share);
+                return None;
+            }
+            LoaderEvent::Preview(loaded) => {
+                self.all[nth].preview = Some(Arc::clone(&loaded));
+                return Some(News::Preview(loaded));
+            }
+            LoaderEvent::Loaded(loaded) => Some(Ok(loaded)),
+            LoaderEvent::Failed(why) => Some(Err(why)),
+            LoaderEvent::Cancelled => None,
+        };
         let path = self.all.remove(nth).loader.path;
-        match event {
-            LoaderEvent::Loaded(loaded) => Some(Ended { path, result: Ok(loaded) }),
-            LoaderEvent::Failed(why) => Some(Ended { path, result: Err(why) }),
-            LoaderEvent::Progress { .. } | LoaderEvent::Cancelled => None,
-        }
+        Some(News::Ended(Ended { path, result: result? }))
+    }
+
+    /// The finished parts of files that are being read.
+    pub fn previews(&self) -> impl Iterator<Item = &Arc<Loaded>> {
+        self.all.iter().filter_map(|load| load.preview.as_ref())
+    }
+
+    /// All previews are shown.
+    pub fn shown(&self, now: Instant) {
+        self.all.iter().for_each(|load| load.loader.shown(now));
     }
 
     /// Stops reading; returns the files. The threads end at their importers' next signs of progress; nothing waits for
@@ -123,6 +156,7 @@ impl Loads {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use selvedge_io::import::Import;
     use std::sync::mpsc;
 
     /// The first thread may end at any time after the file is opened again.
@@ -144,8 +178,29 @@ mod tests {
             assert!(loads.is_reading(&path) && loads.iter().all(|(_, stage, _)| stage != "old"));
         }
         let ends: Vec<_> = from.iter().filter_map(|(number, event)| loads.take(number, event)).collect();
-        assert!(matches!(&ends[..], [Ended { path: of, result: Ok(_) }] if *of == path), "{ends:?}");
+        assert!(matches!(ends.last(), Some(News::Ended(Ended { path: of, result: Ok(_) })) if *of == path), "{ends:?}");
         assert!(loads.is_idle());
+    }
+
+    #[test]
+    fn finished_parts_go_with_the_load() {
+        let path = PathBuf::from("no_such.step");
+        let parts = Arc::new(Loaded { path: path.clone(), import: Import::default(), partial: true });
+        let preview = || LoaderEvent::Preview(Arc::clone(&parts));
+        let ends: [fn(&mut Loads); 3] = [
+            |loads| drop(loads.give_up()),
+            |loads| loads.forget(Path::new("no_such.step")),
+            |loads| drop(loads.take(1, LoaderEvent::Failed("half of it".to_owned()))),
+        ];
+        for end in ends {
+            let mut loads = Loads::default();
+            loads.begin(path.clone(), |_, _| ());
+            assert!(matches!(loads.take(1, preview()), Some(News::Preview(_))) && loads.is_reading(&path));
+            assert_eq!(loads.previews().count(), 1);
+            end(&mut loads);
+            assert_eq!(loads.previews().count(), 0);
+            assert!(loads.take(1, preview()).is_none(), "too late");
+        }
     }
 
     #[test]
@@ -159,7 +214,7 @@ mod tests {
         loads.written(path.clone(), now);
         assert_eq!((loads.rested(now + REST), loads.wake(), loads.is_idle()), (Vec::new(), None, false));
         let ended = loads.take(1, LoaderEvent::Failed("half of it".to_owned())).expect("the end");
-        assert!(ended.path == path && ended.result.is_err());
+        assert!(matches!(&ended, News::Ended(Ended { path: of, result: Err(_) }) if *of == path), "{ended:?}");
         assert_eq!((loads.wake(), loads.rested(now + REST)), (Some(now + REST), vec![path.clone()]));
         loads.begin(path.clone(), |_, _| ());
         loads.written(path.clone(), now);

@@ -1,7 +1,7 @@
 //! Open files and the state of the scene: visibility, colours, sections, selection; plain data without a window.
 //!
 //! ```text
-//!   files ─merge─▶ World: one model, the parts of each file, edges of each part
+//!   files, previews ─merge─▶ World: one model, the parts of each file, edges of each part
 //!                     │
 //!   SceneState ───────┴─show─▶ Shown: the model that is drawn, and the world's instance of each of its own
 //!   (hidden, see-through, colours, sections, explosion; undone and redone)
@@ -12,15 +12,16 @@ pub mod file;
 pub mod joiner;
 pub mod loads;
 pub mod picked;
+pub mod schedule;
 pub mod section;
 pub mod shown;
 pub mod undo;
 pub mod world;
 
 pub use carry::Carried;
-pub use file::{Loaded, Loader, LoaderEvent};
+pub use file::{Finder, Loaded, Loader, LoaderEvent};
 pub use joiner::{Joiner, JoinerEvent};
-pub use loads::{Ended, Loads};
+pub use loads::{Ended, Loads, News};
 pub use picked::Picked;
 pub use section::Section;
 pub use shown::{SceneState, Shown};

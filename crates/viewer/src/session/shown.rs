@@ -197,7 +197,7 @@ mod tests {
     fn world() -> World {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/assembly.step");
         let import = selvedge_io::import::open(&path).expect("a sample");
-        let loaded = Arc::new(Loaded { path, import });
+        let loaded = Arc::new(Loaded { path, import, partial: false });
         World::new(&[Arc::clone(&loaded), loaded])
     }
 

@@ -4,6 +4,7 @@ use super::Loaded;
 use glam::{DAffine3, DVec3};
 use selvedge::model::{Bounds, Edges, Instance, Model, Part, SurfaceKind};
 use selvedge::spline::Surface;
+use selvedge_io::import::Summary;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -24,6 +25,8 @@ pub struct FilePart {
     pub format: String,
     /// One line: the drawn and the missing items.
     pub summary: String,
+    /// It is being read, and its finished parts are shown.
+    pub partial: bool,
     /// Everything of the file is drawn.
     pub complete: bool,
     /// Items that were left out or repaired, a line each.
@@ -146,7 +149,7 @@ impl World {
             model.trim = None;
             self.notices.push("Several files are open: the volume that cuts one of them is left out.".to_owned());
         }
-        let summary = file.import.summary();
+        let summary = (!file.partial).then(|| file.import.summary());
         let warning = |w: &selvedge_io::import::Warning| {
             let times = if w.count > 1 { format!(" ({} times)", w.count) } else { String::new() };
             match w.place {
@@ -161,10 +164,16 @@ impl World {
             instances: first_instance..self.model.instances.len(),
             solids: first_solid..self.model.solids.len(),
             format: file.import.report.format.clone(),
-            summary: summary.to_string(),
-            complete: summary.is_complete(),
+            partial: file.partial,
+            complete: summary.as_ref().is_some_and(Summary::is_complete),
+            summary: summary.map_or_else(|| "being read".to_owned(), |summary| summary.to_string()),
             warnings: file.import.warnings.iter().map(warning).collect(),
         });
+    }
+
+    /// A file is not read to its end.
+    pub fn is_partial(&self) -> bool {
+        self.files.iter().any(|file| file.partial)
     }
 
     /// Nothing is open, or nothing can be drawn.

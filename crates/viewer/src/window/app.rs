@@ -145,6 +145,7 @@ impl App {
         let watcher = watcher.inspect_err(|e| ui.tell(format!("Files are not watched: {e}"))).ok();
         let joined = proxy.clone();
         let joiner = Joiner::new(move |event| drop(joined.send_event(Event::Joiner(event))));
+        let loads = Loads::new(options.finder.clone());
         Self {
             options,
             proxy,
@@ -156,7 +157,7 @@ impl App {
             kept: settings.clone(),
             settings,
             files: Vec::new(),
-            loads: Loads::default(),
+            loads,
             joiner,
             watcher,
             flight: None,
@@ -456,6 +457,9 @@ impl App {
         if let Err(error) = opened.engine.take() {
             tracing::error!("{error}");
             self.ui.tell(format!("It cannot be drawn: {error}"));
+        }
+        if !self.joiner.is_busy() && opened.engine.drawn(&self.session.world).is_some() {
+            self.loads.shown(Instant::now());
         }
         self.redraw();
     }

@@ -4,6 +4,7 @@
 //! ```text
 //!   Ready ──hidden, coloured, moved, a loop──▶ changed in place ─▶ Ready
 //!     └─────anything else──▶ Uploading (thread: model of the state, upload) ──▶ Ready, or the model before
+//!                              └─ of a preview, and all files are read: given up
 //! ```
 
 use super::living::{self, Placed};
@@ -12,8 +13,9 @@ use selvedge::model::Model;
 use selvedge::picture::{SceneSettings, Smooth};
 use selvedge::renderer::{RenderError, Renderer};
 use std::collections::BTreeSet;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver};
 use std::thread::{self, JoinHandle};
 
@@ -70,6 +72,18 @@ pub enum UploadError {
     Render(#[from] RenderError),
     #[error("the upload failed by a defect of the program: {0}")]
     Panic(String),
+    #[error("the upload was given up")]
+    GivenUp,
+}
+
+/// Ends an upload that was given up; it unwinds through the renderer without a message.
+struct GivenUp;
+
+/// An upload in a thread.
+struct Upload {
+    thread: JoinHandle<()>,
+    from: Receiver<Uploaded>,
+    given_up: Arc<AtomicBool>,
 }
 
 /// The result of a thread.
@@ -81,7 +95,7 @@ struct Uploaded {
 /// The renderer and its model.
 pub struct Engine {
     renderer: Option<Renderer>,
-    upload: Option<(JoinHandle<()>, Receiver<Uploaded>)>,
+    upload: Option<Upload>,
     current: Option<Current>,
     /// The last request, which may have failed.
     asked: Option<Request>,
@@ -131,6 +145,7 @@ impl Engine {
     /// Shows the requested model: by changes in place, or by an upload that begins now. No frame is in flight. The thread
     /// of an upload calls `done`; [`take`](Self::take) then has the result.
     pub fn want(&mut self, wanted: Wanted<'_>, done: impl FnOnce() + Send + 'static) {
+        self.end_preview(wanted.world);
         let is_asked = self.asked.as_ref().is_some_and(|asked| wanted.is_of(asked));
         if self.is_busy() || is_asked || wanted.world.is_empty() || self.changes(wanted) {
             return;
@@ -139,13 +154,28 @@ impl Engine {
         let request = wanted.request();
         self.asked = Some(request.clone());
         let (to, from) = mpsc::channel();
+        let given_up = Arc::new(AtomicBool::new(false));
+        let ends = Arc::clone(&given_up);
         let thread = thread::spawn(move || {
-            let result = caught(|| upload(&mut renderer, request));
+            let between_faces = |_: usize| {
+                if ends.load(Ordering::Relaxed) {
+                    resume_unwind(Box::new(GivenUp));
+                }
+            };
+            let result = caught(|| upload(&mut renderer, request, &between_faces));
             // when the window closes, the receiver is gone
             drop(to.send(Uploaded { renderer, result }));
             done();
         });
-        self.upload = Some((thread, from));
+        self.upload = Some(Upload { thread, from, given_up });
+    }
+
+    /// Gives up the upload of a preview where all files are read by now.
+    fn end_preview(&self, wanted: &World) {
+        let is_of_preview = self.asked.as_ref().is_some_and(|asked| asked.world.is_partial());
+        if let Some(upload) = self.upload.as_ref().filter(|_| is_of_preview && !wanted.is_partial()) {
+            upload.given_up.store(true, Ordering::Relaxed);
+        }
     }
 
     /// Changes the scene in place. `false` where only an upload can show what is wanted.
@@ -176,19 +206,19 @@ impl Engine {
     /// Takes the renderer back from a thread that has called `done`, if there is one.
     ///
     /// # Errors
-    /// Why the model was not uploaded; the model before stays.
+    /// Why the model was not uploaded, unless it was given up; the model before stays.
     pub fn take(&mut self) -> Result<(), UploadError> {
-        let Some((thread, from)) = self.upload.take() else { return Ok(()) };
-        let uploaded = match from.try_recv() {
+        let Some(upload) = self.upload.take() else { return Ok(()) };
+        let uploaded = match upload.from.try_recv() {
             Ok(uploaded) => uploaded,
             Err(mpsc::TryRecvError::Empty) => {
-                self.upload = Some((thread, from));
+                self.upload = Some(upload);
                 return Ok(());
             }
             Err(mpsc::TryRecvError::Disconnected) => return Ok(()),
         };
         // it has nothing left to do
-        let _ = thread.join();
+        let _ = upload.thread.join();
         self.renderer = Some(uploaded.renderer);
         match uploaded.result {
             Ok((current, notice)) => {
@@ -199,14 +229,14 @@ impl Engine {
             Err(error) => {
                 // the second of two uploads may have failed
                 self.current.iter_mut().for_each(|current| current.is_mixed = true);
-                Err(error)
+                if matches!(error, UploadError::GivenUp) { Ok(()) } else { Err(error) }
             }
         }
     }
 
     /// Waits for the thread. The renderer is then here, or freed with the engine.
     pub fn wait(&mut self) {
-        if let Some((thread, from)) = self.upload.take() {
+        if let Some(Upload { thread, from, .. }) = self.upload.take() {
             let _ = thread.join();
             self.renderer = from.try_recv().ok().map(|uploaded| uploaded.renderer);
         }
@@ -217,24 +247,30 @@ impl Engine {
 fn caught<T>(upload: impl FnOnce() -> Result<T, RenderError>) -> Result<T, UploadError> {
     match catch_unwind(AssertUnwindSafe(upload)) {
         Ok(result) => result.map_err(UploadError::Render),
+        Err(panic) if panic.is::<GivenUp>() => Err(UploadError::GivenUp),
         Err(panic) => Err(UploadError::Panic(joiner::reason(panic.as_ref()))),
     }
 }
 
-/// Uploads a model with hidden instances in it, without those where one of them cannot be hidden.
-fn upload(renderer: &mut Renderer, request: Request) -> Result<(Current, Option<String>), RenderError> {
+/// Uploads a model with hidden instances in it, without those where one of them cannot be hidden. `between_faces` may
+/// unwind to [`caught`].
+fn upload(
+    renderer: &mut Renderer,
+    request: Request,
+    between_faces: &(dyn Fn(usize) + Sync),
+) -> Result<(Current, Option<String>), RenderError> {
     // shadows are those of an upload
     let lives = request.settings.sun.is_none();
     let state = &request.state;
     let shown = if lives { state.show_and_hide(&request.world) } else { state.show(&request.world) };
     let failed = shown.failed.as_ref().map(|error| format!("A section is not cut: {error}."));
-    let (mut settings, mut rough) = put(renderer, shown.model, request.settings)?;
+    let (mut settings, mut rough) = put(renderer, shown.model, request.settings, between_faces)?;
     let mut placed = Placed { instances: shown.instances.into(), hidden: shown.hidden };
     let hidden = placed.hidden.iter().try_for_each(|nth| renderer.set_visible(*nth, false));
     if let Err(why) = hidden {
         tracing::info!("what is hidden is left out: {why}");
         let shown = request.state.show(&request.world);
-        (settings, rough) = put(renderer, shown.model, request.settings)?;
+        (settings, rough) = put(renderer, shown.model, request.settings, between_faces)?;
         placed = Placed { instances: shown.instances.into(), hidden: BTreeSet::new() };
     }
     tracing::info!("uploaded");
@@ -246,13 +282,14 @@ fn put(
     renderer: &mut Renderer,
     model: Model,
     settings: SceneSettings,
+    between_faces: &(dyn Fn(usize) + Sync),
 ) -> Result<(SceneSettings, Option<String>), RenderError> {
     let model = Arc::new(model);
-    match renderer.upload_shared(Arc::clone(&model), settings, &|_| ()) {
+    match renderer.upload_shared(Arc::clone(&model), settings, between_faces) {
         Ok(()) => Ok((settings, None)),
         Err(RenderError::SmoothTrims(what)) => {
             let settings = SceneSettings { smooth: Smooth::None, ..settings };
-            renderer.upload_shared(model, settings, &|_| ())?;
+            renderer.upload_shared(model, settings, between_faces)?;
             Ok((settings, Some(format!("Borders are not smooth: that does not go with {what}."))))
         }
         Err(error) => Err(error),
@@ -269,5 +306,7 @@ mod tests {
         assert!(matches!(&failed, Err(UploadError::Panic(why)) if why == "on purpose"), "{failed:?}");
         assert!(matches!(caught(|| Err::<(), _>(RenderError::Tolerance(0.0))), Err(UploadError::Render(_))));
         assert!(matches!(caught(|| Ok(1)), Ok(1)));
+        let given_up = caught(|| -> Result<(), RenderError> { resume_unwind(Box::new(GivenUp)) });
+        assert!(matches!(given_up, Err(UploadError::GivenUp)));
     }
 }

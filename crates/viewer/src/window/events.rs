@@ -4,7 +4,7 @@ use super::app::{App, Event, Opened};
 use crate::commands::Command;
 use crate::navigation::gesture::Button;
 use crate::navigation::standard::up_from;
-use crate::session::{Ended, Loaded, World};
+use crate::session::{Ended, Loaded, News, World};
 use glam::DVec2;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -117,9 +117,11 @@ impl ApplicationHandler<Event> for App {
             }
             Event::Uploaded => self.uploaded(),
             Event::Loader(number, event) => {
+                let previews = self.has_previews();
                 match self.loads.take(number, event) {
-                    Some(Ended { result: Ok(loaded), .. }) => self.loaded(loaded),
-                    Some(Ended { result: Err(why), path }) => self.not_loaded(&path, why),
+                    Some(News::Preview(loaded)) => self.previewed(&loaded),
+                    Some(News::Ended(Ended { result: Ok(loaded), .. })) => self.loaded(loaded),
+                    Some(News::Ended(Ended { result: Err(why), path })) => self.not_loaded(&path, why, previews),
                     None => {}
                 }
                 self.redraw();
@@ -250,10 +252,30 @@ impl App {
         self.files.iter().any(|file| file.path == path)
     }
 
+    /// The finished parts of files that are being read and not open. Of an open file that is read again, the parts as
+    /// they were are shown until it is read.
+    fn previews(&self) -> impl Iterator<Item = &Arc<Loaded>> {
+        self.loads.previews().filter(move |preview| !self.is_open(&preview.path))
+    }
+
+    fn has_previews(&self) -> bool {
+        self.previews().next().is_some()
+    }
+
+    /// Puts the open files together, and the finished parts of others.
+    fn join(&mut self) {
+        let all = self.files.iter().chain(self.previews()).cloned().collect();
+        self.joiner.join(all);
+    }
+
     fn give_up(&mut self) {
+        let previews = self.has_previews();
         for path in self.loads.give_up() {
             self.unwatch(&path);
             self.ui.tell(format!("{}: given up", path.display()));
+        }
+        if previews {
+            self.join();
         }
     }
 
@@ -266,10 +288,21 @@ impl App {
         }
     }
 
-    fn not_loaded(&mut self, path: &Path, why: String) {
+    /// A file is not read; where there were `previews`, its own go.
+    fn not_loaded(&mut self, path: &Path, why: String, previews: bool) {
         self.unwatch(path);
         tracing::error!("{why}");
         self.ui.tell(why);
+        if previews {
+            self.join();
+        }
+    }
+
+    fn previewed(&mut self, loaded: &Loaded) {
+        if !self.is_open(&loaded.path) {
+            tracing::info!("{} so far: {} faces", loaded.path.display(), loaded.import.model.face_count());
+            self.join();
+        }
     }
 
     fn loaded(&mut self, loaded: Arc<Loaded>) {
@@ -283,12 +316,14 @@ impl App {
             Some(known) => self.files[known] = loaded,
             None => self.files.push(loaded),
         }
-        self.joiner.join(self.files.clone());
+        self.join();
     }
 
     /// Shows the model of all open files.
     fn joined(&mut self, world: Arc<World>) {
-        let first = self.session.world.is_empty();
+        // the first parts are all in view, and so are those after them, unless the view was moved meanwhile
+        let before = &self.session.world;
+        let first = before.is_empty() || before.files.iter().all(|file| file.partial) && self.view.is_untouched();
         let gone = self.session.open(Arc::clone(&world));
         self.ui.opened();
         if gone > 0 {
@@ -302,8 +337,7 @@ impl App {
         if first {
             self.view.reset(Instant::now());
         }
-        let title = self.files.iter().filter_map(|f| f.path.file_name()).map(|n| n.to_string_lossy());
-        let title: Vec<_> = title.collect();
+        let title: Vec<_> = world.files.iter().map(|file| file.name.as_str()).collect();
         if let Some(opened) = &self.opened {
             opened.window.set_title(&format!("{} - selvedge", title.join(", ")));
         }
@@ -363,15 +397,13 @@ impl App {
         }
     }
 
-    /// Closes a file of the tree.
+    /// Closes a file of the tree, or ends its reading.
     fn close_file(&mut self, file: usize) {
-        let path = self.session.world.files.get(file).map(|file| &file.path);
-        if let Some(nth) = self.files.iter().position(|file| Some(&file.path) == path) {
-            let closed = self.files.remove(nth);
-            self.unwatch(&closed.path);
-            self.loads.forget(&closed.path);
-            self.joiner.join(self.files.clone());
-        }
+        let Some(path) = self.session.world.files.get(file).map(|file| file.path.clone()) else { return };
+        self.files.retain(|file| file.path != path);
+        self.unwatch(&path);
+        self.loads.forget(&path);
+        self.join();
     }
 
     /// The desktop's dialog, in a thread that waits for it.

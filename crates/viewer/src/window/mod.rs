@@ -22,6 +22,7 @@ mod targets;
 mod tasks;
 mod waiter;
 
+use crate::session::Finder;
 use selvedge::ash::vk;
 use selvedge::gpu::GpuError;
 use selvedge::renderer::RenderError;
@@ -41,6 +42,8 @@ pub struct ViewOptions {
     pub settings: Option<PathBuf>,
     /// Width and height of the window, points; `None` leaves them to the system.
     pub size: Option<(u32, u32)>,
+    /// Finds parts of assemblies in other files; `None`: beside the file that names them.
+    pub finder: Option<Finder>,
 }
 
 /// The state after the window is closed.

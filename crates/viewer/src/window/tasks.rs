@@ -69,6 +69,10 @@ impl App {
     /// Saves all open files as one model, with the trim loops that were changed.
     pub fn save(&mut self) {
         let Some(path) = self.ui.save.take() else { return };
+        if self.session.world.is_partial() {
+            self.ui.tell(format!("{} is not saved: not all files are read yet.", path.display()));
+            return;
+        }
         let mut model = self.session.world.model.clone();
         self.session.scene.now().edit(&mut model);
         let told = match save(&path, &model) {

@@ -1,6 +1,6 @@
 //! The hand: an X server without a screen, the mouse and the keys that xdotool moves, and the program with the window.
 
-use super::{FILE, NAME, PATIENCE, SIZE};
+use super::{FILE, NAME, PATIENCE, SIZE, SLOW};
 use glam::DVec2;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -138,8 +138,16 @@ pub struct Program {
 impl Program {
     /// Opens a file and waits for its picture at rest.
     pub fn start(display: &Display, file: &Path) -> Self {
+        let mut program = Self::begin(display, file, false);
+        program.rest();
+        program
+    }
+
+    /// Opens a file and waits for the first picture. It may read the files of an assembly slowly.
+    pub fn begin(display: &Display, file: &Path, slowly: bool) -> Self {
         let folder = file.parent().expect("a folder").to_owned();
         let mut child = Command::new(std::env::current_exe().expect("this test"))
+            .envs(slowly.then_some((SLOW, "1")))
             .args(["--exact", NAME, "--nocapture"])
             .env(FILE, file)
             .env(SIZE, format!("{} {}", display.size.0, display.size.1))
@@ -155,7 +163,6 @@ impl Program {
         std::thread::spawn(move || said.lines().map_while(Result::ok).try_for_each(|line| to.send(line)));
         let mut program = Self { child, lines, all: Vec::new(), folder, id: String::new() };
         program.wait("first picture");
-        program.rest();
         let id = display.xdotool("search --name selvedge");
         program.id = id.lines().last().expect("the window").to_owned();
         display.xdotool(&format!("windowfocus {}", program.id));
@@ -177,6 +184,11 @@ impl Program {
             }
         }
         panic!("it never said `{what}`; it said\n{}", self.all.join("\n"));
+    }
+
+    /// Waits until the program is silent; it may be reading.
+    pub fn quiet(&mut self) {
+        while self.line(STILL).is_some() {}
     }
 
     /// Waits until the program says that it is idle, and nothing after that. Silence alone is not enough: a busy

@@ -6,21 +6,26 @@
 mod gestures;
 mod hand;
 mod living;
+mod previews;
 mod scene;
 mod soak;
 mod speed;
 
 use hand::{Display, Program, numbers};
+use previews::Slow;
 use scene::Scene;
+use selvedge_viewer::session::Finder;
 use selvedge_viewer::{ViewOptions, run};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// Names the file that the window opens: set for the process with the window.
 const FILE: &str = "SELVEDGE_WINDOW_FILE";
 /// Names its width and height.
 const SIZE: &str = "SELVEDGE_WINDOW_SIZE";
+/// Set for a process that reads the files of an assembly slowly.
+const SLOW: &str = "SELVEDGE_WINDOW_SLOW";
 const NAME: &str = "a_window_is_used_as_a_person_does";
 /// Least change of a tinted pixel from blue to red or back, of 255: a third of it is the tint.
 const LEAST_TINT: i32 = 20;
@@ -67,7 +72,9 @@ fn window(file: PathBuf) {
         .init();
     let size = std::env::var(SIZE).expect("a size");
     let (width, height) = size.split_once(' ').expect("two numbers");
+    let slow = std::env::var_os(SLOW).and(file.parent()).map(|folder| Slow(folder.to_owned()));
     let closed = run(ViewOptions {
+        finder: slow.map(|slow| Finder(Arc::new(slow))),
         settings: file.parent().map(|folder| folder.join("settings.json")),
         files: vec![file],
         validation: true,

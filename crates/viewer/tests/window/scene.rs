@@ -4,6 +4,7 @@ use super::hand::numbers;
 use glam::{DVec2, DVec3};
 use selvedge::model::{Camera, Face, Model, SurfaceKind};
 use selvedge_check::{Hit, Tracer};
+use selvedge_io::import::{Folders, Options, open_with};
 use selvedge_viewer::session::{Loaded, World};
 use selvedge_viewer::view::View;
 use std::path::Path;
@@ -28,8 +29,10 @@ impl Scene {
     /// Of the log's line on the view's place.
     pub fn new(file: &Path, line: &str) -> Self {
         let place = numbers(line, "view of ");
-        let import = selvedge_io::import::open(file).expect("a sample");
-        let world = World::new(&[Arc::new(Loaded { path: file.to_owned(), import })]);
+        let beside = Folders::new(Vec::new());
+        let options = Options { files: Some(&beside), ..Options::default() };
+        let import = open_with(file, &options).expect("a sample");
+        let world = World::new(&[Arc::new(Loaded { path: file.to_owned(), import, partial: false })]);
         world.find_edges();
         let mut view = View::default();
         view.resize((place[0] as u32, place[1] as u32));

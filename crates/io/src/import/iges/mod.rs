@@ -39,7 +39,9 @@ mod tree;
 mod trim;
 mod value;
 
-use super::{FaceCount, FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Options, Place, Warnings, text};
+use super::{
+    FaceCount, FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Options, Place, Warnings, preview, text,
+};
 use crate::brep::{build_face, settle};
 use crate::model::{Instance, Model, Part};
 use file::File;
@@ -153,7 +155,7 @@ fn settled(geometry: &Geometry<'_>, bodies: &mut [Body], report: &mut ImportRepo
     }
 }
 
-/// Builds all faces, in parallel; results are taken in file order.
+/// Builds all faces, in parallel; results are taken in file order. Previews are made between parts.
 fn build(
     geometry: &Geometry<'_>,
     bodies: &[Body],
@@ -172,6 +174,7 @@ fn build(
         let lost = |(id, why): &(u32, String)| FaceRecord { notes: vec![why.clone()], ..record(*id, part) };
         report.face_records.extend(body.shells.lost.iter().map(lost));
     }
+    let (mut division, mut faces) = (preview::Division::new(options), 0);
     for (part, body) in bodies.iter().enumerate() {
         let shared = &body.shells;
         model.parts[part].stated_edges = shared.sources();
@@ -196,6 +199,10 @@ fn build(
                     report.face_records.push(FaceRecord { notes: vec![error.to_string()], ..record(id, part) });
                 }
             }
+        }
+        faces += shared.faces.len() + body.sheets.len();
+        if division.is_behind(faces) && part + 1 < bodies.len() {
+            options.preview(|| preview::beginning(model, part + 1, bodies.len()));
         }
     }
 }

@@ -90,7 +90,7 @@ pub(super) struct File {
 pub(super) struct Scene<'a> {
     pub text: &'a str,
     pub folder: Option<&'a Path>,
-    /// How other files are read.
+    /// How other files are read: without previews.
     pub options: Options<'a>,
     /// Millimetres of the file's unit.
     pub unit: f64,
@@ -117,7 +117,7 @@ impl<'a> Scene<'a> {
         Self {
             text,
             folder,
-            options: *options,
+            options: Options { preview: None, ..*options },
             unit: 1.0,
             tolerance: 1e-3,
             items: Vec::new(),

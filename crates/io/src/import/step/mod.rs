@@ -50,9 +50,10 @@ pub(super) use surface::{OTHER_SIDE, OTHER_SIDE_HOW, as_cylinder, offset};
 use super::external::{Mention, Read};
 use super::{
     FaceCount, FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Options, Place, Stage, Warnings, locate,
+    preview,
 };
-use crate::brep::{build_face, settle};
-use crate::model::{Instance, Model, Part};
+use crate::brep::{BuildError, BuiltFace, FaceGeometry, build_face, settle};
+use crate::model::{Colour, Instance, Model, Part};
 use assembly::Assembly;
 use body::{Body, Looks};
 use colour::Colours;
@@ -155,7 +156,7 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Re
     let mut notes = ledger.finish();
     drop((assembly, colours));
     let places = file.into_places();
-    build(bodies, (&places, &mut notes), &mut model, &mut report, options);
+    build((bodies, parts), (&places, &mut notes), &mut model, &mut report, options);
     solids.finish(parts, &mut model, (&places, &mut notes));
     report.face_records.iter_mut().for_each(|r| r.part = r.part.min(parts));
     report.dropped = notes.dropped;
@@ -164,16 +165,21 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Re
     Ok((Import { model, warnings, report, ..Import::default() }, mentions.into_values().collect()))
 }
 
-/// Builds all faces, in parallel; results are taken in file order. The input of a face is freed with it.
+/// A part, its body and the tolerance of its representation.
+type PartBody = (usize, Body, f64);
+
+/// Builds all faces, in parallel; results are taken in file order. Previews of the first parts of those that the model
+/// will have are made in between. The input of a face is freed with it.
 fn build(
-    bodies: Vec<(Body, f64)>,
+    (bodies, parts): (Vec<(Body, f64)>, usize),
     (places, notes): (&Places<'_>, &mut Notes),
     model: &mut Model,
     report: &mut ImportReport,
     options: &Options<'_>,
 ) {
-    let mut edges = Vec::with_capacity(bodies.len());
-    let mut jobs = Vec::with_capacity(bodies.iter().map(|(body, _)| body.faces.len()).sum());
+    let total = bodies.iter().map(|(body, _)| body.faces.len()).sum();
+    let mut division = preview::Division::new(options);
+    let (mut groups, mut group, mut count) = (Vec::new(), Vec::new(), 0);
     for (part, (mut body, tolerance)) in bodies.into_iter().enumerate() {
         let mut faces: Vec<_> = body.faces.iter_mut().map(|(face, _)| face).collect();
         for (id, note) in settle(&mut body.edges, &mut faces, body.closed, tolerance) {
@@ -181,40 +187,61 @@ fn build(
             notes.push("edge repaired", || places.of(id), note);
         }
         model.parts[part].stated_edges = std::mem::take(&mut body.stated_edges);
+        count += body.faces.len();
+        group.push((part, body, tolerance));
+        if division.is_behind(count) {
+            groups.push(std::mem::take(&mut group));
+        }
+    }
+    groups.push(group);
+    let count = FaceCount::new(options, total);
+    for group in groups {
+        let done = group.last().map_or(parts, |(part, ..)| part + 1);
+        for (record, colour, result) in built(group, &count) {
+            let id = record.id;
+            match result {
+                Ok(mut built) => {
+                    built.face.colour = colour;
+                    for note in &built.notes {
+                        report.repaired.add(note);
+                        notes.push("face repaired", || places.of(id), note.clone());
+                    }
+                    for why in &built.lost {
+                        notes.push(LOOP_LOST, || places.of(id), why.clone());
+                    }
+                    model.parts[record.part].faces.push(report.record(record, built));
+                }
+                Err(error) => {
+                    notes.push(FACE_LOST, || places.of(id), error.to_string());
+                    report.face_records.push(FaceRecord { notes: vec![error.to_string()], ..record });
+                }
+            }
+        }
+        if done < parts {
+            options.preview(|| preview::beginning(model, done, parts));
+        }
+    }
+}
+
+/// The faces of some bodies, in their order.
+fn built(
+    bodies: Vec<PartBody>,
+    count: &FaceCount<'_>,
+) -> Vec<(FaceRecord, Option<Colour>, Result<BuiltFace, BuildError>)> {
+    let first = bodies.first().map_or(0, |(part, ..)| *part);
+    let mut edges = Vec::with_capacity(bodies.len());
+    let mut jobs = Vec::with_capacity(bodies.iter().map(|(_, body, _)| body.faces.len()).sum());
+    for (part, body, tolerance) in bodies {
         edges.push(body.edges);
         jobs.extend(body.faces.into_iter().map(|(face, colour)| (part, tolerance, face, colour)));
     }
-    let count = FaceCount::new(options, jobs.len());
-    let built: Vec<_> = jobs
-        .into_par_iter()
-        .map(|(part, tolerance, face, colour)| {
-            let record = FaceRecord { id: face.id, part, tolerance, ..FaceRecord::default() };
-            let result = build_face(&face, &edges[part], tolerance);
-            count.one();
-            (record, colour, result)
-        })
-        .collect();
-    drop(edges);
-    for (record, colour, result) in built {
-        let id = record.id;
-        match result {
-            Ok(mut built) => {
-                built.face.colour = colour;
-                for note in &built.notes {
-                    report.repaired.add(note);
-                    notes.push("face repaired", || places.of(id), note.clone());
-                }
-                for why in &built.lost {
-                    notes.push(LOOP_LOST, || places.of(id), why.clone());
-                }
-                model.parts[record.part].faces.push(report.record(record, built));
-            }
-            Err(error) => {
-                notes.push(FACE_LOST, || places.of(id), error.to_string());
-                report.face_records.push(FaceRecord { notes: vec![error.to_string()], ..record });
-            }
-        }
-    }
+    let build = |(part, tolerance, face, colour): (usize, f64, FaceGeometry, Option<Colour>)| {
+        let record = FaceRecord { id: face.id, part, tolerance, ..FaceRecord::default() };
+        let result = build_face(&face, &edges[part - first], tolerance);
+        count.one();
+        (record, colour, result)
+    };
+    jobs.into_par_iter().map(build).collect()
 }
 
 /// The report of the header.

@@ -4,6 +4,7 @@ mod classes;
 mod closing;
 mod damage;
 mod models;
+mod previews;
 mod shapes;
 mod solids;
 mod structure;

@@ -6,7 +6,8 @@ use crate::model::Face;
 use glam::DVec3;
 
 /// A unit square in the plane z = 0, parameters 0 to 1.
-const SQUARE: &str = "128,1,1,1,1,0,0,1,0,0,0.,0.,1.,1.,0.,0.,1.,1.,1.,1.,1.,1.,0.,0.,0.,1.,0.,0.,0.,1.,0.,1.,1.,0.;";
+pub(super) const SQUARE: &str =
+    "128,1,1,1,1,0,0,1,0,0,0.,0.,1.,1.,0.,0.,1.,1.,1.,1.,1.,1.,0.,0.,0.,1.,0.,0.,0.,1.,0.,1.,1.,0.;";
 
 /// A cylinder of radius 2 and height 5, one closed solid of three faces, as Open CASCADE writes it.
 pub(super) const CYLINDER: &str = include_str!("cylinder.igs");
