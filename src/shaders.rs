@@ -67,6 +67,8 @@ pub struct TrimTest {
     pub border_mix: Option<[&'static Shader; 2]>,
     /// Fragment shader of pass `edge_line`, and within a volume; `None`: [`EDGE_LINE_PLAIN`], which trusts no trimmed face.
     pub edge_line: Option<[&'static Shader; 2]>,
+    /// Fragment shader of pass `edge_fold`; `None`: that of scenes without trims.
+    pub edge_fold: Option<&'static Shader>,
 }
 
 /// Pass `border_mix` for scenes without trims, without and with a volume.
@@ -93,6 +95,7 @@ pub static TRIM_TABLE: TrimTest = TrimTest {
     within: Some(Within { visibility: &VISIBILITY_TABLE_VOLUME_FRAG, gap_fill: &GAP_FILL_TABLE_VOLUME_COMP }),
     border_mix: Some([&BORDER_MIX_TABLE_COMP, &BORDER_MIX_TABLE_VOLUME_COMP]),
     edge_line: Some([&EDGE_LINE_TABLE_FRAG, &EDGE_LINE_TABLE_VOLUME_FRAG]),
+    edge_fold: Some(&EDGE_FOLD_TABLE_FRAG),
 };
 /// Cells with lists of arcs.
 pub static TRIM_EXACT: TrimTest = TrimTest {
@@ -103,6 +106,7 @@ pub static TRIM_EXACT: TrimTest = TrimTest {
     within: Some(Within { visibility: &VISIBILITY_EXACT_VOLUME_FRAG, gap_fill: &GAP_FILL_EXACT_VOLUME_COMP }),
     border_mix: Some([&BORDER_MIX_EXACT_COMP, &BORDER_MIX_EXACT_VOLUME_COMP]),
     edge_line: Some([&EDGE_LINE_EXACT_FRAG, &EDGE_LINE_EXACT_VOLUME_FRAG]),
+    edge_fold: Some(&EDGE_FOLD_EXACT_FRAG),
 };
 
 /// No test.
@@ -115,6 +119,7 @@ pub static TRIM_UNTRIMMED: TrimTest = TrimTest {
     within: None,
     border_mix: None,
     edge_line: None,
+    edge_fold: None,
 };
 
 /// Bisection of monotone pieces.
@@ -127,6 +132,7 @@ pub static TRIM_BISECT: TrimTest = TrimTest {
     within: None,
     border_mix: None,
     edge_line: None,
+    edge_fold: None,
 };
 
 /// Trim textures.
@@ -139,6 +145,7 @@ pub static TRIM_TEXTURE: TrimTest = TrimTest {
     within: None,
     border_mix: None,
     edge_line: None,
+    edge_fold: None,
 };
 
 #[cfg(test)]

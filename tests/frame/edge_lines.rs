@@ -2,11 +2,11 @@
 
 use crate::shapes;
 use crate::support::{assert_silent, orthographic, perspective, watched_with};
-use glam::{DAffine3, DVec2, DVec3};
-use selvedge::construct::{Chain, extruded_solid};
+use glam::{DAffine3, DVec2, DVec3, DVec4};
+use selvedge::construct::{Chain, extrude, extruded_solid};
 use selvedge::edges::flatten::{Flattening, LinePoint};
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
-use selvedge::model::{Camera, EdgeKind, Model, Projection};
+use selvedge::model::{Camera, EdgeKind, Face, Model, Projection};
 use selvedge::picture::{
     BadEdges, EdgeChoice, EdgeSettings, FrameSettings, Outputs, Picture, Samples, SceneSettings, TangentEdges,
 };
@@ -176,6 +176,49 @@ fn a_fold_that_few_centres_see_is_a_line() {
         println!("{length} px, {seen} centres: {found:?}");
         assert!(length > 30.0 && seen > 0.0 && seen < 0.6 * length, "{length} px, {seen} centres");
         assert_eq!((found.missing, found.stray), (0, 0), "{found:?}");
+    }
+}
+
+/// The fillet of [`rounded_block`] as a part of a cylinder that goes on by thirty degrees at both sides.
+fn of_wider_cylinder(fillet: &mut Face, radius: f64) {
+    let half = 75f64.to_radians();
+    let at = |angle: f64, away: f64, w: f64| {
+        let place = DVec2::splat(2.0 - radius) + DVec2::from_angle(angle) * away;
+        DVec4::new(place.x * w, place.y * w, 0.0, w)
+    };
+    let middle = std::f64::consts::FRAC_PI_4;
+    let (from, to) = (at(middle - half, radius, 1.0), at(middle + half, radius, 1.0));
+    let points = vec![from, at(middle, radius / half.cos(), half.cos()), to];
+    let arc = BSpline::new(2, vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], points).unwrap();
+    fillet.surface = extrude(&arc, DVec3::Z * 3.0).unwrap();
+    // where the cylinder touches the block's side x = 2; the arc is the same from its other end
+    let (mut low, mut high) = (0.0, 0.5);
+    for _ in 0..60 {
+        let u = 0.5 * (low + high);
+        if fillet.surface.point(u, 0.0).y < 2.0 - radius { low = u } else { high = u }
+    }
+    fillet.loops = vec![shapes::rectangle(DVec2::new(low, 0.0), DVec2::new(1.0 - low, 1.0))];
+}
+
+/// A fillet, and the same one as a part of a wider cylinder, end before they would fold: they have no outline.
+#[test]
+fn a_face_that_ends_before_it_folds_has_no_outline() {
+    let radius = 0.6;
+    let whole = rounded_block(radius);
+    let mut trimmed = whole.clone();
+    of_wider_cylinder(&mut trimmed.parts[0].faces[2], radius);
+    for model in [whole, trimmed] {
+        let id = model.parts[0].faces[2].id;
+        // seen from above the top, which the fillet would fold away from by 0.1, 0.3 and 0.5 px
+        for steep in [8.0, 12.0, 16.0f64] {
+            let from = DVec3::new(steep.to_radians().cos(), steep.to_radians().sin(), 0.2);
+            let camera = Camera::around(model.control_bounds(), from, DVec3::Y, 0.6, SIZE);
+            let projection = Projection::Orthographic { height: model.control_bounds().diagonal() };
+            let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
+            let picture = draw(&model, with(settings), &Camera { projection, ..camera });
+            assert!(picture.face.iter().filter(|face| **face == id).count() > 200);
+            assert_eq!(centres(&picture).count(), 0, "{steep} degrees");
+        }
     }
 }
 

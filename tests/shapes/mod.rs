@@ -347,7 +347,7 @@ fn ring_knots() -> Vec<f64> {
 }
 
 /// A counter-clockwise rectangle.
-fn rectangle(lo: DVec2, hi: DVec2) -> TrimLoop {
+pub fn rectangle(lo: DVec2, hi: DVec2) -> TrimLoop {
     let corners = [lo, DVec2::new(hi.x, lo.y), hi, DVec2::new(lo.x, hi.y)];
     closed((0..4).map(|i| Bezier::line(corners[i], corners[(i + 1) % 4])).collect())
 }

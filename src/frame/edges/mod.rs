@@ -68,7 +68,7 @@ impl Passes {
             divide: divide::Divide::new(device)?,
             line: line::Line::new(device, &with_folds, &kinds)?,
             fold: (edges.settings.silhouettes && (data.has_patches || data.has_operands))
-                .then(|| fold::Fold::new(device, &constants))
+                .then(|| fold::Fold::new(device, &constants, test))
                 .transpose()?,
             solids: solid_lines::Passes::new(device, data, &edges.settings)?,
             show: show::Show::new(device, data, (formats.colour, numbers))?,
@@ -177,8 +177,8 @@ impl EdgeStage {
         barrier::images(cmd, &[(&self.best, read.discarded(), Access::TRANSFER_WRITE)]);
         cmd.clear(&self.best, 0);
         barrier::images(cmd, &[(&self.best, Access::TRANSFER_WRITE, written)]);
+        let trim = frame.trim_test();
         if let (Some(edges), Some(sources)) = (&s.edges, &s.sources) {
-            let trim = frame.trim_test();
             let bindings = line::Bindings {
                 frame: frame.constants,
                 placed: s.placed(frame.views),
@@ -205,6 +205,7 @@ impl EdgeStage {
                 best: &self.best,
                 meshes: s.meshes.as_ref(),
                 solids,
+                trim: &trim,
             };
             barrier::images(cmd, &[(&self.best, written, written)]);
             fold.record(cmd, &bindings, self.half_px[0]);

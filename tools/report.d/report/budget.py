@@ -1,6 +1,6 @@
 """The time of each section: what it is given, and what is left of it.
 
-The shares of a whole run are 75 minutes together, those of a quick one 9. A section orders its cases, the most telling
+The shares of a whole run are 52 minutes together, those of a quick one 9. A section orders its cases, the most telling
 ones first, and divides what is left among those to come. A case that has no time left stays in the report as a row
 with that reason, and so does one whose process was ended for the section's time.
 """
@@ -11,15 +11,15 @@ from .turns import Late, Overdue
 
 # seconds of a quick run, and of a whole one
 SECONDS = {
-    "surfaces": (205, 1760),
-    "zoom": (80, 300),
-    "trims": (75, 470),
-    "solids": (80, 450),
-    "scale": (20, 430),
-    "stability": (37, 390),
+    "surfaces": (205, 1100),
+    "zoom": (80, 200),
+    "trims": (75, 300),
+    "solids": (80, 300),
+    "scale": (20, 280),
+    "stability": (37, 240),
     "least": (4, 5),
     "first_use": (4, 500),
-    "frames": (13, 50),
+    "frames": (13, 40),
     "reading": (20, 60),
     "packages": (0, 80),
 }

@@ -1,6 +1,3 @@
-#version 460
-#extension GL_EXT_scalar_block_layout : require
-#extension GL_GOOGLE_include_directive : require
 // Pass `edge_fold`: outlines of curved faces, where the surface folds away from the eye: normal across the ray.
 //
 //      pixel ·      ╭─── the exact fold: det J = 0, J = d(pixel) / d(u, v)
@@ -10,7 +7,8 @@
 //
 // Only pixels are looked at beside which something else is seen: another face, or another place of the face. The fold
 // is the exact surface's, within ARRIVED_PX. It counts when it is as near to the pixel that sees the face as pixels
-// beside each other are: where the face ends before it folds, its edge is the outline.
+// beside each other are, and inside the face's trims: where the face ends before it folds, its edge is the outline. The
+// trim test is that of one way (trim.glsl).
 #include "scene.glsl"
 #include "view.glsl"
 #include "edges.glsl"
@@ -35,6 +33,8 @@ layout(scalar, binding = 18) readonly buffer OperandPositions { vec3 operand_pos
 
 layout(scalar, push_constant) uniform Push { float half_px; } push;
 
+#define TRIM_BINDING 19
+#include "trim.glsl"
 #include "placed.glsl"
 #include "patch.glsl"
 #include "patch_place.glsl"
@@ -56,6 +56,19 @@ const bool OWN_PATCHES_HIDE = true;
 const float FOLD_REACH_PX = 1.5;
 // Neighbours whose (u, v) differ by no more, of the patch, are on one sheet.
 const float SAME_PLACE = 0.05;
+
+// Where a face ends in a fold, rounding decides on which side of its end the fold is. So the place is tested that is a
+// hundredth of a pixel before it: this share of the way back, of which the picture shows the square.
+const float BEFORE_FOLD = 1.0 / 16.0;
+
+// Whether a face reaches a fold, of its domain, where a pixel beside it sees the face.
+bool reaches(FaceInstance fi, Face face, vec2 fold, vec2 seen) {
+    vec2 place = mix(fold, seen, BEFORE_FOLD);
+    bvec2 closed = notEqual(face.flags & uvec2(FACE_CLOSED_U, FACE_CLOSED_V), uvec2(0u));
+    place = mix(place, fract(place), closed);
+    if (clamp(place, 0.0, 1.0) != place) return false;
+    return (face.flags & FACE_TRIMMED) == 0u || trim_inside(fi, face, place);
+}
 
 // A pixel's patch; x is 0 where it sees none.
 uvec2 patch_seen(ivec2 at) {
@@ -103,11 +116,13 @@ void main() {
         Sample s;
         vec2 at_fold;
         int n = int(patch_instance - fi.first_patch_instance);
-        if (!find_fold(face, n, view, unpack_uv(found[i].y), gl_FragCoord.xy, s, at_fold)) continue;
+        vec2 uv = unpack_uv(found[i].y);
+        if (!find_fold(face, n, view, uv, gl_FragCoord.xy, s, at_fold)) continue;
         vec2 place = s.q.xy / s.q.w;
         float covered = line_coverage(length(s.miss), push.half_px);
         uint steps = uint(covered * LINE_STEPS + 0.5);
         if (steps == 0u || distance(place, vec2(places[i]) + 0.5) > FOLD_REACH_PX) continue;
+        if (!reaches(fi, face, at_fold, patch_.domain.xy + uv * patch_.domain.zw)) continue;
         own_face = fi;
         if (!is_seen(EdgePoint(place, seen_from_eye(s.q), vec2(FOLD_SHEET_PX, 0.0)), at)) continue;
         imageAtomicMax(lines, at, LINE_SEEN | steps << LINE_COVERAGE | LINE_FOLD);
