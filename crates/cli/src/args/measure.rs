@@ -31,7 +31,7 @@ pub struct MeasureArgs {
     /// axes or centres: as in face:12 edge:40@2. May be given several times
     #[arg(long, num_args = 2, value_names = ["A", "B"], value_parser = face_or_edge)]
     pub between: Vec<Name>,
-    /// Print the names of all faces and edges in place of measurements
+    /// Print the names of all faces and edges, and a point of each, in place of measurements
     #[arg(long, conflicts_with_all = ["face", "edge", "part", "between"])]
     pub list: bool,
     /// Print JSON

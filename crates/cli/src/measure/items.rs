@@ -2,7 +2,8 @@
 
 use super::name::{Name, Number};
 use anyhow::{Result, bail};
-use selvedge::model::{Edge, EdgeSource, Edges, Instance, Model, Part};
+use glam::{DVec2, DVec3};
+use selvedge::model::{Edge, EdgeSource, Edges, Face, Instance, Model, Part};
 use selvedge_geometry::measure::Item;
 use serde::Serialize;
 use std::collections::HashSet;
@@ -23,6 +24,16 @@ pub struct Listed {
     pub kind: String,
     /// The name of its placed part.
     pub part: String,
+    /// A point of it, where its border or its curve begins: model coordinates.
+    pub at: [f64; 3],
+}
+
+/// Where the first loop of a face begins, or the corner of a whole surface: part coordinates.
+fn begin(face: &Face) -> DVec3 {
+    let ((u, _), (v, _)) = face.surface.domain();
+    let first = face.loops.first().and_then(|trim_loop| trim_loop.curves().next());
+    let uv = first.map_or(DVec2::new(u, v), |curve| curve.point(0.0));
+    face.surface.point(uv.x, uv.y)
 }
 
 impl<'a> Items<'a> {
@@ -113,20 +124,21 @@ impl<'a> Items<'a> {
         for (placed, instance) in self.placed() {
             let part = &self.model.parts[instance.part];
             let called = if instance.name.is_empty() { &part.name } else { &instance.name };
-            let mut add = |name: Name, kind: String| {
-                all.push(Listed { item: name.to_string(), kind, part: called.clone() });
+            let mut add = |name: Name, kind: String, at: DVec3| {
+                let at = instance.transform.transform_point3(at).to_array();
+                all.push(Listed { item: name.to_string(), kind, part: called.clone(), at });
             };
             for face in &part.faces {
                 let number = Number { number: face.id, item: None, placed: Some(placed) };
-                add(Name::Face(number), format!("{:?}", face.kind));
+                add(Name::Face(number), format!("{:?}", face.kind), begin(face));
             }
             let mut told = HashSet::new();
             let edges = self.edges.get(instance.part).map_or(&[][..], |edges| edges.edges.as_slice());
             for (nth, edge) in edges.iter().enumerate() {
                 let source = edge.source.unwrap_or(EdgeSource { entity: nth as u32 + 1, item: None });
                 let name = Name::Edge(Number { number: source.entity, item: source.item, placed: Some(placed) });
-                if told.insert(name) {
-                    add(name, format!("{:?}", edge.kind));
+                if let Some(first) = edge.curve.first().filter(|_| told.insert(name)) {
+                    add(name, format!("{:?}", edge.kind), first.piece.point(0.0));
                 }
             }
         }

@@ -56,8 +56,8 @@ pub fn run(args: &MeasureArgs) -> Result<Outcome> {
     }
     if args.list {
         let all = items.list();
-        let lines = all.iter().map(|one| [one.item.clone(), one.kind.clone(), one.part.clone()]);
-        return print(args.json, &all, ["item", "kind", "part"], lines);
+        let lines = all.iter().map(|one| [one.item.clone(), one.kind.clone(), one.part.clone(), point(one.at)]);
+        return print(args.json, &all, ["item", "kind", "part", "a point of it"], lines);
     }
     let rows: Result<Vec<Row>> =
         during("measuring", || wanted.par_iter().map(|names| measured(&items, names)).collect());
@@ -95,8 +95,12 @@ fn lines(row: &Row) -> Vec<[String; 5]> {
         [items.clone(), what.to_owned(), value, error, unit.to_owned()]
     };
     let values = row.values.iter().map(|v| line(v.what, v.value.to_string(), format!("{:.0e}", v.error), v.unit));
-    let points = row.points.iter().map(|p| line(p.what, p.at.map(|x| x.to_string()).join(", "), String::new(), ""));
+    let points = row.points.iter().map(|p| line(p.what, point(p.at), String::new(), ""));
     values.chain(points).collect()
+}
+
+fn point(at: [f64; 3]) -> String {
+    at.map(|x| x.to_string()).join(", ")
 }
 
 fn print<const N: usize>(

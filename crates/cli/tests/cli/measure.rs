@@ -78,6 +78,10 @@ fn the_list_has_names_that_are_understood() {
     assert_eq!(names, expected);
     let kind = |item: &str| &listed.iter().find(|row| row["item"] == item).unwrap()["kind"];
     assert_eq!((kind("face:61@1"), kind("edge:48@2")), (&"Cylinder".into(), &"Seam".into()));
+    // a point of the rim
+    let rim = listed.iter().find(|row| row["item"] == "edge:46@1").unwrap();
+    let at: Vec<f64> = rim["at"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+    close(at[0].hypot(at[1]), RADIUS);
     let table = text(&selvedge(&["measure", CAN, "--edge", "48@1"]).stdout);
     let line = table.lines().find(|line| line.contains("length")).unwrap_or_else(|| panic!("{table}"));
     assert!(line.contains("edge:48@1") && line.contains("203.") && line.contains("mm"), "{table}");
