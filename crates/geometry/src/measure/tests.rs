@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::construct::shapes;
-use crate::model::{EdgeKind, Part};
+use crate::model::EdgeKind;
 use glam::DQuat;
 use std::f64::consts::PI;
 
