@@ -186,3 +186,26 @@ fn two_items_have_a_distance_and_a_part_has_none() {
     close(number(&measured, "between centres"), 7.0, 1e-12);
     assert_eq!(two(&point, &Item::Part(&sphere, still)), None);
 }
+
+#[test]
+fn planes_and_axes_have_angles() {
+    let (block, can) = (shapes::block(DVec3::ZERO, DVec3::ONE).unwrap().part, shapes::cylinder(1.0, 1.0).unwrap().part);
+    let still = DAffine3::IDENTITY;
+    let turn = DQuat::from_rotation_x(PI / 6.0);
+    let turned = DAffine3::from_rotation_translation(turn, DVec3::X * 10.0);
+    let is_round = |face: &&Face| matches!(surface::shape(face, still), SurfaceShape::Cylinder { .. });
+    let side = Item::Face(can.faces.iter().find(is_round).expect("a side"), turned);
+    let plane = |face: &Face| match surface::shape(face, still) {
+        SurfaceShape::Plane { normal, .. } => normal,
+        other => panic!("{other:?} is no plane"),
+    };
+    let first = &block.faces[0];
+    for face in &block.faces {
+        let angle = |other: &Item<'_>| number(&two(&Item::Face(face, still), other).expect("points"), "angle");
+        // the axis is a line, and a plane's angle to a line is no more than a right one
+        let expected = plane(face).dot(turn * DVec3::Z).abs().asin().to_degrees();
+        assert!((angle(&side) - expected).abs() < 1e-9, "{expected}");
+        let expected = if plane(face).dot(plane(first)).abs() > 0.5 { 0.0 } else { 90.0 };
+        assert!((angle(&Item::Face(first, still)) - expected).abs() < 1e-9, "{expected}");
+    }
+}
