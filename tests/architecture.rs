@@ -13,6 +13,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("construct", &["math", "spline", "model", "trim"]),
     ("edges", &["math", "silhouette", "spline", "trim", "model"]),
     ("silhouette", &["math", "spline"]),
+    // with "describe" and "session" for the viewer's module of that name
+    ("measure", &["describe", "edges", "math", "model", "session", "spline", "trim"]),
     ("csg", &[]),
     // selvedge-io
     ("brep", &["math", "spline", "trim", "model"]),
@@ -31,7 +33,6 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("pick", &["session"]),
     ("view", &["navigation", "pacing", "pick"]),
     ("describe", &["session", "settings"]),
-    ("measure", &["describe", "session"]),
     ("panels", &["commands", "describe", "measure", "navigation", "pick", "session", "settings", "view"]),
     (
         "window",

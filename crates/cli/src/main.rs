@@ -7,6 +7,7 @@
 //!   report   all of these as one document
 //!   convert  model ─▶ the engine's own form
 //!   export   model ─▶ STEP file                draw    lines of a view ─▶ SVG
+//!   measure  lengths, areas, volumes, distances
 //!   view     models in a window
 //!   thumbnail model ─▶ small picture
 //!   devices  features and limits of the system's GPUs
@@ -27,6 +28,7 @@ mod edit;
 mod export;
 mod heap;
 mod info;
+mod measure;
 mod npy;
 mod output;
 mod path;
@@ -96,6 +98,7 @@ fn dispatch(command: &Command) -> anyhow::Result<Outcome> {
         Command::Render(args) => render::run(args),
         Command::Draw(args) => draw::run(args),
         Command::Info(args) => info::run(args),
+        Command::Measure(args) => measure::run(args),
         Command::Export(args) => export::run(args),
         Command::Check(args) => check::run(args),
         Command::Bench(args) => bench::run(args),

@@ -64,6 +64,8 @@ pub enum Command {
     Save,
     /// Check the view against exact rays.
     Check,
+    /// The picture that would be written, to the clipboard.
+    CopyPicture,
     /// The line of `selvedge render` for this view, to the clipboard.
     CopyCommand,
     /// A text to the clipboard.
@@ -137,6 +139,7 @@ pub fn shortcuts() -> Vec<Shortcut> {
         (Key::S, CTRL.plus(SHIFT), Command::WritePicture, "write it there at once"),
         (Key::K, NONE, Command::Check, "check this view against exact rays"),
         (Key::C, CTRL.plus(SHIFT), Command::CopyCommand, "copy the command of this view"),
+        (Key::P, CTRL.plus(SHIFT), Command::CopyPicture, "copy the picture"),
         (Key::Escape, NONE, Command::Clear, "select nothing"),
         (Key::Questionmark, NONE, Command::Help, "help"),
         (Key::Q, CTRL, Command::Quit, "close"),

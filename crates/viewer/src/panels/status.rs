@@ -160,10 +160,10 @@ pub fn windows(ctx: &egui::Context, ui: &mut Ui, session: &Session, settings: &S
     ui.help = open;
 }
 
-/// The file and the size of a picture to write.
+/// The file and the size of a picture to write or to copy.
 fn shot(ctx: &egui::Context, ui: &mut Ui) {
     let mut open = ui.shot.open;
-    let mut wanted = false;
+    let mut wanted = None;
     egui::Window::new("Write picture").open(&mut open).show(ctx, |window| {
         let shot = &mut ui.shot;
         let mut path = shot.path.to_string_lossy().into_owned();
@@ -176,12 +176,16 @@ fn shot(ctx: &egui::Context, ui: &mut Ui) {
             row.add(egui::DragValue::new(&mut shot.size.1).range(1..=16384));
             row.checkbox(&mut shot.transparent, "transparent");
         });
-        wanted = window.button("Write").clicked();
+        window.horizontal(|row| {
+            for (name, command) in [("Write", Command::WritePicture), ("Copy", Command::CopyPicture)] {
+                if row.button(name).clicked() {
+                    wanted = Some(command);
+                }
+            }
+        });
     });
     ui.shot.open = open;
-    if wanted {
-        ui.commands.push(Command::WritePicture);
-    }
+    ui.commands.extend(wanted);
 }
 
 /// The file for the edited model.

@@ -172,13 +172,22 @@ fn buttons_hide_and_show_again() {
 }
 
 #[test]
+fn a_picture_is_written_or_copied_from_one_dialog() {
+    let mut bench = Bench::new();
+    bench.ui.obey(Command::Screenshot, &mut bench.session);
+    bench.click("Copy");
+    bench.click("Write");
+    assert_eq!(bench.ui.commands, [Command::CopyPicture, Command::WritePicture]);
+}
+
+#[test]
 fn the_help_has_the_preset_s_buttons_and_every_key() {
     let mut bench = Bench::new();
     assert!(!bench.says("Keys and buttons"));
     bench.click("?");
     bench.ui.obey(Command::Help, &mut bench.session);
     bench.settings.preset = crate::navigation::gesture::Preset::Catia;
-    assert!(bench.says("hold middle and click left") && bench.says("open files"));
+    assert!(bench.says("hold middle and click left") && bench.says("open files") && bench.says("copy the picture"));
 }
 
 #[test]

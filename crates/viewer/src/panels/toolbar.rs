@@ -95,6 +95,7 @@ fn file(menu: &mut egui::Ui, ui: &mut Ui, session: &Session, settings: &Settings
     menu.separator();
     item(menu, "Save model...", Command::SaveAs);
     item(menu, "Write picture...", Command::Screenshot);
+    item(menu, "Copy picture", Command::CopyPicture);
     item(menu, "Check this view", Command::Check);
     item(menu, "Copy command of this view", Command::CopyCommand);
     menu.separator();

@@ -369,16 +369,17 @@ impl App {
         output
     }
 
-    /// The desktop's clipboard; what was copied is there as long as the window is.
-    fn set_clipboard(&mut self, text: String) {
-        if self.clipboard.is_none() {
-            self.clipboard = arboard::Clipboard::new().ok();
+    /// The desktop's clipboard, or why there is none; what was copied is there as long as the window is.
+    pub fn clipboard(&mut self) -> Result<&mut arboard::Clipboard, arboard::Error> {
+        match &mut self.clipboard {
+            Some(clipboard) => Ok(clipboard),
+            none => Ok(none.insert(arboard::Clipboard::new()?)),
         }
-        let copied = self.clipboard.as_mut().map(|clipboard| clipboard.set_text(text));
-        match copied {
-            Some(Ok(())) => {}
-            Some(Err(error)) => self.ui.tell(format!("Not copied: {error}")),
-            None => self.ui.tell("Not copied: there is no clipboard.".to_owned()),
+    }
+
+    fn set_clipboard(&mut self, text: String) {
+        if let Err(error) = self.clipboard().and_then(|clipboard| clipboard.set_text(text)) {
+            self.ui.tell(format!("Not copied: {error}"));
         }
     }
 

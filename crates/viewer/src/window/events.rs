@@ -388,6 +388,7 @@ impl App {
                 }
                 Command::CopyText(text) => self.copy(text),
                 Command::WritePicture => self.write_picture(),
+                Command::CopyPicture => self.copy_picture(),
                 Command::Check => self.check(),
                 Command::Save => self.save(),
                 Command::Quit => self.ui.quit = true,

@@ -44,6 +44,11 @@ impl Display {
         Some(Self { server, name: format!(":{}", number.trim()), size, folder })
     }
 
+    /// The server's name, for other clients.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
     /// Moves mouse and keys by the words of xdotool's command line.
     pub fn xdotool(&self, words: &str) -> String {
         let output = Command::new("xdotool").args(words.split(' ')).env("DISPLAY", &self.name).output().expect("runs");

@@ -3,6 +3,7 @@
 //! The test starts itself again as the program with the window, and reads its log. It computes the places of faces and
 //! edges on the screen from the same camera in `f64`. The validation layer is on, and must stay silent.
 
+mod clipboard;
 mod gestures;
 mod hand;
 mod living;
