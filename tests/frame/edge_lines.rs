@@ -158,7 +158,7 @@ fn an_outline_away_from_all_trim_curves_is_a_line() {
     model.parts[0].faces[0].loops = vec![shapes::rectangle(DVec2::ZERO, DVec2::splat(TAU))];
     let round = shapes::TORUS_RADII.0 - shapes::TORUS_RADII.1;
     let at = |angle: f64| DVec2::from_angle(angle).extend(0.0) * round;
-    // a quarter and a half of a turn away from the seam across the ring, and half a turn from the one along it
+    // three eighths of a turn from the seam across the ring, and half a turn from the one along it
     let target = at(0.375 * TAU);
     let camera = Camera {
         eye: target + DVec3::Z * 10.0,
