@@ -62,7 +62,8 @@ const float SAME_PLACE = 0.05;
 // hundredth of a pixel before it: this share of the way back, of which the picture shows the square.
 const float BEFORE_FOLD = 1.0 / 16.0;
 
-// Whether a face reaches a fold, of its domain, where a pixel beside it sees the face at (u, v) of a patch.
+// Whether a face reaches a fold, of its domain, where a pixel beside it sees the face at (u, v) of a patch. Only faces
+// without trims are marked closed: beyond the seams of others, pass `edge_line` draws the folds.
 bool reaches(FaceInstance fi, Face face, uint patch_instance, Patch patch_, vec2 fold, vec2 uv) {
     vec2 place = mix(fold, patch_.domain.xy + uv * patch_.domain.zw, BEFORE_FOLD);
     bvec2 closed = notEqual(face.flags & uvec2(FACE_CLOSED_U, FACE_CLOSED_V), uvec2(0u));

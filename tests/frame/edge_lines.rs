@@ -14,7 +14,7 @@ use selvedge::renderer::RenderError;
 use selvedge::spline::BSpline;
 use selvedge_check::drawing::{DrawingSettings, LineImage, judge_lines};
 use selvedge_check::{EdgeTracer, Tracer, Visibility};
-use std::f64::consts::{FRAC_PI_4, TAU};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 const SIZE: (u32, u32) = (160, 120);
 const ALL: Outputs = Outputs { edge: true, part: true, instance: true, ..Outputs::ALL };
@@ -76,7 +76,7 @@ fn faults(model: &Model, camera: &Camera, picture: &Picture) -> (usize, usize, u
     (seen.count(), bare, stray)
 }
 
-/// Points of an outline without a line pixel within half its width and half a pixel, a pixel or more within the picture;
+/// Points of an outline, a pixel or more within the picture, without a line pixel within half its width and half a pixel;
 /// and line pixels that are farther than that from the outline.
 fn faults_of_outline(picture: &Picture, outline: &[DVec2]) -> (usize, usize) {
     let marked: Vec<DVec2> = centres(picture).map(|(at, _)| at).collect();
@@ -150,8 +150,8 @@ fn a_balls_outline_is_where_it_folds() {
     assert_eq!(faults_of_outline(&picture, &outline), (0, 0), "of {} pixels", centres(&picture).count());
 }
 
-/// A ring that is trimmed along its seams, in a view that shows neither them nor a patch that they cross: the trim table
-/// has no rows there.
+/// A ring that is trimmed along its seams, in a view that shows neither them nor a patch that they cross: the trim
+/// table has no rows there.
 #[test]
 fn an_outline_away_from_all_trim_curves_is_a_line() {
     let mut model = shapes::torus();
@@ -175,6 +175,28 @@ fn an_outline_away_from_all_trim_curves_is_a_line() {
         assert_eq!(faults_of_outline(&picture, &outline), (0, 0), "{trim:?}");
         assert!(centres(&picture).count() > 100, "{trim:?}");
     }
+}
+
+/// A cylinder of which half a pixel beyond its seam is seen, between the centres of pixels: the seam is a trim curve,
+/// and the outline runs beyond it.
+#[test]
+fn an_outline_close_beyond_a_seam_is_a_line() {
+    let model = shapes::cylinder();
+    let (radius, height) = shapes::CYLINDER;
+    // the axis is in the middle of the picture: the outlines at 80 ± 31.2 px, the seam at 110.7 px
+    let (round_px, beyond_px) = (31.2_f64, 0.5);
+    let beyond = (1.0 - beyond_px / round_px).acos();
+    let from = DVec2::from_angle(beyond - FRAC_PI_2).extend(0.0);
+    let projection = Projection::Orthographic { height: f64::from(SIZE.1) * radius / round_px };
+    let camera = Camera { projection, ..Camera::around(model.control_bounds(), from, DVec3::Z, 0.6, SIZE) };
+    let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
+    let picture = draw(&model, with(settings), &camera);
+    let sides = [beyond, beyond - PI].map(|angle| (DVec2::from_angle(angle) * radius).extend(0.0));
+    let along = |k: u32| DVec3::Z * (height * f64::from(k) / 400.0);
+    let outline = sides.into_iter().flat_map(|side| (0..=400).map(move |k| side + along(k)));
+    let outline: Vec<DVec2> = outline.map(|p| camera.project(p).unwrap().0).collect();
+    assert!((outline[0].x - 111.2).abs() < 1e-6, "{}", outline[0]);
+    assert_eq!(faults_of_outline(&picture, &outline), (0, 0));
 }
 
 /// A block of which one edge is rounded.
