@@ -5,8 +5,8 @@
 //        │            its point nearest to the centre ─▶ parameter ─▶ the exact point of the edge ─▶ seen, or hidden
 //        · pixel
 //
-// This pass also draws the folds of curved faces beside their smooth edges. Pass `edge_fold` draws the folds of faces that
-// a pixel's centre sees. The trim test is that of one way (trim.glsl).
+// This pass also draws the folds of curved faces beside their smooth edges and seams. Pass `edge_fold` draws the folds
+// of faces that a pixel's centre sees. The trim test is that of one way (trim.glsl).
 #include "scene.glsl"
 #include "view.glsl"
 #include "edges.glsl"

@@ -1,5 +1,5 @@
-//! Where curved faces begin beside smooth edges: from there pass `edge_line` finds folds that are closer to the edge
-//! than pixels are to each other.
+//! Where curved faces begin beside smooth edges and seams: from there pass `edge_line` finds folds that are closer to
+//! the edge than pixels are to each other.
 //!
 //! ```text
 //!    plane  ════════●  smooth edge      pieces of the edge ─(u, v) beside both ends, on each curved face─▶ two texels
@@ -97,7 +97,7 @@ impl<'a> Beside<'a> {
     }
 }
 
-/// Texels for the pieces of a smooth edge, as many for each: how many faces, and the texels of each piece.
+/// Texels for the pieces of a smooth edge or a seam, as many for each: how many faces, and the texels of each piece.
 pub(super) fn seeds(edge: &Edge, reach: f64, of: &PartFaces<'_>) -> (u32, Vec<Vec<[f32; 4]>>) {
     let most = abi::EDGE_MOST_SEEDS as usize;
     let mut count = 0;

@@ -8,12 +8,13 @@ use selvedge::edges::flatten::{Flattening, LinePoint};
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::{Camera, EdgeKind, Face, Model, Projection};
 use selvedge::picture::{
-    BadEdges, EdgeChoice, EdgeSettings, FrameSettings, Outputs, Picture, Samples, SceneSettings, TangentEdges,
+    BadEdges, EdgeChoice, EdgeSettings, FrameSettings, Outputs, Picture, Samples, SceneSettings, TangentEdges, TrimWay,
 };
 use selvedge::renderer::RenderError;
 use selvedge::spline::BSpline;
 use selvedge_check::drawing::{DrawingSettings, LineImage, judge_lines};
 use selvedge_check::{EdgeTracer, Tracer, Visibility};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 const SIZE: (u32, u32) = (160, 120);
 const ALL: Outputs = Outputs { edge: true, part: true, instance: true, ..Outputs::ALL };
@@ -75,6 +76,17 @@ fn faults(model: &Model, camera: &Camera, picture: &Picture) -> (usize, usize, u
     (seen.count(), bare, stray)
 }
 
+/// Points of an outline, a pixel or more within the picture, without a line pixel within half its width and half a
+/// pixel; and line pixels that are farther than that from the outline.
+fn faults_of_outline(picture: &Picture, outline: &[DVec2]) -> (usize, usize) {
+    let marked: Vec<DVec2> = centres(picture).map(|(at, _)| at).collect();
+    let last = DVec2::new(f64::from(picture.size.0), f64::from(picture.size.1)) - 1.0;
+    let inside = |p: &&DVec2| p.cmpge(DVec2::ONE).all() && p.cmple(last).all();
+    let near = |all: &[DVec2], at: DVec2| all.iter().any(|p| p.distance(at) <= HALF + 0.5);
+    let bare = outline.iter().filter(inside).filter(|p| !near(&marked, **p)).count();
+    (bare, marked.iter().filter(|at| !near(outline, **at)).count())
+}
+
 /// Shapes with edges of every kind, some of them placed twice, from afar and in a parallel view.
 #[test]
 fn lines_are_where_exact_rays_see_edges() {
@@ -130,15 +142,61 @@ fn a_balls_outline_is_where_it_folds() {
     let up = axis.cross(right);
     let outline: Vec<DVec2> = (0..4000)
         .map(|k| {
-            let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 4000.0).sin_cos();
+            let (sin, cos) = (f64::from(k) * TAU / 4000.0).sin_cos();
             camera.project(middle + (right * cos + up * sin) * round).unwrap().0
         })
         .collect();
-    let marked: Vec<(DVec2, u32)> = centres(&picture).collect();
-    assert!(marked.iter().all(|(_, edge)| *edge == OUTLINE));
-    let stray = marked.iter().filter(|(at, _)| !outline.iter().any(|p| p.distance(*at) <= HALF + 0.5)).count();
-    let bare = outline.iter().filter(|p| !marked.iter().any(|(at, _)| at.distance(**p) <= HALF + 0.5)).count();
-    assert_eq!((bare, stray), (0, 0), "of {} pixels", marked.len());
+    assert!(centres(&picture).all(|(_, edge)| edge == OUTLINE));
+    assert_eq!(faults_of_outline(&picture, &outline), (0, 0), "of {} pixels", centres(&picture).count());
+}
+
+/// A ring that is trimmed along its seams, in a view that shows neither them nor a patch that they cross: the trim
+/// table has no rows there.
+#[test]
+fn an_outline_away_from_all_trim_curves_is_a_line() {
+    let mut model = shapes::torus();
+    model.parts[0].faces[0].loops = vec![shapes::rectangle(DVec2::ZERO, DVec2::splat(TAU))];
+    let round = shapes::TORUS_RADII.0 - shapes::TORUS_RADII.1;
+    let at = |angle: f64| DVec2::from_angle(angle).extend(0.0) * round;
+    // three eighths of a turn from the seam across the ring, and half a turn from the one along it
+    let target = at(0.375 * TAU);
+    let camera = Camera {
+        eye: target + DVec3::Z * 10.0,
+        target,
+        up: DVec3::Y,
+        projection: Projection::Orthographic { height: 1.5 },
+        depth_range: (1.0, 20.0),
+        size: SIZE,
+    };
+    let outline: Vec<DVec2> = (0..8000).map(|k| camera.project(at(f64::from(k) * TAU / 8000.0)).unwrap().0).collect();
+    for trim in [TrimWay::Table, TrimWay::Exact] {
+        let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
+        let picture = draw(&model, SceneSettings { trim, ..with(settings) }, &camera);
+        assert_eq!(faults_of_outline(&picture, &outline), (0, 0), "{trim:?}");
+        assert!(centres(&picture).count() > 100, "{trim:?}");
+    }
+}
+
+/// A cylinder of which half a pixel beyond its seam is seen, between the centres of pixels: the seam is a trim curve,
+/// and the outline runs beyond it.
+#[test]
+fn an_outline_close_beyond_a_seam_is_a_line() {
+    let model = shapes::cylinder();
+    let (radius, height) = shapes::CYLINDER;
+    // the axis is in the middle of the picture: the outlines at 80 ± 31.2 px, the seam at 110.7 px
+    let (round_px, beyond_px) = (31.2_f64, 0.5);
+    let beyond = (1.0 - beyond_px / round_px).acos();
+    let from = DVec2::from_angle(beyond - FRAC_PI_2).extend(0.0);
+    let projection = Projection::Orthographic { height: f64::from(SIZE.1) * radius / round_px };
+    let camera = Camera { projection, ..Camera::around(model.control_bounds(), from, DVec3::Z, 0.6, SIZE) };
+    let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
+    let picture = draw(&model, with(settings), &camera);
+    let sides = [beyond, beyond - PI].map(|angle| (DVec2::from_angle(angle) * radius).extend(0.0));
+    let along = |k: u32| DVec3::Z * (height * f64::from(k) / 400.0);
+    let outline = sides.into_iter().flat_map(|side| (0..=400).map(move |k| side + along(k)));
+    let outline: Vec<DVec2> = outline.map(|p| camera.project(p).unwrap().0).collect();
+    assert!((outline[0].x - 111.2).abs() < 1e-6, "{}", outline[0]);
+    assert_eq!(faults_of_outline(&picture, &outline), (0, 0));
 }
 
 /// A block of which one edge is rounded.
@@ -186,7 +244,7 @@ fn of_wider_cylinder(fillet: &mut Face, radius: f64) {
         let place = DVec2::splat(2.0 - radius) + DVec2::from_angle(angle) * away;
         DVec4::new(place.x * w, place.y * w, 0.0, w)
     };
-    let middle = std::f64::consts::FRAC_PI_4;
+    let middle = FRAC_PI_4;
     let (from, to) = (at(middle - half, radius, 1.0), at(middle + half, radius, 1.0));
     let points = vec![from, at(middle, radius / half.cos(), half.cos()), to];
     let arc = BSpline::new(2, vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], points).unwrap();
@@ -207,7 +265,7 @@ fn a_face_that_ends_before_it_folds_has_no_outline() {
     let whole = rounded_block(radius);
     let mut trimmed = whole.clone();
     of_wider_cylinder(&mut trimmed.parts[0].faces[2], radius);
-    for model in [whole, trimmed] {
+    for (model, trim) in [(&whole, TrimWay::Table), (&trimmed, TrimWay::Table), (&trimmed, TrimWay::Exact)] {
         let id = model.parts[0].faces[2].id;
         // seen from above the top, which the fillet would fold away from by 0.1, 0.3 and 0.5 px
         for steep in [8.0, 12.0, 16.0f64] {
@@ -215,9 +273,10 @@ fn a_face_that_ends_before_it_folds_has_no_outline() {
             let camera = Camera::around(model.control_bounds(), from, DVec3::Y, 0.6, SIZE);
             let projection = Projection::Orthographic { height: model.control_bounds().diagonal() };
             let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
-            let picture = draw(&model, with(settings), &Camera { projection, ..camera });
+            let settings = SceneSettings { trim, ..with(settings) };
+            let picture = draw(model, settings, &Camera { projection, ..camera });
             assert!(picture.face.iter().filter(|face| **face == id).count() > 200);
-            assert_eq!(centres(&picture).count(), 0, "{steep} degrees");
+            assert_eq!(centres(&picture).count(), 0, "{steep} degrees, {trim:?}");
         }
     }
 }

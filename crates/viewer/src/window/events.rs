@@ -288,7 +288,7 @@ impl App {
         }
     }
 
-    /// A file is not read; where there were `previews`, its own go.
+    /// A file cannot be read. Where `previews` were shown, the files are put together again, without its own.
     fn not_loaded(&mut self, path: &Path, why: String, previews: bool) {
         self.unwatch(path);
         tracing::error!("{why}");

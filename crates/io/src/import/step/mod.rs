@@ -168,8 +168,8 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Re
 /// A part, its body and the tolerance of its representation.
 type PartBody = (usize, Body, f64);
 
-/// Builds all faces, in parallel; results are taken in file order. Previews of the first parts of those that the model
-/// will have are made in between. The input of a face is freed with it.
+/// Builds all faces, in parallel; results are taken in file order. Between groups of bodies, previews show the first of
+/// the `parts` that the model will have. The input of a face is freed with it.
 fn build(
     (bodies, parts): (Vec<(Body, f64)>, usize),
     (places, notes): (&Places<'_>, &mut Notes),
