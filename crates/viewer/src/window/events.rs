@@ -117,7 +117,7 @@ impl ApplicationHandler<Event> for App {
             }
             Event::Uploaded => self.uploaded(),
             Event::Loader(number, event) => {
-                let previews = self.has_previews();
+                let previews = self.previews().count();
                 match self.loads.take(number, event) {
                     Some(News::Preview(loaded)) => self.previewed(&loaded),
                     Some(News::Ended(Ended { result: Ok(loaded), .. })) => self.loaded(loaded),
@@ -258,10 +258,6 @@ impl App {
         self.loads.previews().filter(move |preview| !self.is_open(&preview.path))
     }
 
-    fn has_previews(&self) -> bool {
-        self.previews().next().is_some()
-    }
-
     /// Puts the open files together, and the finished parts of others.
     fn join(&mut self) {
         let all = self.files.iter().chain(self.previews()).cloned().collect();
@@ -269,14 +265,12 @@ impl App {
     }
 
     fn give_up(&mut self) {
-        let previews = self.has_previews();
+        let previews = self.previews().count();
         for path in self.loads.give_up() {
             self.unwatch(&path);
             self.ui.tell(format!("{}: given up", path.display()));
         }
-        if previews {
-            self.join();
-        }
+        self.join_without(previews);
     }
 
     /// Watches a file no more, unless it is open.
@@ -288,12 +282,17 @@ impl App {
         }
     }
 
-    /// A file cannot be read. Where `previews` were shown, the files are put together again, without its own.
-    fn not_loaded(&mut self, path: &Path, why: String, previews: bool) {
+    /// A file cannot be read; there were so many previews before.
+    fn not_loaded(&mut self, path: &Path, why: String, previews: usize) {
         self.unwatch(path);
         tracing::error!("{why}");
         self.ui.tell(why);
-        if previews {
+        self.join_without(previews);
+    }
+
+    /// Puts the files together again where a preview has gone; there were so many before.
+    fn join_without(&mut self, previews: usize) {
+        if self.previews().count() < previews {
             self.join();
         }
     }
