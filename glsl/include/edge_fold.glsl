@@ -99,8 +99,10 @@ bool is_one_place(uvec2 a, uvec2 b) {
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     uvec2 own = patch_seen(at);
-    uvec2 found[3] = uvec2[](own, uvec2(0u), uvec2(0u));
-    ivec2 places[3] = ivec2[](at, at, at);
+    uvec2 found[9];
+    ivec2 places[9];
+    found[0] = own;
+    places[0] = at;
     uint count = own.x != 0u ? 1u : 0u;
     bool alone = true;
     for (int k = 0; k < 9; ++k) {
@@ -109,7 +111,7 @@ void main() {
         bool known = is_one_place(seen, own);
         alone = alone && known;
         for (uint i = 0u; i < count; ++i) known = known || is_one_place(seen, found[i]);
-        if (known || seen.x == 0u || count >= 3u) continue;
+        if (known || seen.x == 0u) continue;
         found[count] = seen;
         places[count] = beside;
         ++count;
