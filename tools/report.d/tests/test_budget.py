@@ -60,7 +60,7 @@ class Shares(unittest.TestCase):
         self.assertEqual(set(budget.SECONDS), set(report.SECTIONS))
         quick, whole = (sum(of[k] for of in budget.SECONDS.values()) for k in (0, 1))
         self.assertLessEqual(quick, 9 * 60)
-        self.assertLessEqual(whole, 53 * 60)
+        self.assertLessEqual(whole, 43 * 60)
 
     def test_a_case_gets_its_share_of_what_is_left(self):
         clock = pretend.Clock()
@@ -258,7 +258,7 @@ class Runs(unittest.TestCase):
         cls.whole, cls.quick, cls.slow = run(quick=False), run(quick=True), run(quick=False, speed=0.25)
 
     def test_a_whole_run_takes_less_than_its_time(self):
-        self.assertLess(self.whole[1].now, 53 * 60)
+        self.assertLess(self.whole[1].now, 43 * 60)
 
     def test_a_quick_run_takes_less_than_its_time(self):
         self.assertLess(self.quick[1].now, 9 * 60)
@@ -266,7 +266,7 @@ class Runs(unittest.TestCase):
     def test_a_slow_machine_gets_reasons_and_hardly_a_longer_run(self):
         sections, clock = self.slow
         # what has begun at the end of a section has the least time
-        self.assertLess(clock.now, 53 * 60 + 3 * len(sections) * budget.LEAST_S)
+        self.assertLess(clock.now, 43 * 60 + 3 * len(sections) * budget.LEAST_S)
         late = [contest for contest in sections["surfaces"].contests if "used up" in contest.why]
         self.assertTrue(late)
 
