@@ -76,7 +76,8 @@ pub fn middle(edge: &Edge, transform: DAffine3) -> Option<DVec3> {
     let (mut low, mut high, mut t) = (0.0, 1.0, 0.5);
     for _ in 0..STEPS {
         let off = along(piece, t) - rest;
-        if off.abs() <= f64::EPSILON * total {
+        // sums of some roundings
+        if off.abs() <= 4.0 * f64::EPSILON * total {
             break;
         }
         if off > 0.0 {

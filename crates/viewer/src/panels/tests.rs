@@ -192,11 +192,13 @@ fn the_help_has_the_preset_s_buttons_and_every_key() {
     assert!(bench.says("measure between points") && bench.says("P, then left click on both"));
 }
 
-/// Two points of the first part: the centre of a round edge, and a corner.
+/// Two points of the first part with a round edge: its centre, and a corner.
 fn two_points(world: &World) -> [Picked; 2] {
-    let part = world.model.instances[0].part;
-    let &(of, at) = world.centres_of(part).first().expect("a round edge");
-    [Picked::Point { instance: 0, kind: PointKind::Centre, of, at }, Picked::Vertex { instance: 0, vertex: 0 }]
+    let round = |placed: &selvedge::model::Instance| world.centres_of(placed.part).first().copied();
+    let mut instances = world.model.instances.iter().enumerate();
+    let first = instances.find_map(|(instance, placed)| Some((instance, round(placed)?)));
+    let (instance, (of, at)) = first.expect("a round edge");
+    [Picked::Point { instance, kind: PointKind::Centre, of, at }, Picked::Vertex { instance, vertex: 0 }]
 }
 
 #[test]

@@ -58,7 +58,7 @@ fn rank(picked: &Picked) -> u8 {
 /// in front.
 pub fn choose(candidates: &[Candidate]) -> Option<Picked> {
     let preferred = candidates.iter().map(|c| rank(&c.picked)).min()?;
-    let of_kind = || candidates.iter().filter(|c| rank(&c.picked) == preferred);
+    let of_kind = || candidates.iter().filter(move |c| rank(&c.picked) == preferred);
     let nearest = of_kind().map(|c| c.distance_px).fold(f64::INFINITY, f64::min);
     let same = of_kind().filter(|c| c.distance_px <= nearest + SAME_PX);
     same.min_by(|a, b| a.depth.total_cmp(&b.depth)).map(|c| c.picked)
