@@ -70,6 +70,8 @@ pub enum Command {
     CopyCommand,
     /// A text to the clipboard.
     CopyText(String),
+    /// Start picking points to measure between, or stop.
+    Points,
     /// Keep the measurement of the selection in the list.
     Measure,
     /// Show the help, or hide it.
@@ -130,6 +132,7 @@ pub fn shortcuts() -> Vec<Shortcut> {
         (Key::A, NONE, Command::ShowAll, "show everything"),
         (Key::C, NONE, Command::Cut, "cut at the selected face"),
         (Key::X, NONE, Command::SeeThrough, "see through selection"),
+        (Key::P, NONE, Command::Points, "measure between points"),
         (Key::M, NONE, Command::Measure, "keep the measurement"),
         (Key::Z, CTRL, Command::Undo, "undo"),
         (Key::Z, CTRL.plus(SHIFT), Command::Redo, "redo"),

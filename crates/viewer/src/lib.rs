@@ -12,7 +12,7 @@
 //! | [`view`] | the camera that the mouse moves, and the next picture |
 //! | [`pacing`] | fewer pixels while the view moves |
 //! | [`session`] | open files, visibility, colours, sections, selection, undo |
-//! | [`pick`], [`describe`], [`measure`] | items under the cursor, their description, sizes and distances |
+//! | [`pick`], [`describe`], [`measure`] | items and points under the cursor, their description, sizes and distances |
 //! | [`panels`], [`commands`] | the panels around the picture, and the commands |
 //! | [`settings`], [`watch`] | stored settings; files that change on the disk |
 //! | [`run`] | the window itself |

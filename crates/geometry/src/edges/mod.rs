@@ -8,7 +8,7 @@
 //!   mesh      creases and borders of triangles
 //!   flatten   an edge as a line in the picture
 //!   nearest   the point of an edge nearest to a pixel
-//!   curve     length of an edge; the line or circle that it is
+//!   curve     length and middle of an edge; the line or circle that it is
 //! ```
 //!
 //! Edges are found on demand, not when a file is read. An import stores only data that cannot be found again: the edge

@@ -7,6 +7,7 @@
 //! | face | area; radius, diameter, axis, angle of its surface |
 //! | part | area, volume, centre of mass |
 //! | two of the first three | smallest distance and where; angle; distance of centres or axes |
+//! | two points | distance, also along x, y and z |
 //!
 //! Values carry an estimate of their own error; the accuracy of the file is the limit.
 
@@ -203,7 +204,10 @@ pub fn two(a: &Item<'_>, b: &Item<'_>) -> Option<Measured> {
         let angle = if d_is_normal == e_is_normal { angle } else { 90.0 - angle };
         all.add("angle", angle, 0.0, "°");
     }
-    if let (Some((c, along_c)), Some((d, along_d))) = (middle_a, middle_b) {
+    // of two points this is the distance above
+    if let (Some((c, along_c)), Some((d, along_d))) = (middle_a, middle_b)
+        && !matches!((a, b), (Item::Point(_), Item::Point(_)))
+    {
         let (p, q) = between(c, along_c, d, along_d);
         let what = if along_c.is_some() || along_d.is_some() { "between axes" } else { "between centres" };
         all.add(what, p.distance(q), 0.0, "mm");

@@ -188,6 +188,15 @@ fn two_items_have_a_distance_and_a_part_has_none() {
 }
 
 #[test]
+fn two_points_have_one_distance_and_its_parts() {
+    let measured = two(&Item::Point(DVec3::new(1.0, 2.0, 3.0)), &Item::Point(DVec3::new(3.0, 5.0, -3.0)));
+    let measured = measured.expect("points");
+    let all: Vec<(&str, f64)> = measured.values.iter().map(|v| (v.what, v.value)).collect();
+    assert_eq!(all, [("distance", 7.0), ("along x", 2.0), ("along y", 3.0), ("along z", -6.0)]);
+    assert_eq!(measured.dimensions.len(), 1, "a distance between centres would be the same line again");
+}
+
+#[test]
 fn planes_and_axes_have_angles() {
     let (block, can) = (shapes::block(DVec3::ZERO, DVec3::ONE).unwrap().part, shapes::cylinder(1.0, 1.0).unwrap().part);
     let still = DAffine3::IDENTITY;

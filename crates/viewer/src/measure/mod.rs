@@ -56,9 +56,20 @@ pub fn measure(world: &World, selection: &[Picked]) -> Option<Measurement> {
         [a, b] => measure::two(&item(world, a)?, &item(world, b)?)?,
         _ => return None,
     };
-    let text = |d: Dimension| (d.ends, format!("{} {}", d.what, describe::number(d.value)));
+    let between_points = selection.len() == 2 && selection.iter().all(Picked::is_point);
+    let text = |d: Dimension| (d.ends, label(&d, between_points));
     let dimensions = measured.dimensions.into_iter().map(text).collect();
     Some(Measurement { title, values: measured.values, points: measured.points, dimensions })
+}
+
+/// The text of a dimension. Of one between points it says how far they are apart along the axes, too.
+fn label(dimension: &Dimension, between_points: bool) -> String {
+    let mut text = format!("{} {}", dimension.what, describe::number(dimension.value)).trim_start().to_owned();
+    if between_points {
+        let [x, y, z] = (dimension.ends[1] - dimension.ends[0]).to_array().map(describe::number);
+        text += &format!("\ndx {x}  dy {y}  dz {z}");
+    }
+    text
 }
 
 /// The geometry of an item, in its place.
@@ -69,9 +80,7 @@ fn item<'a>(world: &'a World, picked: &Picked) -> Option<Item<'a>> {
     match *picked {
         Picked::Face { face, .. } => Some(Item::Face(part.faces.get(face)?, placed.transform)),
         Picked::Edge { edge, .. } => Some(Item::Edge(vec![edges?.edges.get(edge)?], placed.transform)),
-        Picked::Vertex { vertex, .. } => {
-            Some(Item::Point(placed.transform.transform_point3(*edges?.vertices.get(vertex)?)))
-        }
+        Picked::Vertex { .. } | Picked::Point { .. } => world.point_of(picked).map(Item::Point),
         Picked::Instance(_) => Some(Item::Part(part, placed.transform)),
         Picked::Number { .. } => None,
     }
@@ -80,6 +89,46 @@ fn item<'a>(world: &'a World, picked: &Picked) -> Option<Item<'a>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::session::PointKind;
+    use glam::{DAffine3, DQuat};
+    use selvedge::construct::shapes;
+    use selvedge::model::{Instance, Model};
+
+    #[test]
+    fn a_dimension_between_points_says_how_far_they_are_apart_along_the_axes() {
+        let ends = [DVec3::new(1.0, 2.0, 3.0), DVec3::new(3.0, 5.0, -3.0)];
+        let of = |what, between_points| label(&Dimension { ends, what, value: 7.0 }, between_points);
+        assert_eq!([of("", true), of("", false), of("R", false)], ["7\ndx 2  dy 3  dz -6", "7", "R 7"]);
+    }
+
+    /// A part that is turned and moved: its points are measured where they are.
+    #[test]
+    fn picked_points_are_measured_in_their_place() {
+        let block = shapes::block(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)).expect("a block").part;
+        let turn = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
+        let transform = DAffine3::from_rotation_translation(turn, DVec3::new(10.0, 0.0, 0.0));
+        let placed = Instance { part: 0, transform, colour: None, name: String::new() };
+        let mut world = World::default();
+        world.model = Model { parts: vec![block], instances: vec![placed], ..Model::default() };
+        world.find_edges();
+        let vertices = &world.edges_of(0).expect("found").vertices;
+        let vertex = vertices.iter().position(|p| p.length() < 1e-12).expect("a corner at the origin");
+        let at = DVec3::new(1.0, 1.0, 1.5);
+        let selection =
+            [Picked::Vertex { instance: 0, vertex }, Picked::Point { instance: 0, kind: PointKind::OnFace, of: 0, at }];
+        let measured = measure(&world, &selection).expect("two points");
+        let all = measured.values.iter().map(|v| (v.what, v.value));
+        // x is y of the part, turned around
+        let expected = [("distance", 4.25_f64.sqrt()), ("along x", -1.0), ("along y", 1.0), ("along z", 1.5)];
+        for ((what, value), (name, number)) in all.clone().zip(expected) {
+            assert!(what == name && (value - number).abs() < 1e-14, "{what}: {value}");
+        }
+        assert_eq!(all.len(), expected.len());
+        let [(ends, text)] = &measured.dimensions[..] else { panic!("{:?}", measured.dimensions) };
+        assert!(ends[1].distance(DVec3::new(9.0, 1.0, 1.5)) < 1e-14 && text.contains("dx -1  dy 1  dz 1.5"), "{text}");
+        assert!(measured.csv().contains(",along x,-1"), "{}", measured.csv());
+        assert!(measured.text().contains("along z: 1.5 mm"), "{}", measured.text());
+    }
 
     #[test]
     fn a_measurement_is_text_and_a_table() {

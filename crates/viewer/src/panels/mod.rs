@@ -239,6 +239,10 @@ impl Ui {
                 }
             }),
             Command::Help => self.help = !self.help,
+            Command::Points => {
+                let is_on = self.filter == PickFilter::Points;
+                self.filter = if is_on { PickFilter::Any } else { PickFilter::Points };
+            }
             Command::Trims => self.trims = !self.trims,
             Command::SaveAs => {
                 self.save = if self.save.is_none() { Some(PathBuf::from("edited.selvedge")) } else { None };

@@ -20,8 +20,10 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &Session, facts: &Facts<
         badge(row, ui, session, facts);
         row.separator();
         let under = facts.view.hover.and_then(|hover| {
-            let name = describe::short(&session.world, hover.hit.picked.as_ref()?);
-            Some(hover.hit.point.map_or(name.clone(), |p| format!("{name}   {}", point(p))))
+            let picked = hover.hit.picked?;
+            let name = describe::short(&session.world, &picked);
+            let at = session.world.point_of(&picked).or(hover.hit.point);
+            Some(at.map_or(name.clone(), |p| format!("{name}   {}", point(p))))
         });
         row.label(under.unwrap_or_default());
         curvature_scale(row, ui.style, session);
@@ -144,6 +146,9 @@ pub fn windows(ctx: &egui::Context, ui: &mut Ui, session: &Session, settings: &S
             }
             grid.label("select");
             grid.label("left click; Shift adds");
+            grid.end_row();
+            grid.label("measure points");
+            grid.label("P, then left click on both");
             grid.end_row();
         });
         window.separator();

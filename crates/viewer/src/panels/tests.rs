@@ -1,8 +1,9 @@
 //! Panels without a window: their texts, and the effects of clicks.
 
 use super::*;
-use crate::session::Picked;
-use crate::session::{Loaded, World};
+use crate::pick::Hit;
+use crate::session::{Loaded, Picked, PointKind, World};
+use crate::view::Hover;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -188,6 +189,64 @@ fn the_help_has_the_preset_s_buttons_and_every_key() {
     bench.ui.obey(Command::Help, &mut bench.session);
     bench.settings.preset = crate::navigation::gesture::Preset::Catia;
     assert!(bench.says("hold middle and click left") && bench.says("open files") && bench.says("copy the picture"));
+    assert!(bench.says("measure between points") && bench.says("P, then left click on both"));
+}
+
+/// Two points of the first part with a round edge: its centre, and a corner.
+fn two_points(world: &World) -> [Picked; 2] {
+    let round = |placed: &selvedge::model::Instance| world.centres_of(placed.part).first().copied();
+    let mut instances = world.model.instances.iter().enumerate();
+    let first = instances.find_map(|(instance, placed)| Some((instance, round(placed)?)));
+    let (instance, (of, at)) = first.expect("a round edge");
+    [Picked::Point { instance, kind: PointKind::Centre, of, at }, Picked::Vertex { instance, vertex: 0 }]
+}
+
+#[test]
+fn a_point_under_the_cursor_is_named_beside_it() {
+    let mut bench = Bench::new();
+    let [centre, corner] = two_points(&bench.session.world);
+    for (picked, name) in [(centre, "centre"), (corner, "vertex")] {
+        let place = bench.place(bench.session.world.point_of(&picked).expect("a point"));
+        let mut beside = |filter: PickFilter| {
+            bench.ui.filter = filter;
+            let hit = Hit { picked: Some(picked), point: None };
+            bench.view.hover = Some(Hover { cursor: glam::DVec2::ZERO, hit });
+            let texts = bench.frame(Vec::new());
+            texts.iter().find(|(text, _)| text == name).map(|(_, rect)| rect.center().distance(place))
+        };
+        assert_eq!(beside(PickFilter::Any), None);
+        let away = beside(PickFilter::Points).expect(name);
+        assert!(away < 60.0, "{name} is {away} points from its point");
+        assert!(bench.says(&format!("{name} ")), "the status line says of what");
+    }
+}
+
+#[test]
+fn two_points_are_measured_listed_and_copied() {
+    let mut bench = Bench::new();
+    bench.click("Points");
+    assert_eq!(std::mem::take(&mut bench.ui.commands), [Command::Points]);
+    bench.ui.obey(Command::Points, &mut bench.session);
+    assert!(bench.ui.filter == PickFilter::Points && bench.says("Click two points"));
+    let points = two_points(&bench.session.world);
+    let [from, to] = points.map(|p| bench.session.world.point_of(&p).expect("a point"));
+    for picked in points {
+        bench.session.select_point(Some(picked), false);
+        bench.ui.selected(&bench.session, None);
+    }
+    assert!(std::mem::take(&mut bench.ui.wants_measure) && bench.session.selection == points);
+    bench.ui.measured(crate::measure::measure(&bench.session.world, &points));
+    bench.place(from);
+    let along = (to - from).to_array().map(crate::describe::number);
+    let [x, y, z] = &along;
+    assert!(bench.says(&format!("dx {x}  dy {y}  dz {z}")), "the dimension in the picture");
+    assert!(bench.says("along x") && bench.says(&format!("{x} mm")), "the panel");
+    bench.ui.obey(Command::Measure, &mut bench.session);
+    bench.click("Copy CSV");
+    let [Command::CopyText(text)] = &bench.ui.commands[..] else { panic!("{:?}", bench.ui.commands) };
+    assert!(text.contains(&format!(",along y,{},", (to - from).y)), "{text}");
+    bench.ui.obey(Command::Points, &mut bench.session);
+    assert_eq!(bench.ui.filter, PickFilter::Any);
 }
 
 #[test]

@@ -42,7 +42,7 @@ fn one(pixel: DVec2, sample: Sample) -> Samples {
 /// Picks in a picture of the world as it is.
 fn pick(samples: &Samples, world: &World, camera: &Camera, at: DVec2, filter: PickFilter) -> Hit {
     let placement = |instance: usize| world.model.instances[instance].transform;
-    samples.pick(&Seen { world, instances: &[0], placement: &placement, camera }, at, filter)
+    samples.pick(&Seen { world, instances: &[0], hidden: &BTreeSet::new(), placement: &placement, camera }, at, filter)
 }
 
 #[test]
@@ -69,7 +69,8 @@ fn the_point_of_a_moved_instance_moves_with_it() {
     let by = DVec3::new(30.0, -20.0, 11.0);
     (camera.eye, camera.target) = (camera.eye + by, camera.target + by);
     let placement = |instance: usize| DAffine3::from_translation(by) * world.model.instances[instance].transform;
-    let seen = Seen { world: &world, instances: &[0], placement: &placement, camera: &camera };
+    let hidden = BTreeSet::new();
+    let seen = Seen { world: &world, instances: &[0], hidden: &hidden, placement: &placement, camera: &camera };
     let hit = one(pixel, sample).pick(&seen, pixel, PickFilter::Any);
     let off = hit.point.expect("a point").distance(point + by);
     // as exact as where nothing is moved

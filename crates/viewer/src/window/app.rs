@@ -9,7 +9,7 @@ use super::{Failure, ViewError, ViewOptions};
 use crate::measure::Measurement;
 use crate::navigation::gesture::Held;
 use crate::panels::{Facts, Ui, Verdict};
-use crate::pick::Seen;
+use crate::pick::{PickFilter, Seen};
 use crate::session::Picked;
 use crate::session::{Joiner, JoinerEvent, Loaded, LoaderEvent, Loads, Session};
 use crate::settings::{Settings, Theme};
@@ -430,7 +430,7 @@ impl App {
             let scale = f64::from(camera.size.0) / f64::from(self.rect.width.max(1));
             let Drawn { world, state, instances } = &scene;
             let placed = |number: usize| state.placement(number, world);
-            let seen = Seen { world, instances, placement: &placed, camera: &camera };
+            let seen = Seen { world, instances, hidden: &state.hidden, placement: &placed, camera: &camera };
             let hit = samples.pick(&seen, at * scale, self.ui.filter);
             let before = self.view.hover.and_then(|h| h.hit.picked);
             self.view.hover = Some(Hover { cursor: at, hit });
@@ -440,7 +440,10 @@ impl App {
             }
             // a pick at an earlier place does not serve a click
             if let Some((add, _)) = self.click.take_if(|(_, place)| place.distance(at) < 0.5) {
-                self.session.select(hit.picked, add);
+                match self.ui.filter {
+                    PickFilter::Points => self.session.select_point(hit.picked, add),
+                    _ => self.session.select(hit.picked, add),
+                }
                 self.ui.selected(&self.session, hit.point);
                 self.again = true;
             }

@@ -390,6 +390,11 @@ impl App {
                 Command::CopyPicture => self.copy_picture(),
                 Command::Check => self.check(),
                 Command::Save => self.save(),
+                Command::Points => {
+                    self.ui.obey(Command::Points, &mut self.session);
+                    // the item under a resting cursor changes
+                    self.pick = self.over_view();
+                }
                 Command::Quit => self.ui.quit = true,
                 other => self.ui.obey(other, &mut self.session),
             }

@@ -7,6 +7,7 @@ mod clipboard;
 mod gestures;
 mod hand;
 mod living;
+mod points;
 mod previews;
 mod scene;
 mod soak;
@@ -100,16 +101,23 @@ fn opened(display: &Display, name: &str) -> (tempfile::TempDir, Program, Scene) 
     (folder, program, scene)
 }
 
+/// The text of a file without spaces.
+fn text_of(file: &Path) -> String {
+    std::fs::read_to_string(file).expect("a sample").replace(['\n', '\r', ' '], "")
+}
+
+/// The entity of a number, in such a text.
+fn entity(text: &str, number: u32) -> &str {
+    let start = text.find(&format!("#{number}=")).expect("the entity");
+    text[start..].split(';').next().expect("its end")
+}
+
 /// The radius that the file states for the cylinder of a face.
 fn stated_radius(file: &Path, face: u32) -> f64 {
-    let text = std::fs::read_to_string(file).expect("a sample").replace(['\n', '\r', ' '], "");
-    let entity = |number: u32| {
-        let start = text.find(&format!("#{number}=")).expect("the entity");
-        text[start..].split(';').next().expect("its end").to_owned()
-    };
-    let of_face = entity(face);
+    let text = text_of(file);
+    let of_face = entity(&text, face);
     let surface = of_face.rsplit('#').next().and_then(|rest| rest.split(',').next()).expect("a surface");
-    let cylinder = entity(surface.parse().expect("a number"));
+    let cylinder = entity(&text, surface.parse().expect("a number"));
     assert!(cylinder.contains("CYLINDRICAL_SURFACE"), "{cylinder}");
     cylinder.rsplit(',').next().and_then(|r| r.trim_end_matches(')').parse().ok()).expect("a radius")
 }
