@@ -29,6 +29,7 @@ mod junctions;
 mod locate;
 #[cfg(feature = "meshes")]
 mod meshes;
+mod names;
 mod native;
 mod obj;
 mod openscad;

@@ -4,6 +4,7 @@ use super::directory::Entry;
 use super::file::File;
 use super::value::Value;
 use crate::import::Place;
+use crate::import::names::short;
 use crate::spline::SplineError;
 
 /// Why an entity cannot be used.
@@ -182,16 +183,4 @@ impl<'a> Entity<'a> {
         });
         named.filter(|n| !n.is_empty()).unwrap_or_else(|| self.entry.label.clone())
     }
-}
-
-/// Longest name kept, in bytes: names are copied to every instance and into messages.
-const MAX_NAME: usize = 200;
-
-fn short(mut name: String) -> String {
-    if name.len() > MAX_NAME {
-        let end = (0..=MAX_NAME).rev().find(|&i| name.is_char_boundary(i)).unwrap_or(0);
-        name.truncate(end);
-        name.push('…');
-    }
-    name
 }

@@ -18,6 +18,7 @@ use super::geometry::{FACE_LOST, Geometry};
 use super::solid::Shells;
 use super::surface::SURFACES;
 use super::trim::Sheet;
+use crate::import::names;
 use crate::model::Colour;
 use glam::{DAffine3, DVec3};
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -59,9 +60,6 @@ const MAX_VISITS: usize = 1 << 20;
 
 /// Arrays and assemblies within each other at most.
 const MAX_NESTED: usize = 256;
-
-/// Bytes of a path of names after which deeper levels add no more to it.
-const MAX_NAME: usize = 512;
 
 /// The kind of warning that costs a Boolean solid.
 pub(super) const SOLID_LOST: &str = "Boolean solid left out";
@@ -261,12 +259,7 @@ impl<'g, 'a> Tree<'g, 'a> {
         let count = definition.count(3, 1)?;
         self.geometry.spend(id, 1 + count)?;
         let members: Vec<u32> = (4..4 + count).filter_map(|i| definition.optional(i).ok().flatten()).collect();
-        let own = definition.string(2);
-        let name = match name {
-            "" => own,
-            outer if own.is_empty() || outer.len() + own.len() > MAX_NAME => outer.to_owned(),
-            outer => format!("{outer}/{own}"),
-        };
+        let name = names::path(name, &definition.string(2));
         self.scope(definition.id(), &members, transform, &name);
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use super::part21::{File, Record, Value, Values, decode};
 use crate::import::Place;
+use crate::import::names::short;
 use crate::spline::SplineError;
 
 /// Why an entity cannot be used.
@@ -183,20 +184,8 @@ impl<'a> Fields<'a> {
         self.value(index).and_then(Value::flag).unwrap_or(true)
     }
 
-    /// A decoded name, at most [`MAX_NAME`] bytes; empty when there is none.
+    /// A decoded name, shortened; empty when there is none.
     pub fn text(self, index: usize) -> String {
         short(self.value(index).and_then(Value::text).unwrap_or_default())
     }
-}
-
-/// Longest name kept, in bytes: names are copied to every instance and into messages.
-const MAX_NAME: usize = 200;
-
-fn short(mut name: String) -> String {
-    if name.len() > MAX_NAME {
-        let end = (0..=MAX_NAME).rev().find(|&i| name.is_char_boundary(i)).unwrap_or(0);
-        name.truncate(end);
-        name.push('…');
-    }
-    name
 }
