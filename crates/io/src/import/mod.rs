@@ -24,6 +24,7 @@ mod damage;
 mod error;
 mod external;
 mod facets;
+mod guard;
 mod iges;
 mod junctions;
 mod locate;

@@ -18,6 +18,7 @@ use super::geometry::{FACE_LOST, Geometry};
 use super::solid::Shells;
 use super::surface::SURFACES;
 use super::trim::Sheet;
+use crate::import::guard::Endless;
 use crate::import::names;
 use crate::model::Colour;
 use glam::{DAffine3, DVec3};
@@ -222,11 +223,11 @@ impl<'g, 'a> Tree<'g, 'a> {
         let sound = transform.is_finite() && transform.matrix3.determinant() != 0.0;
         sound.then_some(()).ok_or(Fault::Value { id, what: "the placement cannot be inverted" })?;
         if self.trail.contains(&base) {
-            return Err(Fault::Cycle(base));
+            return Err(Fault::Endless(Endless::Cycle(base)));
         }
         let entity = Entity::find(self.geometry.file, base)?;
         if self.trail.len() >= MAX_NESTED {
-            return Err(Fault::Depth(base, MAX_NESTED));
+            return Err(Fault::Endless(Endless::Depth(base, MAX_NESTED)));
         }
         let members = match entity.kind() {
             308 => (4..4 + entity.count(3, 1)?).filter_map(|i| entity.optional(i).ok().flatten()).collect(),
@@ -243,10 +244,10 @@ impl<'g, 'a> Tree<'g, 'a> {
         let definition = Entity::find(self.geometry.file, entity.pointer(1)?)?;
         let definition = definition.of_kind(308, "308, a subfigure")?;
         if self.trail.contains(&definition.id()) {
-            return Err(Fault::Cycle(definition.id()));
+            return Err(Fault::Endless(Endless::Cycle(definition.id())));
         }
         if self.trail.len() > MAX_LEVELS {
-            return Err(Fault::Depth(id, MAX_LEVELS));
+            return Err(Fault::Endless(Endless::Depth(id, MAX_LEVELS)));
         }
         let unit = self.geometry.file.global.unit;
         let scale = if entity.real(5)? == 0.0 { 1.0 } else { entity.real(5)? };

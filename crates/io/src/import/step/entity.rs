@@ -2,6 +2,7 @@
 
 use super::part21::{File, Record, Value, Values, decode};
 use crate::import::Place;
+use crate::import::guard::Endless;
 use crate::import::names::short;
 use crate::spline::SplineError;
 
@@ -16,16 +17,12 @@ pub(super) enum Fault {
     Attribute { id: u32, index: usize, wanted: &'static str },
     #[error("#{id}: {what}")]
     Value { id: u32, what: &'static str },
-    #[error("#{0} refers to itself")]
-    Cycle(u32),
-    #[error("#{0} is nested deeper than {1} levels")]
-    Depth(u32, usize),
     #[error("#{id}: {source}")]
     Spline { id: u32, source: SplineError },
     #[error("{kind} is not supported (#{id})")]
     Unsupported { id: u32, kind: String },
-    #[error("#{0}: entities are shared so often that the file would not end")]
-    Exhausted(u32),
+    #[error(transparent)]
+    Endless(Endless),
 }
 
 /// A record of a file.
