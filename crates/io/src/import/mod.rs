@@ -49,6 +49,7 @@ mod scene;
 mod solid;
 mod source;
 mod step;
+mod stop;
 mod subdivided;
 mod summary;
 mod text;
@@ -64,6 +65,7 @@ pub use reasons::Reasons;
 pub(crate) use report::{FACE_LOST, LOOP_LOST, Warnings};
 pub use report::{FaceRecord, ImportReport, Place, Warning};
 pub use scad::Facets;
+pub use stop::{Stop, Unwound, caught};
 pub use subdivided::open_subdivided;
 pub use summary::{Summary, Tally};
 
