@@ -9,7 +9,7 @@ use selvedge::headless::{HeadlessOptions, HeadlessRenderer, PictureView};
 use selvedge::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use selvedge::picture::{EdgeSettings, FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings, Style};
 use selvedge_io::import::{self, Facets, Folders, Import, ImportError, Options, Stage};
-use selvedge_session::{Ambient, Bound, Exceeded, Limits, SessionError, Step, Work, guarded};
+use selvedge_session::{Ambient, Bound, Exceeded, Limits, SessionError, Step, Stop, Work, guarded, import_within};
 use serde::Serialize;
 use std::io;
 use std::path::Path;
@@ -38,7 +38,6 @@ fn described_within(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs, lim
     let name = named(path);
     let step = limits.begin(Work::Reading);
     let import = importing(&name, |tell| imported(path, &name, read, subdivide, (&step, tell)))?;
-    step.test().map_err(beyond)?;
     tracing::info!("read {name} in {:.1?}", start.elapsed());
     if subdivide.subdivide.is_some() {
         let (faces, off) = (import.report.faces, import.report.made);
@@ -61,12 +60,8 @@ fn imported(
     (step, tell): (&Step, &(dyn Fn(Stage) + Sync)),
 ) -> Result<Import> {
     let folders = Folders::new(read.search.clone());
-    let tell = |stage| {
-        step.check_at(stage);
-        tell(stage);
-    };
     let options = Options {
-        progress: Some(&tell),
+        progress: Some(tell),
         most_bytes: Some(read.most_bytes()),
         files: Some(&folders),
         facets: if subdivide.as_openscad { Facets::AsWritten } else { Facets::Round },
@@ -76,12 +71,10 @@ fn imported(
     if subdivide.subdivide.is_some() && target::is_standard(path) {
         bail!("--subdivide reads a file, not standard input");
     }
-    let import = guarded(|| {
-        Ok(match subdivide.subdivide {
-            Some(smooth) => import::open_subdivided(path, smooth.scheme(), subdivide.within, &options),
-            None if target::is_standard(path) => import::read_from(&mut io::stdin().lock(), name, &options),
-            None => import::open_with(path, &options),
-        }?)
+    let import = import_within(step, &Stop::default(), &options, |options| match subdivide.subdivide {
+        Some(smooth) => import::open_subdivided(path, smooth.scheme(), subdivide.within, options),
+        None if target::is_standard(path) => import::read_from(&mut io::stdin().lock(), name, options),
+        None => import::open_with(path, options),
     });
     import.map_err(|error| failure(error, name))
 }
