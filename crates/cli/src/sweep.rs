@@ -34,8 +34,6 @@ use std::path::{Path, PathBuf};
 
 pub use divided::Divided;
 
-const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
-const FOV_DEG: f64 = 35.0;
 /// Frames of each way before the first measured one.
 const WARM_UP_FRAMES: usize = 1;
 
@@ -170,7 +168,7 @@ fn copied(model: &Model, copies: usize, distinct: bool) -> Model {
 
 fn camera(model: &Model, zoom: f64, size: (u32, u32)) -> Camera {
     let bounds = model.bounds();
-    let whole = Camera::around(bounds, FROM, DVec3::Z, FOV_DEG.to_radians(), size);
+    let whole = Camera::around(bounds, Camera::FROM, DVec3::Z, Camera::FOV_DEG.to_radians(), size);
     let mut camera = if zoom > 1.0 { Approach::new(model, whole).closer(zoom) } else { whole };
     camera.fit_depth(bounds);
     camera

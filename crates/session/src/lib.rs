@@ -32,7 +32,7 @@ mod worker;
 
 pub use ambient::Ambient;
 pub use backdrop::{Backdrop, colour};
-pub use camera::{CameraFile, FOV_DEG, FROM, Lens, Pinhole, Viewpoint, bounds, fitted, whole};
+pub use camera::{CameraFile, Lens, Pinhole, Viewpoint, bounds, fitted, whole};
 pub use directions::{Direction, Directions, NAMED};
 pub use drawer::{DeviceOptions, Drawer, Drawn, Job, MOST_IN_FLIGHT};
 pub use error::{SessionError, Stop, guarded};
