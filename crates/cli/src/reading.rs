@@ -73,8 +73,8 @@ fn imported(
     import.map_err(|error| failure(error, name))
 }
 
-/// Why the work on something failed. An error of the device keeps its type, which has an exit status of its own. A limit is
-/// named by its option.
+/// Why the work on something failed. An error of the device keeps its type, which has an exit status of its own. A limit
+/// is named by its option.
 pub fn failure(error: SessionError, what: &str) -> Error {
     match error {
         SessionError::Device(error) | SessionError::Draw(error) => error.into(),
@@ -96,7 +96,8 @@ pub fn beyond(exceeded: Exceeded) -> Error {
     Error::from(exceeded).context(format!("more than {option} allows"))
 }
 
-/// Refuses a file without anything to draw. `--strict` refuses a file that lost anything; without it, the losses are printed.
+/// Refuses a file without anything to draw. `--strict` refuses a file that lost anything; without it, the losses are
+/// printed.
 pub fn judge(path: &Path, import: &Import, read: &ReadArgs) -> Result<()> {
     let summary = import.summary();
     let told = format!("{}: {summary}", named(path));
