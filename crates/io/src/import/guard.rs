@@ -11,6 +11,9 @@ const SHARING: u64 = 64;
 /// Work that even the smallest file may do.
 const FREE_WORK: u64 = 1 << 20;
 
+/// Largest number of instances of a model; a few kilobytes of text can ask for 2^60.
+pub(super) const MAX_INSTANCES: usize = 1 << 20;
+
 /// Why an entity is not mapped to its end.
 #[derive(Clone, Debug, thiserror::Error)]
 pub(super) enum Endless {

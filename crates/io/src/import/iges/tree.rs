@@ -18,7 +18,7 @@ use super::geometry::{FACE_LOST, Geometry};
 use super::solid::Shells;
 use super::surface::SURFACES;
 use super::trim::Sheet;
-use crate::import::guard::Endless;
+use crate::import::guard::{Endless, MAX_INSTANCES};
 use crate::import::names;
 use crate::model::Colour;
 use glam::{DAffine3, DVec3};
@@ -49,9 +49,6 @@ pub(super) struct Placement {
     /// Names of the subfigures from the outermost, joined by `/`.
     pub name: String,
 }
-
-/// Largest number of instances; a few kilobytes of text can ask for 2^60.
-const MAX_INSTANCES: usize = 1 << 20;
 
 /// Deepest subfigures in subfigures.
 const MAX_LEVELS: usize = 256;

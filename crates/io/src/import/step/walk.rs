@@ -6,6 +6,7 @@
 use super::assembly::Assembly;
 use super::body::Looks;
 use super::geometry::Ledger;
+use crate::import::guard::MAX_INSTANCES;
 use crate::import::names;
 use crate::model::Colour;
 use glam::DAffine3;
@@ -23,9 +24,6 @@ pub(super) struct Placed {
     /// Names of the occurrences from the root, joined by `/`.
     pub name: String,
 }
-
-/// Largest number of instances; a few kilobytes of text can ask for 2^60.
-const MAX_INSTANCES: usize = 1 << 20;
 
 /// Largest number of groups visited: levels without a body of their own cost time but no instance.
 const MAX_VISITS: usize = 8 * MAX_INSTANCES;
