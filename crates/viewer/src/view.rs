@@ -26,8 +26,6 @@ const NOTCH: f64 = 0.84;
 const ZOOM_DRAG: f64 = 12.0;
 /// Most views that "previous view" leads back to.
 const MOST_VIEWS: usize = 50;
-/// Where the first view looks from: as the pictures of `selvedge render`.
-const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
 
 /// A drag, from the press on.
 #[derive(Clone, Copy, Debug)]
@@ -83,7 +81,7 @@ impl Default for View {
     fn default() -> Self {
         let bounds = Bounds { min: DVec3::splat(-1.0), max: DVec3::ONE };
         Self {
-            camera: Camera::around(bounds, FROM, DVec3::Z, FOV, (1, 1)),
+            camera: Camera::around(bounds, Camera::FROM, DVec3::Z, FOV, (1, 1)),
             bounds,
             before: Vec::new(),
             drag: None,
@@ -168,7 +166,7 @@ impl View {
 
     /// The first view of a model: all of it, from a little above its front right.
     pub fn reset(&mut self, now: Instant) {
-        let to = Camera::around(self.bounds, FROM, DVec3::Z, FOV, self.camera.size);
+        let to = Camera::around(self.bounds, Camera::FROM, DVec3::Z, FOV, self.camera.size);
         let to = if self.is_parallel() { navigation::other_projection(&to) } else { to };
         self.set(navigation::fit(&to, &self.bounds.corners()), now);
         self.before.clear();

@@ -11,7 +11,7 @@ pub use name::{Name, edge, face, face_or_edge, part};
 
 use crate::args::MeasureArgs;
 use crate::progress::during;
-use crate::{Outcome, output, session};
+use crate::{Outcome, output, reading};
 use anyhow::{Result, bail};
 use items::Items;
 use rayon::prelude::*;
@@ -44,14 +44,14 @@ struct PointRow {
 
 /// Reads the model and prints its measurements.
 pub fn run(args: &MeasureArgs) -> Result<Outcome> {
-    let import = session::open(&args.model, &args.read, &args.subdivide)?;
+    let import = reading::open(&args.model, &args.read, &args.subdivide)?;
     let mut wanted = wanted(args);
     let has_edges = args.list || wanted.iter().flatten().any(|name| matches!(name, Name::Edge(_)));
     let items = during("finding edges", || Items::new(&import.model, has_edges));
     if wanted.is_empty() {
         wanted = items.parts().into_iter().map(|part| vec![part]).collect();
         if wanted.is_empty() {
-            bail!("{}: nothing to measure: no placed part has faces", session::named(&args.model));
+            bail!("{}: nothing to measure: no placed part has faces", reading::named(&args.model));
         }
     }
     if args.list {
@@ -61,7 +61,7 @@ pub fn run(args: &MeasureArgs) -> Result<Outcome> {
     }
     let rows: Result<Vec<Row>> =
         during("measuring", || wanted.par_iter().map(|names| measured(&items, names)).collect());
-    let rows = rows.map_err(|error| error.context(session::named(&args.model)))?;
+    let rows = rows.map_err(|error| error.context(reading::named(&args.model)))?;
     print(args.json, &rows, ["item", "quantity", "value", "error", "unit"], rows.iter().flat_map(lines))
 }
 

@@ -19,7 +19,7 @@ use selvedge::model::{Bounds, Camera, Projection};
 use serde::{Deserialize, Serialize};
 
 /// Vertical field of view of a perspective view, radians: that of the pictures that `selvedge render` draws.
-pub const FOV: f64 = 35.0 * std::f64::consts::PI / 180.0;
+pub const FOV: f64 = Camera::FOV_DEG * std::f64::consts::PI / 180.0;
 /// Room around what fits the picture.
 const MARGIN: f64 = 1.06;
 /// The near plane is no farther than this share of the distance to the target: the point that the mouse holds is not

@@ -50,7 +50,7 @@ pub(super) use surface::{OTHER_SIDE, OTHER_SIDE_HOW, as_cylinder, offset};
 use super::external::{Mention, Read};
 use super::{
     FaceCount, FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Options, Place, Stage, Warnings, locate,
-    preview,
+    preview, stem,
 };
 use crate::brep::{BuildError, BuiltFace, FaceGeometry, build_face, settle};
 use crate::model::{Colour, Instance, Model, Part};
@@ -265,10 +265,7 @@ fn model_name(assembly: &Assembly, file: &str) -> String {
         .or(roots.others.first())
         .map(|r| assembly.groups[r].name.clone())
         .filter(|n| !n.is_empty());
-    product.unwrap_or_else(|| {
-        let stem = std::path::Path::new(file).file_stem();
-        stem.map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
-    })
+    product.unwrap_or_else(|| stem(file))
 }
 
 /// The product's name; with the body's own when the product has several.
