@@ -1,6 +1,7 @@
 //! A frame leaves out effects of its scene: the picture is that of a scene without them, and the next one has them again.
 
 use crate::hidden::crowd;
+use crate::layers::in_glass;
 use crate::shapes::solids::{block, folded};
 use crate::support::{assert_identical, assert_silent, perspective, watched_with};
 use selvedge::csg::Op;
@@ -66,4 +67,27 @@ fn what_is_left_out_is_as_if_the_scene_had_it_not() {
         assert!(all.depth == full.depth && all.face == full.face, "{what}");
         assert_silent(renderer);
     }
+}
+
+/// What is behind glass is drawn into another image than a picture without glass.
+#[test]
+fn what_is_left_out_behind_glass_is_as_if_the_scene_had_it_not() {
+    let model = in_glass();
+    let camera = perspective(&model, SIZE);
+    let ambient = Some(0.1 * model.control_bounds().diagonal());
+    let scene = SceneSettings { smooth: Smooth::Borders, ambient, ..SceneSettings::default() };
+    let cases = [
+        (Effects { borders: true, ..Effects::NONE }, SceneSettings { smooth: Smooth::None, ..scene }, "borders"),
+        (Effects { ambient: true, ..Effects::NONE }, SceneSettings { ambient: None, ..scene }, "ambient"),
+    ];
+    let mut renderer = watched_with(&model, scene);
+    for (without, plain, pass) in cases {
+        let mut fresh = watched_with(&model, plain);
+        let expected = fresh.render(&camera, &FrameSettings::default(), OUTPUTS).unwrap();
+        assert_silent(fresh);
+        let settings = FrameSettings { without, ..FrameSettings::default() };
+        let picture = renderer.render(&camera, &settings, OUTPUTS).unwrap();
+        assert_identical(&picture, &expected, &format!("without {pass}"));
+    }
+    assert_silent(renderer);
 }

@@ -10,7 +10,7 @@
 //! |---|---|
 //! | [`navigation`] | orbit, zoom, pan, presets of mice, standard views, view cube, transitions: pure functions |
 //! | [`view`] | the camera that the mouse moves, and the next picture |
-//! | [`pacing`] | fewer pixels while the view moves |
+//! | [`pacing`] | fewer pixels and effects while the view moves |
 //! | [`session`] | open files, visibility, colours, sections, selection, undo |
 //! | [`pick`], [`describe`], [`measure`] | items under the cursor, their description, sizes and distances |
 //! | [`panels`], [`commands`] | the panels around the picture, and the commands |
