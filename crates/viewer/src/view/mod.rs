@@ -7,7 +7,7 @@
 //!
 //! The caller passes times in; there is no window here.
 
-use crate::navigation::gesture::{Action, Held, Preset};
+use crate::navigation::gesture::{Action, Held, Preset, Scrolled};
 use crate::navigation::transition::{DURATION, Transition};
 use crate::navigation::{self, FOV, OrbitStyle};
 use crate::pacing::{Pacing, Step};
@@ -22,6 +22,8 @@ pub const SETTLE: Duration = Duration::from_millis(80);
 const CLICK_PX: f64 = 4.0;
 /// One notch of the wheel.
 const NOTCH: f64 = 0.84;
+/// Least and most magnification of one step of a pinch, less 1: fingers move no faster.
+const PINCH: (f64, f64) = (-0.75, 3.0);
 /// A zoom drag over the height of the view.
 const ZOOM_DRAG: f64 = 12.0;
 /// Most views that "previous view" leads back to.
@@ -303,16 +305,67 @@ impl View {
 
     /// The wheel, by notches, upwards closer.
     pub fn wheel(&mut self, cursor: DVec2, notches: f64, now: Instant) {
+        self.closer(cursor, NOTCH.powf(notches.clamp(-8.0, 8.0)), now);
+    }
+
+    /// Two fingers are farther apart by a share of their distance, or closer together below 0. What is no number, as
+    /// systems may report it, is no pinch.
+    pub fn pinch(&mut self, cursor: DVec2, apart: f64, now: Instant) {
+        if apart.is_finite() {
+            self.closer(cursor, (1.0 + apart.clamp(PINCH.0, PINCH.1)).recip(), now);
+        }
+    }
+
+    /// A scroll of a wheel or of two fingers.
+    pub fn scroll(&mut self, cursor: DVec2, scrolled: Scrolled, style: OrbitStyle, now: Instant) {
+        let point = self.under(cursor);
+        let (camera, anchor) = match scrolled {
+            Scrolled::Zoom(notches) => return self.wheel(cursor, notches, now),
+            Scrolled::Orbit(by) => {
+                let turned = navigation::orbit(&self.camera, point, by, style);
+                (navigation::aimed(&turned, point), point)
+            }
+            Scrolled::Pan(by) => {
+                let Some((at, _)) = self.camera.project(point) else { return };
+                let moved = navigation::pan(&self.camera, point, at + by);
+                // the next step moves what is then under the cursor, as deep as this point
+                (moved, navigation::at_depth(&moved, cursor, navigation::depth(&moved, point)))
+            }
+        };
+        self.transition = None;
+        self.set(camera, now);
+        self.anchor = Some((cursor, anchor));
+    }
+
+    /// Two fingers turn by an angle, radians, counterclockwise, and the picture with them; with
+    /// [`OrbitStyle::Turntable`] verticals stay upright, and it does not turn.
+    pub fn twist(&mut self, cursor: DVec2, angle: f64, style: OrbitStyle, now: Instant) {
+        if style == OrbitStyle::Free && angle.is_finite() {
+            let point = self.under(cursor);
+            self.transition = None;
+            self.set(navigation::roll(&self.camera, point, angle), now);
+            self.anchor = Some((cursor, point));
+        }
+    }
+
+    /// The point under a cursor that rests: that of the last scroll, or what is seen there, or one as deep as the
+    /// target.
+    fn under(&self, cursor: DVec2) -> DVec3 {
         let known = self.anchor.filter(|(at, _)| at.distance(cursor) < 2.0).map(|(_, point)| point);
         let hovered = self.hover.filter(|h| h.cursor.distance(cursor) < 2.0).and_then(|h| h.hit.point);
         let behind = || {
             let depth = navigation::depth(&self.camera, self.camera.target);
             navigation::at_depth(&self.camera, cursor, depth)
         };
-        let point = known.or(hovered).unwrap_or_else(behind);
+        known.or(hovered).unwrap_or_else(behind)
+    }
+
+    /// Zooms to the point under the cursor, which stays there.
+    fn closer(&mut self, cursor: DVec2, factor: f64, now: Instant) {
+        let point = self.under(cursor);
         self.anchor = Some((cursor, point));
         self.transition = None;
-        let zoomed = navigation::zoom(&self.camera, point, NOTCH.powf(notches.clamp(-8.0, 8.0)));
+        let zoomed = navigation::zoom(&self.camera, point, factor);
         self.set(navigation::aimed(&zoomed, point), now);
     }
 

@@ -92,6 +92,54 @@ fn the_wheel_keeps_its_anchor_while_the_cursor_rests() {
 }
 
 #[test]
+fn two_fingers_move_what_is_under_the_cursor_and_turn_about_it() {
+    let now = Instant::now();
+    let mut view = view(now);
+    let point = DVec3::new(40.0, 0.0, 20.0);
+    let cursor = view.camera.project(point).expect("in front").0;
+    view.hover = Some(Hover { cursor, hit: Hit { picked: None, point: Some(point) } });
+    let place = |view: &View, p: DVec3| view.camera.project(p).expect("in front").0;
+    let by = DVec2::new(7.0, -3.0);
+    for step in 1..=5 {
+        view.scroll(cursor, Scrolled::Pan(by), OrbitStyle::Turntable, now);
+        assert!(place(&view, point).distance(cursor + by * f64::from(step)) < 1e-6);
+    }
+    let under = view.under(cursor);
+    assert!(place(&view, under).distance(cursor) < 1e-6);
+    let before = view.camera;
+    for _ in 0..5 {
+        view.scroll(cursor, Scrolled::Orbit(by), OrbitStyle::Turntable, now);
+        assert!(place(&view, under).distance(cursor) < 1e-6);
+    }
+    let direction = |camera: &Camera| (camera.target - camera.eye).normalize();
+    assert!(direction(&view.camera).dot(direction(&before)) < 0.999);
+    view.scroll(cursor, Scrolled::Zoom(2.0), OrbitStyle::Turntable, now);
+    assert!(view.camera.eye.distance(under) < 0.8 * before.eye.distance(under));
+    assert!(view.due(now).step.scale < 1.0, "the view moves");
+}
+
+#[test]
+fn a_pinch_zooms_as_far_as_the_fingers_go() {
+    let now = Instant::now();
+    let mut view = view(now);
+    let cursor = DVec2::new(300.0, 250.0);
+    let point = view.under(cursor);
+    let before = view.camera.eye.distance(point);
+    view.pinch(cursor, 0.25, now);
+    assert!((before / view.camera.eye.distance(point) - 1.25).abs() < 1e-9);
+    view.pinch(cursor, -0.2, now);
+    assert!((before / view.camera.eye.distance(point) - 1.0).abs() < 1e-9);
+    let camera = view.camera;
+    view.pinch(cursor, f64::NAN, now);
+    view.twist(cursor, f64::NAN, OrbitStyle::Free, now);
+    view.twist(cursor, 0.5, OrbitStyle::Turntable, now);
+    assert_eq!(view.camera, camera);
+    view.twist(cursor, 0.5, OrbitStyle::Free, now);
+    assert!(view.camera.axes().1.dot(camera.axes().1) < 0.9);
+    assert!(view.camera.project(point).expect("in front").0.distance(cursor) < 1e-6);
+}
+
+#[test]
 fn keys_move_and_zoom_and_lead_back() {
     let now = Instant::now();
     let mut view = view(now);
