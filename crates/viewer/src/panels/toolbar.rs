@@ -45,8 +45,7 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session, settings: 
         }
         row.separator();
         let mut explosion = session.scene.now().explosion;
-        let trims =
-            row.selectable_label(ui.trims, "Trims").on_hover_text("Drag the trim loops of the selected face (T)");
+        let trims = row.selectable_label(ui.trims, "Trims").on_hover_text("Drag a trim loop of the selected face (T)");
         if trims.clicked() {
             ui.commands.push(Command::Trims);
         }
