@@ -14,7 +14,7 @@
 //! | [`session`] | open files, visibility, colours, sections, selection, undo |
 //! | [`pick`], [`describe`], [`measure`] | items under the cursor, their description, sizes and distances |
 //! | [`panels`], [`commands`] | the panels around the picture, and the commands |
-//! | [`settings`], [`watch`] | stored settings; files that change on the disk |
+//! | [`settings`], [`watch`], [`desktop`] | stored settings; files that change on the disk; the desktop's settings |
 //! | [`run`] | the window itself |
 //!
 //! The viewer uses the engine as any host does.
@@ -22,6 +22,7 @@
 
 pub mod commands;
 pub mod describe;
+pub mod desktop;
 pub mod measure;
 pub mod navigation;
 pub mod pacing;

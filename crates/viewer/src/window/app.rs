@@ -43,6 +43,8 @@ pub enum Event {
     Measured(Vec<Picked>, Option<Measurement>),
     /// The verdict on a picture, or why there is none.
     Judged(Result<Verdict, String>),
+    /// The desktop asks for less motion.
+    LessMotion,
     /// The panels need to be drawn again.
     Repaint,
 }
@@ -88,6 +90,8 @@ pub struct App {
     pub view: View,
     pub ui: Ui,
     pub settings: Settings,
+    /// The desktop asks for less motion.
+    pub less_motion: bool,
     /// The settings in the file.
     kept: Settings,
     pub files: Vec<Arc<Loaded>>,
@@ -154,6 +158,7 @@ impl App {
             session: Session::default(),
             view: View::default(),
             ui,
+            less_motion: false,
             kept: settings.clone(),
             settings,
             files: Vec::new(),

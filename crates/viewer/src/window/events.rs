@@ -151,6 +151,10 @@ impl ApplicationHandler<Event> for App {
                 }
                 self.redraw();
             }
+            Event::LessMotion => {
+                tracing::info!("the desktop asks for less motion");
+                self.less_motion = true;
+            }
             Event::Repaint => self.redraw(),
         }
     }
@@ -359,7 +363,7 @@ impl App {
 
     /// Carries out the commands of panels and keys.
     pub fn obey(&mut self, now: Instant) {
-        let smooth = !self.settings.reduced_motion;
+        let smooth = !self.settings.reduced_motion && !self.less_motion;
         for command in std::mem::take(&mut self.ui.commands) {
             tracing::debug!("{command:?}");
             match command {

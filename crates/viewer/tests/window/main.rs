@@ -77,6 +77,7 @@ fn window(file: PathBuf) {
     let closed = run(ViewOptions {
         finder: slow.map(|slow| Finder(Arc::new(slow))),
         settings: file.parent().map(|folder| folder.join("settings.json")),
+        desktop: file.parent().map(Path::to_owned),
         files: vec![file],
         validation: true,
         size: width.parse().ok().zip(height.parse().ok()),
