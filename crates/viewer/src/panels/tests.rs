@@ -142,6 +142,28 @@ fn the_tree_names_every_part_and_the_search_finds_one() {
 }
 
 #[test]
+fn the_tree_jumps_to_what_is_selected_in_the_picture() {
+    let path = Path::new("long.step").to_owned();
+    let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/bracket.step");
+    let mut import = selvedge_io::import::open(&sample).expect("a sample");
+    let one = import.model.instances[0].clone();
+    let named = |i: usize| selvedge::model::Instance { name: format!("item {i} of many"), ..one.clone() };
+    import.model.instances = (0..400).map(named).collect();
+    let mut bench = Bench::new();
+    bench.session.open(World::new(&[Arc::new(Loaded { path, import, partial: false })]));
+    assert!(bench.says("item 0 of many") && !bench.says("item 250 of many"));
+    let picked = Picked::Face { instance: 250, face: 0, uv: glam::DVec2::ZERO };
+    bench.session.select(Some(picked), false);
+    bench.ui.selected(&bench.session, None);
+    // a second, in which it scrolls there
+    let all = (0..60).map(|_| bench.frame(Vec::new())).last().expect("frames");
+    let has = |what: &str| all.iter().any(|(text, _)| text == what);
+    assert!(has("item 250 of many") && !has("item 0 of many"), "it did not scroll: {all:?}");
+    // once: the hand may scroll elsewhere
+    assert!(!bench.ui.show_selection);
+}
+
+#[test]
 fn progress_warnings_and_the_promise_are_shown() {
     let mut bench = Bench::new();
     assert!(bench.says("big.step: faces") && bench.says("exact within 0.5 px"));

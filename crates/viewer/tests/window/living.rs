@@ -11,7 +11,7 @@ use selvedge_viewer::session::{Picked, Session};
 use std::sync::Arc;
 
 /// The scene changed in place: nothing was uploaded, and no upload is on its way.
-fn is_in_place(said: &[String]) -> bool {
+pub fn is_in_place(said: &[String]) -> bool {
     let has = |what: &str| said.iter().any(|line| line.contains(what));
     has("changed in place") && !has("uploaded") && !has("an upload is needed")
 }
