@@ -28,8 +28,8 @@ pub struct FrameSettings {
     /// The largest curvature on the scale of styles that show it, in 1 / units of the model; beyond it colours stay the
     /// same. Finite and above 0.
     pub curvature_range: f64,
-    /// Effects of the scene that this frame leaves out. The picture is that of a scene without them, except that colours
-    /// above 1 are cut off as with them.
+    /// Effects of the scene that this frame leaves out. The picture is that of a scene without them, except that
+    /// colours above 1 are cut off as with them.
     pub without: Effects,
     /// How finely patches are divided.
     pub levels: Levels,

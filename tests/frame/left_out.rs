@@ -1,4 +1,4 @@
-//! A frame leaves out effects of its scene: the picture is that of a scene without them, and the next one has them again.
+//! A frame leaves out effects of its scene: the picture is that of a scene without them. The next one has them again.
 
 use crate::hidden::crowd;
 use crate::layers::in_glass;

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | with a `settings.ini` of GTK, as Xfce and Plasma write it | `gtk-enable-animations` is off |
 //! | Plasma | `AnimationDurationFactor` in `kdeglobals` is 0 |
-//! | GNOME and others with GSettings | `org.gnome.desktop.interface enable-animations` is false: the program `gsettings` |
+//! | with GSettings, as GNOME | `gsettings get org.gnome.desktop.interface enable-animations` says false |
 
 use std::path::Path;
 use std::process::{Command, Stdio};

@@ -92,7 +92,8 @@ impl Default for Settings {
     }
 }
 
-/// The folder of the user's settings, by the XDG Base Directory Specification 0.8: `$XDG_CONFIG_HOME`, else `~/.config`.
+/// The folder of the user's settings, by the XDG Base Directory Specification 0.8: `$XDG_CONFIG_HOME`, else
+/// `~/.config`.
 pub fn folder(config_home: Option<PathBuf>, home: Option<PathBuf>) -> Option<PathBuf> {
     let absolute = config_home.filter(|folder| folder.is_absolute());
     absolute.or_else(|| home.map(|home| home.join(".config")))

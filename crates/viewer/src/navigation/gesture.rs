@@ -10,8 +10,8 @@
 //! | F3D | L | M, Shift+L | wheel |
 //! | trackpad | L, Shift + two fingers | two fingers, M, Shift+L | pinch, Ctrl + two fingers, wheel |
 //!
-//! L, M, R are the buttons. With the other styles two fingers are a wheel; a pinch zooms with every style. A left button
-//! that goes down and up in one place selects, whatever the style.
+//! L, M, R are the buttons. With the other styles two fingers are a wheel; a pinch zooms with every style. A left
+//! button that goes down and up in one place selects, whatever the style.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};

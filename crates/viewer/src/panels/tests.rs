@@ -156,7 +156,8 @@ fn the_tree_jumps_to_what_is_selected_in_the_picture() {
     bench.session.select(Some(picked), false);
     bench.ui.selected(&bench.session, None);
     // a second, in which it scrolls there
-    let all = (0..60).map(|_| bench.frame(Vec::new())).last().expect("frames");
+    (0..60).for_each(|_| drop(bench.frame(Vec::new())));
+    let all = bench.frame(Vec::new());
     let has = |what: &str| all.iter().any(|(text, _)| text == what);
     assert!(has("item 250 of many") && !has("item 0 of many"), "it did not scroll: {all:?}");
     // once: the hand may scroll elsewhere

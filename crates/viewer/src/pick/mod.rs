@@ -17,7 +17,7 @@ const EDGE_PX: f64 = 3.0;
 const VERTEX_PX: f64 = 7.0;
 
 /// Chords of one curve of a loop, when the loop nearest to a point is looked for.
-const CHORDS: usize = 8;
+const CHORDS: usize = 16;
 
 /// One pixel of the engine's images.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -232,7 +232,7 @@ pub fn towards(surface: &Surface, (origin, direction): (DVec3, DVec3), uv: DVec2
 /// The loop on a surface that passes nearest to the point at `uv`, by distances in space; the first of several. `None`
 /// without loops.
 ///
-/// Accuracy: curves are followed by chords, eight each.
+/// Accuracy: each curve is followed by sixteen chords.
 pub fn nearest_loop<'a>(surface: &Surface, loops: impl IntoIterator<Item = &'a TrimLoop>, uv: DVec2) -> Option<usize> {
     let from = surface.point(uv.x, uv.y);
     let on_curve = |curve: Bezier<DVec3>| (0..CHORDS).map(move |i| curve.point(i as f64 / CHORDS as f64));

@@ -57,7 +57,11 @@ impl Panels {
 
     /// Texts once everything has its place.
     fn texts(&mut self) -> Vec<(String, egui::Rect)> {
-        (0..FRAMES).map(|_| self.frame(Vec::new()).1).last().unwrap_or_default()
+        let mut texts = Vec::new();
+        for _ in 0..FRAMES {
+            (_, texts) = self.frame(Vec::new());
+        }
+        texts
     }
 
     /// Where the `nth` of equal texts is.
