@@ -26,6 +26,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // selvedge-viewer: without a window
     ("navigation", &[]),
     ("pacing", &[]),
+    ("desktop", &[]),
     ("watch", &[]),
     ("session", &[]), // also the crate of that name, for which Cargo enforces it
     ("settings", &["navigation"]),
@@ -36,7 +37,19 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("panels", &["commands", "describe", "measure", "navigation", "pick", "session", "settings", "view"]),
     (
         "window",
-        &["commands", "describe", "measure", "navigation", "panels", "pick", "session", "settings", "view", "watch"],
+        &[
+            "commands",
+            "describe",
+            "desktop",
+            "measure",
+            "navigation",
+            "panels",
+            "pick",
+            "session",
+            "settings",
+            "view",
+            "watch",
+        ],
     ),
     // the engine: without a GPU
     ("picture", &["baselines", "model"]),

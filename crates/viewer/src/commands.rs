@@ -136,7 +136,7 @@ pub fn shortcuts() -> Vec<Shortcut> {
         (Key::M, NONE, Command::Measure, "keep the measurement"),
         (Key::Z, CTRL, Command::Undo, "undo"),
         (Key::Z, CTRL.plus(SHIFT), Command::Redo, "redo"),
-        (Key::T, NONE, Command::Trims, "drag trim loops of the selected face"),
+        (Key::T, NONE, Command::Trims, "drag a trim loop of the selected face"),
         (Key::E, CTRL, Command::SaveAs, "save the model"),
         (Key::S, CTRL, Command::Screenshot, "write the picture to a file"),
         (Key::S, CTRL.plus(SHIFT), Command::WritePicture, "write it there at once"),

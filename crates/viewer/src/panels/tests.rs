@@ -34,7 +34,12 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/assembly.step");
+        Self::of("assembly.step")
+    }
+
+    /// Of a sample.
+    fn of(name: &str) -> Self {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples").join(name);
         let import = selvedge_io::import::open(&path).expect("a sample");
         let mut session = Session::default();
         session.open(World::new(&[Arc::new(Loaded { path, import, partial: false })]));
@@ -135,6 +140,29 @@ fn the_tree_names_every_part_and_the_search_finds_one() {
     assert!(listed(&wanted));
     let other = names.iter().find(|n| !n.contains(&wanted)).expect("another name");
     assert!(!listed(other), "{other}");
+}
+
+#[test]
+fn the_tree_jumps_to_what_is_selected_in_the_picture() {
+    let path = Path::new("long.step").to_owned();
+    let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/bracket.step");
+    let mut import = selvedge_io::import::open(&sample).expect("a sample");
+    let one = import.model.instances[0].clone();
+    let named = |i: usize| selvedge::model::Instance { name: format!("item {i} of many"), ..one.clone() };
+    import.model.instances = (0..400).map(named).collect();
+    let mut bench = Bench::new();
+    bench.session.open(World::new(&[Arc::new(Loaded { path, import, partial: false })]));
+    assert!(bench.says("item 0 of many") && !bench.says("item 250 of many"));
+    let picked = Picked::Face { instance: 250, face: 0, uv: glam::DVec2::ZERO };
+    bench.session.select(Some(picked), false);
+    bench.ui.selected(&bench.session, None);
+    // a second, in which it scrolls there
+    (0..60).for_each(|_| drop(bench.frame(Vec::new())));
+    let all = bench.frame(Vec::new());
+    let has = |what: &str| all.iter().any(|(text, _)| text == what);
+    assert!(has("item 250 of many") && !has("item 0 of many"), "it did not scroll: {all:?}");
+    // once: the hand may scroll elsewhere
+    assert!(!bench.ui.show_selection);
 }
 
 #[test]
@@ -296,4 +324,26 @@ fn a_trim_point_follows_the_hand_on_its_surface() {
     let (far, near) = (nearest(&of_face.loops[0]), nearest(&edits[&(part, face, 0)]));
     assert!(far > 2.0 && near < 0.5, "{near} pixels from the hand, {far} before");
     assert!(bench.session.scene.undo() && bench.session.scene.now().edits.is_empty());
+}
+
+#[test]
+fn a_click_chooses_the_loop_beside_it_and_the_list_another() {
+    let mut bench = Bench::of("panel.step");
+    let world = bench.session.world.clone();
+    let (instance, face) = (0, 0);
+    let loops = &world.model.parts[world.model.instances[instance].part].faces[face].loops;
+    let chosen = |bench: &Bench| bench.ui.chosen.map(|chosen| chosen.trim_loop);
+    bench.ui.trims = true;
+    for nth in [2, 1] {
+        let uv = loops[nth].curves().next().expect("a curve").point(0.4);
+        bench.session.select(Some(Picked::Face { instance, face, uv }), false);
+        assert!(bench.says(&format!("Trim loop {} of {}", nth + 1, loops.len())));
+        assert_eq!(chosen(&bench), Some(nth));
+    }
+    let points: usize = loops[0].curves().map(|curve| curve.degree()).sum();
+    bench.click(&format!("Loop 1: {points} points"));
+    assert!(bench.says(&format!("Trim loop 1 of {}", loops.len())));
+    assert_eq!(chosen(&bench), Some(0));
+    bench.ui.obey(Command::Trims, &mut bench.session);
+    assert!(!bench.says("Trim loop") && chosen(&bench).is_none());
 }

@@ -12,14 +12,17 @@ pub mod snap;
 
 use crate::session::{Picked, World};
 use glam::{DAffine3, DVec2, DVec3};
-use selvedge::model::Camera;
-use selvedge::spline::{Jet2, Surface};
+use selvedge::model::{Camera, TrimLoop};
+use selvedge::spline::{Bezier, Jet2, Surface};
 use std::collections::BTreeSet;
 
 /// Pixels from the cursor within which an edge is picked, and not the face under it.
 const EDGE_PX: f64 = 3.0;
 /// The same of an edge's end.
 const VERTEX_PX: f64 = 7.0;
+
+/// Chords of one curve of a loop, when the loop nearest to a point is looked for.
+const CHORDS: usize = 16;
 
 /// One pixel of the engine's images.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -260,6 +263,30 @@ pub fn towards(surface: &Surface, (origin, direction): (DVec3, DVec3), uv: DVec2
         apart = off(&jet);
     }
     apart.is_finite().then(|| (at, jet.point, apart.length()))
+}
+
+/// The loop on a surface that passes nearest to the point at `uv`, by distances in space; the first of several. `None`
+/// without loops.
+///
+/// Accuracy: each curve is followed by sixteen chords.
+pub fn nearest_loop<'a>(surface: &Surface, loops: impl IntoIterator<Item = &'a TrimLoop>, uv: DVec2) -> Option<usize> {
+    let from = surface.point(uv.x, uv.y);
+    let on_curve = |curve: Bezier<DVec3>| (0..CHORDS).map(move |i| curve.point(i as f64 / CHORDS as f64));
+    let distance = |trim_loop: &TrimLoop| {
+        let places = trim_loop.curves().flat_map(on_curve).map(|at| surface.point(at.x, at.y));
+        let places: Vec<DVec3> = places.collect();
+        let next = places.iter().cycle().skip(1);
+        places.iter().zip(next).map(|(a, b)| to_chord(from, *a, *b)).fold(f64::INFINITY, f64::min)
+    };
+    let all = loops.into_iter().map(distance).enumerate();
+    all.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(nth, _)| nth)
+}
+
+/// The distance of a point from a chord.
+fn to_chord(from: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let (along, squared) = (b - a, a.distance_squared(b));
+    let share = if squared > 0.0 { ((from - a).dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    from.distance(a + along * share)
 }
 
 #[cfg(test)]

@@ -148,3 +148,25 @@ fn the_hand_is_followed_to_the_border_of_a_surface() {
         assert!(end.distance(beyond) < start.distance(beyond), "face {}", face.id);
     }
 }
+
+#[test]
+fn the_loop_nearest_to_a_point_passes_there() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/panel.step");
+    let import = selvedge_io::import::open(&path).expect("a sample");
+    let face = &import.model.parts[0].faces[0];
+    assert!(face.loops.len() > 2);
+    for (nth, trim_loop) in face.loops.iter().enumerate().take(12) {
+        // between two samples of the curve
+        let uv = trim_loop.curves().next().expect("a curve").point(0.31);
+        assert_eq!(nearest_loop(&face.surface, &face.loops, uv), Some(nth));
+    }
+    assert_eq!(nearest_loop(&face.surface, std::iter::empty::<&TrimLoop>(), DVec2::ZERO), None);
+}
+
+#[test]
+fn a_chord_ends_at_its_ends() {
+    let (a, b) = (DVec3::ZERO, DVec3::X * 2.0);
+    assert_eq!(to_chord(DVec3::new(1.0, 3.0, 0.0), a, b), 3.0);
+    assert_eq!(to_chord(DVec3::new(5.0, 0.0, 4.0), a, b), 5.0);
+    assert_eq!(to_chord(DVec3::new(0.0, 0.0, 4.0), a, a), 4.0);
+}

@@ -43,6 +43,8 @@ pub enum Event {
     Measured(Vec<Picked>, Option<Measurement>),
     /// The verdict on a picture, or why there is none.
     Judged(Result<Verdict, String>),
+    /// The desktop asks for less motion.
+    LessMotion,
     /// The panels need to be drawn again.
     Repaint,
 }
@@ -88,6 +90,8 @@ pub struct App {
     pub view: View,
     pub ui: Ui,
     pub settings: Settings,
+    /// The desktop asks for less motion.
+    pub less_motion: bool,
     /// The settings in the file.
     kept: Settings,
     pub files: Vec<Arc<Loaded>>,
@@ -154,6 +158,7 @@ impl App {
             session: Session::default(),
             view: View::default(),
             ui,
+            less_motion: false,
             kept: settings.clone(),
             settings,
             files: Vec::new(),
@@ -252,7 +257,10 @@ impl App {
         }
         self.keep_settings();
         self.make_room();
+        let effects = self.opened.as_ref().map(|opened| opened.engine.effects());
+        self.view.pacing.set_effects(effects.unwrap_or_default());
         let (due, mut settings, marks) = (self.view.due(now), self.frame_settings(), self.marks());
+        settings.without = due.step.without;
         let (under, scene_settings) = (self.over_view(), self.scene_settings());
         let Some(Opened { window, waiter, engine, screen, .. }) = &mut self.opened else { return Ok(()) };
         let wanted = Wanted { world: &self.session.world, state: self.session.scene.now(), settings: scene_settings };
@@ -414,7 +422,7 @@ impl App {
             }
             // the first picture of a size makes its buffers, and an incomplete one is no measure
             if std::mem::replace(&mut self.drawn, due.camera.size) == due.camera.size && complete {
-                self.view.pacing.took(due.scale, start.elapsed());
+                self.view.pacing.took(due.step, start.elapsed());
             }
             self.again |= !complete;
             if !self.seen && complete {
@@ -422,7 +430,8 @@ impl App {
                 tracing::info!("first picture after {:.0?}", self.begun.elapsed());
             }
             let (width, height) = due.camera.size;
-            tracing::debug!("picture of {width} x {height} in {:.1?}, complete: {complete}", start.elapsed());
+            let (time, without) = (start.elapsed(), settings.without);
+            tracing::debug!("picture of {width} x {height} in {time:.1?}, complete: {complete}, without {without:?}");
         }
         let samples = screen.picked();
         let scene = scene.filter(|scene| Arc::ptr_eq(&scene.world, &self.session.world));

@@ -10,7 +10,7 @@
 use super::living::{self, Placed};
 use crate::session::{SceneState, World, joiner};
 use selvedge::model::Model;
-use selvedge::picture::{SceneSettings, Smooth};
+use selvedge::picture::{Effects, SceneSettings, Smooth};
 use selvedge::renderer::{RenderError, Renderer};
 use selvedge_io::import::{Stop, Unwound, caught};
 use std::collections::BTreeSet;
@@ -131,6 +131,16 @@ impl Engine {
     /// What is drawn may be drawn in a style of curvature.
     pub fn has_curvature(&self) -> bool {
         self.current.as_ref().is_some_and(|current| current.settings.curvature)
+    }
+
+    /// Effects of what is drawn, which a frame may leave out.
+    pub fn effects(&self) -> Effects {
+        let of = |settings: &SceneSettings| Effects {
+            borders: settings.smooth == Smooth::Borders,
+            ambient: settings.ambient.is_some(),
+            lines: settings.edges.is_some(),
+        };
+        self.current.as_ref().map(|current| of(&current.settings)).unwrap_or_default()
     }
 
     /// The renderer, when it holds a model.

@@ -7,6 +7,8 @@ mod clipboard;
 mod gestures;
 mod hand;
 mod living;
+mod menus;
+mod panels;
 mod points;
 mod previews;
 mod scene;
@@ -78,6 +80,7 @@ fn window(file: PathBuf) {
     let closed = run(ViewOptions {
         finder: slow.map(|slow| Finder(Arc::new(slow))),
         settings: file.parent().map(|folder| folder.join("settings.json")),
+        desktop: file.parent().map(Path::to_owned),
         files: vec![file],
         validation: true,
         size: width.parse().ok().zip(height.parse().ok()),
@@ -93,7 +96,13 @@ fn sample(name: &str) -> PathBuf {
 
 /// A copy of a sample in a folder of its own, opened.
 fn opened(display: &Display, name: &str) -> (tempfile::TempDir, Program, Scene) {
+    opened_with(display, name, |_| {})
+}
+
+/// The same, where something else is put into the folder before.
+fn opened_with(display: &Display, name: &str, put: impl FnOnce(&Path)) -> (tempfile::TempDir, Program, Scene) {
     let folder = tempfile::tempdir().expect("a folder");
+    put(folder.path());
     let file = folder.path().join(name);
     std::fs::copy(sample(name), &file).expect("copied");
     let program = Program::start(display, &file);
