@@ -6,7 +6,7 @@ use glam::{DAffine3, DVec2, DVec3, DVec4};
 use selvedge::construct::{Chain, extrude, extruded_solid};
 use selvedge::edges::flatten::{Flattening, LinePoint};
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
-use selvedge::model::{Camera, EdgeKind, Face, Instance, Model, Projection};
+use selvedge::model::{Camera, EdgeKind, Face, Instance, Model, Projection, SurfaceKind};
 use selvedge::picture::{
     BadEdges, EdgeChoice, EdgeSettings, FrameSettings, Outputs, Picture, Samples, SceneSettings, TangentEdges, TrimWay,
 };
@@ -127,8 +127,8 @@ fn an_edge_close_behind_a_grazing_face_is_hidden() {
     assert_eq!((bare, stray), (0, 0), "{} line pixels of the box behind", boxes.len());
 }
 
-/// The outline of a ball is a circle in space, and the lines lie on it: at the exact fold, all around. `model` has the ball
-/// of [`shapes::sphere`] at the origin, and nothing else that folds.
+/// The outline of a ball is a circle in space, and the lines lie on it: at the exact fold, all around. `model` has the
+/// ball of [`shapes::sphere`] at the origin, and nothing else that folds.
 fn assert_the_balls_outline(model: &Model, camera: &Camera) {
     let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
     let picture = draw(model, with(settings), camera);
@@ -145,17 +145,63 @@ fn assert_the_balls_outline(model: &Model, camera: &Camera) {
             camera.project(middle + (right * cos + up * sin) * round).unwrap().0
         })
         .collect();
-    let marked: Vec<(DVec2, u32)> = centres(&picture).collect();
-    assert!(marked.iter().all(|(_, edge)| *edge == OUTLINE));
-    let stray = marked.iter().filter(|(at, _)| !outline.iter().any(|p| p.distance(*at) <= HALF + 0.5)).count();
-    let bare = outline.iter().filter(|p| !marked.iter().any(|(at, _)| at.distance(**p) <= HALF + 0.5)).count();
-    assert_eq!((bare, stray), (0, 0), "of {} pixels", marked.len());
+    assert!(centres(&picture).all(|(_, edge)| edge == OUTLINE));
+    assert_eq!(faults_of_outline(&picture, &outline), (0, 0), "of {} pixels", centres(&picture).count());
 }
 
 #[test]
 fn a_balls_outline_is_where_it_folds() {
     let model = shapes::sphere();
     assert_the_balls_outline(&model, &perspective(&model, SIZE));
+}
+
+/// A ring that is trimmed along its seams, in a view that shows neither them nor a patch that they cross: the trim
+/// table has no rows there.
+#[test]
+fn an_outline_away_from_all_trim_curves_is_a_line() {
+    let mut model = shapes::torus();
+    model.parts[0].faces[0].loops = vec![shapes::rectangle(DVec2::ZERO, DVec2::splat(TAU))];
+    let round = shapes::TORUS_RADII.0 - shapes::TORUS_RADII.1;
+    let at = |angle: f64| DVec2::from_angle(angle).extend(0.0) * round;
+    // three eighths of a turn from the seam across the ring, and half a turn from the one along it
+    let target = at(0.375 * TAU);
+    let camera = Camera {
+        eye: target + DVec3::Z * 10.0,
+        target,
+        up: DVec3::Y,
+        projection: Projection::Orthographic { height: 1.5 },
+        depth_range: (1.0, 20.0),
+        size: SIZE,
+    };
+    let outline: Vec<DVec2> = (0..8000).map(|k| camera.project(at(f64::from(k) * TAU / 8000.0)).unwrap().0).collect();
+    for trim in [TrimWay::Table, TrimWay::Exact] {
+        let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
+        let picture = draw(&model, SceneSettings { trim, ..with(settings) }, &camera);
+        assert_eq!(faults_of_outline(&picture, &outline), (0, 0), "{trim:?}");
+        assert!(centres(&picture).count() > 100, "{trim:?}");
+    }
+}
+
+/// A cylinder of which half a pixel beyond its seam is seen, between the centres of pixels: the seam is a trim curve,
+/// and the outline runs beyond it.
+#[test]
+fn an_outline_close_beyond_a_seam_is_a_line() {
+    let model = shapes::cylinder();
+    let (radius, height) = shapes::CYLINDER;
+    // the axis is in the middle of the picture: the outlines at 80 ± 31.2 px, the seam at 110.7 px
+    let (round_px, beyond_px) = (31.2_f64, 0.5);
+    let beyond = (1.0 - beyond_px / round_px).acos();
+    let from = DVec2::from_angle(beyond - FRAC_PI_2).extend(0.0);
+    let projection = Projection::Orthographic { height: f64::from(SIZE.1) * radius / round_px };
+    let camera = Camera { projection, ..Camera::around(model.control_bounds(), from, DVec3::Z, 0.6, SIZE) };
+    let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
+    let picture = draw(&model, with(settings), &camera);
+    let sides = [beyond, beyond - PI].map(|angle| (DVec2::from_angle(angle) * radius).extend(0.0));
+    let along = |k: u32| DVec3::Z * (height * f64::from(k) / 400.0);
+    let outline = sides.into_iter().flat_map(|side| (0..=400).map(move |k| side + along(k)));
+    let outline: Vec<DVec2> = outline.map(|p| camera.project(p).unwrap().0).collect();
+    assert!((outline[0].x - 111.2).abs() < 1e-6, "{}", outline[0]);
+    assert_eq!(faults_of_outline(&picture, &outline), (0, 0));
 }
 
 /// Behind the ball each pixel sees another patch of a floor, so there are many places beside a pixel of the outline.
@@ -170,7 +216,7 @@ fn an_outline_before_many_patches_is_whole() {
     let points = (0..=SPANS).flat_map(|j| (0..=SPANS).map(move |i| (i, j)));
     let points = points.map(|(i, j)| DVec4::new(at(i), at(j), 1.3 * ball.min.z, 1.0)).collect();
     let floor = Surface::new((1, 1), knots.clone(), knots, points).unwrap();
-    let face = Face { id: 77, surface: floor, loops: Vec::new(), ..model.parts[0].faces[0].clone() };
+    let face = Face { id: 77, kind: SurfaceKind::Plane, surface: floor, ..model.parts[0].faces[0].clone() };
     let floor = shapes::one("floor", false, vec![face]);
     model.parts.extend(floor.parts);
     model.instances.push(Instance { part: 1, ..floor.instances[0].clone() });
