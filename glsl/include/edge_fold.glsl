@@ -81,7 +81,7 @@ bool reaches(FaceInstance fi, Face face, uint patch_instance, Patch patch_, vec2
 
 // A pixel's patch; x is 0 where it sees none.
 uvec2 patch_seen(ivec2 at) {
-    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(frame.size)))) return uvec2(0u);
+    if (!is_in_picture(at)) return uvec2(0u);
     uvec2 seen = imageLoad(visibility, at).xy;
     if (SOLIDS_HAVE_PATCHES && sees_nothing(seen.x)) seen = imageLoad(meshes_and_solids, at).xy;
     if (SOLIDS_HAVE_PATCHES && sees_operand(seen.x)) {

@@ -1,5 +1,5 @@
-// The mesh of a boundary operand's triangle. Needs boundary_operands.glsl and the buffer `OperandMesh operand_meshes[]`,
-// which is in the order of the triangles.
+// The mesh of a boundary operand's triangle. Needs boundary_operands.glsl, and `OperandMesh operand_meshes[]` in the
+// order of the triangles.
 #ifndef TRIANGLE_MESH_GLSL
 #define TRIANGLE_MESH_GLSL
 

@@ -36,8 +36,8 @@ impl Track {
         Self { curves, samples }
     }
 
-    /// `(u, v)` of the track's point next to `p`, in the space of the part; `None` where all curves are left out. `sheet`
-    /// is that of [`Track::new`].
+    /// `(u, v)` of the track's point next to `p`, part coordinates; `None` where all curves are left out. `sheet` is that
+    /// of [`Track::new`].
     pub fn place(&self, sheet: &Sheet<'_>, p: DVec3) -> Option<DVec2> {
         let nearest = self.samples.iter().min_by(|a, b| a.2.distance_squared(p).total_cmp(&b.2.distance_squared(p)))?;
         let (curve, mut t) = (&self.curves[nearest.0], nearest.1);
