@@ -4,7 +4,7 @@
 //! ```text
 //!   math ◀─ spline ◀─ model ◀─ trim
 //!                 csg ◀┘ ▲ ▲     ▲
-//!       edges, silhouette ┘ └─────┴── construct         measure uses all but csg and construct
+//!       edges, silhouette ┘ └─────┴── construct         measure uses edges, trim, and what these use
 //! ```
 //!
 //! [`model`] is the data that a renderer draws; [`spline`] and [`trim`] evaluate it; [`edges`] finds where its faces
