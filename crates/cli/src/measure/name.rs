@@ -55,7 +55,7 @@ impl Number {
 
 /// A whole number above 0.
 fn counted<T: FromStr + PartialOrd + Default>(text: &str) -> Option<T> {
-    text.parse().ok().filter(|number| *number > T::default())
+    text.parse::<T>().ok().filter(|number| *number > T::default())
 }
 
 /// `N[@P]`.
