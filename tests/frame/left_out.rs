@@ -22,7 +22,8 @@ fn what_is_left_out_is_as_if_the_scene_had_it_not() {
         let scene = SceneSettings {
             smooth: Smooth::Borders,
             ambient: Some(0.1 * model.control_bounds().diagonal()),
-            edges: Some(EdgeSettings::default()),
+            // of a height of 1080: a pixel here
+            edges: Some(EdgeSettings { width: 9.0, thin_width: 9.0, ..EdgeSettings::default() }),
             ..SceneSettings::default()
         };
         let mut renderer = watched_with(&model, scene);
