@@ -41,6 +41,7 @@ use crate::bindings::Primitives;
 use crate::gpu::{
     Access, Attachment, Buffer, Commands, Image, Load, ReadBack, Resource, TexelBuffer, Timestamps, barrier,
 };
+use crate::picture::Effects;
 use crate::scene::Scene;
 use antialiasing::samples::Scopes;
 use capacities::Capacities;
@@ -116,6 +117,8 @@ pub(crate) struct Frame<'a> {
     pub sun_parts: Option<&'a TexelBuffer>,
     pub counters: &'a ReadBack,
     pub colour: &'a [Attachment<'a>],
+    /// Effects of the scene that are not drawn.
+    pub without: Effects,
     /// The background as the colour target stores it; unused if the target's colours stay.
     pub background: [f32; 4],
     pub depth: Option<Attachment<'a>>,
@@ -131,6 +134,11 @@ impl<'a> Frame<'a> {
     /// The trim test's resources, in its order; empty if no patch is trimmed.
     fn trim_test(&self) -> Vec<Resource<'a>> {
         self.stages.trim.as_ref().map_or_else(Vec::new, |trim| trim.test(self))
+    }
+
+    /// The stage of lines, unless the frame leaves them out.
+    fn edges(&self) -> Option<&'a edges::EdgeStage> {
+        self.stages.edges.as_ref().filter(|_| !self.without.lines)
     }
 
     /// The listed patch instances.
@@ -181,7 +189,7 @@ impl Frame<'_> {
         if self.numbers.is_some() {
             times.scope(cmd, "numbers", || self.stages.shading.numbers(self, cmd));
         }
-        if let Some(edges) = &self.stages.edges {
+        if let Some(edges) = self.edges() {
             times.scope(cmd, "lines", || edges.draw(self, cmd));
         }
     }
@@ -196,7 +204,7 @@ impl Frame<'_> {
         if self.counts.patch_instances > 0 {
             times.scope(cmd, "tessellation", || stages.tessellation.record(self, cmd));
         }
-        if let Some(edges) = &stages.edges {
+        if let Some(edges) = self.edges() {
             times.scope(cmd, "edges", || edges.divide(self, cmd));
         }
         #[cfg(feature = "baselines")]
@@ -253,11 +261,11 @@ impl Frame<'_> {
         let behind = stages.transparency.as_ref().and_then(|layers| layers.behind_layers());
         let mut written = Access::COLOUR_WRITE;
         if let Some(resolved) = behind.or(stages.unmixed()) {
-            if let Some(contact) = &stages.contact {
+            if let Some(contact) = stages.contact.as_ref().filter(|_| !self.without.ambient) {
                 times.scope(cmd, "ambient", || contact.record(self, cmd, resolved));
                 written = Access::COMPUTE_WRITE;
             }
-            if let Some(smooth_borders) = &stages.smooth_borders {
+            if let Some(smooth_borders) = stages.smooth_borders.as_ref().filter(|_| !self.without.borders) {
                 let test = self.trim_test();
                 times.scope(cmd, "borders", || smooth_borders.record(self, cmd, resolved, written, &test));
                 written = Access::COMPUTE_WRITE;

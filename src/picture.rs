@@ -1,11 +1,13 @@
 //! A frame's settings, images and statistics.
 
 mod edges;
+mod effects;
 mod samples;
 mod style;
 
 pub(crate) use edges::LineStyle;
 pub use edges::{BadEdges, EdgeChoice, EdgeSettings, TangentEdges, UnknownEdges};
+pub use effects::Effects;
 pub use samples::{Samples, Smooth, UnknownSamples, UnknownSmooth};
 pub use style::{Style, UnknownStyle};
 
@@ -26,6 +28,9 @@ pub struct FrameSettings {
     /// The largest curvature on the scale of styles that show it, in 1 / units of the model; beyond it colours stay the
     /// same. Finite and above 0.
     pub curvature_range: f64,
+    /// Effects of the scene that this frame leaves out. The picture is that of a scene without them, except that
+    /// colours above 1 are cut off as with them.
+    pub without: Effects,
     /// How finely patches are divided.
     pub levels: Levels,
     /// Record every pass in every frame, for measurements. Otherwise a frame reuses results of the previous frame,
@@ -51,6 +56,7 @@ impl Default for FrameSettings {
             background: Some([1.0, 1.0, 1.0, 1.0]),
             style: Style::Shaded,
             curvature_range: 1.0,
+            without: Effects::NONE,
             levels: Levels::Bound,
             all_passes: false,
         }

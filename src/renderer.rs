@@ -309,6 +309,7 @@ impl Renderer {
             sun_parts: slot.centres.sun_parts(),
             counters: &slot.counters,
             colour: &colour,
+            without: input.settings.without,
             background: constants::background(input, &self.formats),
             depth,
             thickness: targets.thickness.map(|image| Attachment { image, load: Load::ColourF32([0.0; 4]) }),

@@ -13,6 +13,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("construct", &["math", "spline", "model", "trim"]),
     ("edges", &["math", "silhouette", "spline", "trim", "model"]),
     ("silhouette", &["math", "spline"]),
+    // with "describe" and "session" for the viewer's module of that name
+    ("measure", &["describe", "edges", "math", "model", "session", "spline", "trim"]),
     ("csg", &[]),
     // selvedge-io
     ("brep", &["math", "spline", "trim", "model"]),
@@ -24,6 +26,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // selvedge-viewer: without a window
     ("navigation", &[]),
     ("pacing", &[]),
+    ("desktop", &[]),
     ("watch", &[]),
     ("session", &[]), // also the crate of that name, for which Cargo enforces it
     ("settings", &["navigation"]),
@@ -31,11 +34,22 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("pick", &["session"]),
     ("view", &["navigation", "pacing", "pick"]),
     ("describe", &["session", "settings"]),
-    ("measure", &["describe", "session"]),
     ("panels", &["commands", "describe", "measure", "navigation", "pick", "session", "settings", "view"]),
     (
         "window",
-        &["commands", "describe", "measure", "navigation", "panels", "pick", "session", "settings", "view", "watch"],
+        &[
+            "commands",
+            "describe",
+            "desktop",
+            "measure",
+            "navigation",
+            "panels",
+            "pick",
+            "session",
+            "settings",
+            "view",
+            "watch",
+        ],
     ),
     // the engine: without a GPU
     ("picture", &["baselines", "model"]),

@@ -4,11 +4,10 @@
 #define AMBIENT_GLSL
 
 #include "eye_ray.glsl"
-
-bool in_picture(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(frame.size))); }
+#include "in_picture.glsl"
 
 // Depth of a pixel; UNSEEN outside the picture.
-float depth_beside(ivec2 at) { return in_picture(at) ? depth_at(at) : UNSEEN; }
+float depth_beside(ivec2 at) { return is_in_picture(at) ? depth_at(at) : UNSEEN; }
 
 // The point visible in a pixel, in model axes.
 vec3 point_at(ivec2 at, float depth) {

@@ -113,7 +113,9 @@ float depth_at(Sheet s, vec2 pixel) {
         vec2 step_;
         if (newton_step(pixels_along(q, qu, qv), miss, s.patch_, step_)) uv -= step_;
     }
-    bool is = length(miss) <= ON_PIXEL_PX && is_there(s.fi, s.face, s.patch_instance, s.patch_, s.middle + uv);
+    // a paraboloid also meets the ray behind the eye
+    bool is = q.w > 0.0 && length(miss) <= ON_PIXEL_PX;
+    is = is && is_there(s.fi, s.face, s.patch_instance, s.patch_, s.middle + uv);
 #ifdef WITHIN_VOLUME
     is = is && in_volume(q, ON_PX);
 #endif

@@ -76,8 +76,7 @@ bool is_covered(EdgePoint e, ivec2 at) {
     bool covered = false; // tested by the loop's condition, not by a `break`: see refine.glsl
     for (int k = 0; k < 5 && !covered; ++k) {
         ivec2 around = k == 4 ? at : first + ivec2(k & 1, k >> 1);
-        bool is_inside = all(greaterThanEqual(around, ivec2(0))) && all(lessThan(around, ivec2(frame.size)));
-        bool is_read = is_inside && (k == 4 || around != at);
+        bool is_read = is_in_picture(around) && (k == 4 || around != at);
         uvec2 seen = uvec2(0u);
         if (is_read) seen = imageLoad(visibility, around).xy;
         if (SCENE_HAS_MESHES_OR_SOLIDS && is_read && sees_nothing(seen.x)) {

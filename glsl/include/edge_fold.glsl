@@ -39,6 +39,7 @@ layout(scalar, push_constant) uniform Push { float half_px; } push;
 #include "patch.glsl"
 #include "patch_place.glsl"
 #include "refine.glsl"
+#include "face_point.glsl"
 #include "visible.glsl"
 
 // Of the face whose fold is looked at.
@@ -61,18 +62,26 @@ const float SAME_PLACE = 0.05;
 // hundredth of a pixel before it: this share of the way back, of which the picture shows the square.
 const float BEFORE_FOLD = 1.0 / 16.0;
 
-// Whether a face reaches a fold, of its domain, where a pixel beside it sees the face.
-bool reaches(FaceInstance fi, Face face, vec2 fold, vec2 seen) {
-    vec2 place = mix(fold, seen, BEFORE_FOLD);
+// Whether a face reaches a fold, of its domain, where a pixel beside it sees the face at (u, v) of a patch. Only faces
+// without trims are marked closed: beyond the seams of others, pass `edge_line` draws the folds.
+bool reaches(FaceInstance fi, Face face, uint patch_instance, Patch patch_, vec2 fold, vec2 uv) {
+    vec2 place = mix(fold, patch_.domain.xy + uv * patch_.domain.zw, BEFORE_FOLD);
     bvec2 closed = notEqual(face.flags & uvec2(FACE_CLOSED_U, FACE_CLOSED_V), uvec2(0u));
     place = mix(place, fract(place), closed);
     if (clamp(place, 0.0, 1.0) != place) return false;
-    return (face.flags & FACE_TRIMMED) == 0u || trim_inside(fi, face, place);
+    if ((face.flags & FACE_TRIMMED) == 0u) return true;
+#ifdef TRIM_BY_TABLE
+    // the table has rows only where the picture shows a patch that a trim curve crosses
+    if (!table_covers(fi.first_bin, face.strips, place)) {
+        return in_whole_patch(fi, face, patch_instance, (place - patch_.domain.xy) / patch_.domain.zw);
+    }
+#endif
+    return trim_inside(fi, face, place);
 }
 
 // A pixel's patch; x is 0 where it sees none.
 uvec2 patch_seen(ivec2 at) {
-    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(frame.size)))) return uvec2(0u);
+    if (!is_in_picture(at)) return uvec2(0u);
     uvec2 seen = imageLoad(visibility, at).xy;
     if (SOLIDS_HAVE_PATCHES && sees_nothing(seen.x)) seen = imageLoad(meshes_and_solids, at).xy;
     if (SOLIDS_HAVE_PATCHES && sees_operand(seen.x)) {
@@ -90,8 +99,10 @@ bool is_one_place(uvec2 a, uvec2 b) {
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     uvec2 own = patch_seen(at);
-    uvec2 found[3] = uvec2[](own, uvec2(0u), uvec2(0u));
-    ivec2 places[3] = ivec2[](at, at, at);
+    uvec2 found[9];
+    ivec2 places[9];
+    found[0] = own;
+    places[0] = at;
     uint count = own.x != 0u ? 1u : 0u;
     bool alone = true;
     for (int k = 0; k < 9; ++k) {
@@ -100,7 +111,7 @@ void main() {
         bool known = is_one_place(seen, own);
         alone = alone && known;
         for (uint i = 0u; i < count; ++i) known = known || is_one_place(seen, found[i]);
-        if (known || seen.x == 0u || count >= 3u) continue;
+        if (known || seen.x == 0u) continue;
         found[count] = seen;
         places[count] = beside;
         ++count;
@@ -122,7 +133,7 @@ void main() {
         float covered = line_coverage(length(s.miss), push.half_px);
         uint steps = uint(covered * LINE_STEPS + 0.5);
         if (steps == 0u || distance(place, vec2(places[i]) + 0.5) > FOLD_REACH_PX) continue;
-        if (!reaches(fi, face, at_fold, patch_.domain.xy + uv * patch_.domain.zw)) continue;
+        if (!reaches(fi, face, patch_instance, patch_, at_fold, uv)) continue;
         own_face = fi;
         if (!is_seen(EdgePoint(place, seen_from_eye(s.q), vec2(FOLD_SHEET_PX, 0.0)), at)) continue;
         imageAtomicMax(lines, at, LINE_SEEN | steps << LINE_COVERAGE | LINE_FOLD);

@@ -5,8 +5,8 @@
 //        │            its point nearest to the centre ─▶ parameter ─▶ the exact point of the edge ─▶ seen, or hidden
 //        · pixel
 //
-// This pass also draws the folds of curved faces beside their smooth edges. Pass `edge_fold` draws the folds of faces that
-// a pixel's centre sees. The trim test is that of one way (trim.glsl).
+// This pass also draws the folds of curved faces beside their smooth edges and seams. Pass `edge_fold` draws the folds
+// of faces that a pixel's centre sees. The trim test is that of one way (trim.glsl).
 #include "scene.glsl"
 #include "view.glsl"
 #include "edges.glsl"
@@ -139,8 +139,8 @@ bool is_near_own(EdgePoint e) {
     return near;
 }
 
-// The fold of a curved face so close to the smooth edge `e` that no pixel's centre may see the face between them: the
-// share of the pixel that its line covers, and its point next to the pixel.
+// The fold of a curved face so close to the smooth edge or seam `e` that no pixel's centre may see the face between
+// them: the share of the pixel that its line covers, and its point next to the pixel.
 float fold_beside(vec4 face_beside, vec4 ends, float t, EdgePoint e, View view, out EdgePoint point) {
     Face face = face_at(uint(face_beside.x));
     ivec2 count = ivec2(face.count_u, face.count_v);

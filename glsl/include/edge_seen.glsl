@@ -29,6 +29,7 @@ layout(constant_id = 29) const bool SCENE_HAS_SOLIDS = false;
 
 #include "solids.glsl"
 #include "boundary_operands.glsl"
+#include "in_picture.glsl"
 
 // A point of an edge: its place in the picture, and relative to the eye (right, down, ahead).
 struct EdgePoint {
@@ -94,7 +95,7 @@ bool is_before_mesh(EdgePoint e, uvec2 seen) {
 
 // Depth of the mesh or solid in a pixel; `none` if its word differs from `like`.
 float solid_depth(ivec2 at, uint like, float none) {
-    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(frame.size)))) return none;
+    if (!is_in_picture(at)) return none;
     uvec2 seen = imageLoad(visibility, at).xy;
     if (sees_nothing(seen.x)) seen = imageLoad(meshes_and_solids, at).xy;
     return seen.x == like ? uintBitsToFloat(seen.y) : none;
@@ -109,16 +110,11 @@ bool is_before_side(EdgePoint e, vec4 plane) {
     return (dot(plane.xyz, p) - plane.w) * sign(towards) >= -POINT_ROUNDING * e.place.z;
 }
 
+#include "triangle_mesh.glsl"
+
 // A triangle of an operand.
 bool is_before_operand(EdgePoint e, uint triangle) {
-    uint from = 0u;
-    uint end = uint(operand_meshes.length());
-    while (end - from > 1u) {
-        uint middle = (from + end) / 2u;
-        if (operand_meshes[middle].first_triangle <= triangle) from = middle;
-        else end = middle;
-    }
-    View view = view_at(operand_meshes[from].instance);
+    View view = view_at(mesh_of(triangle).instance);
     vec3 a = operand_positions[operand_triangles[3u * triangle]];
     vec3 ab = operand_positions[operand_triangles[3u * triangle + 1u]] - a;
     vec3 ac = operand_positions[operand_triangles[3u * triangle + 2u]] - a;

@@ -8,6 +8,8 @@
 #ifndef GAP_GATHER_GLSL
 #define GAP_GATHER_GLSL
 
+#include "in_picture.glsl"
+
 // Distance to which neighbours are searched; WIDE_BAND_PX for an eye within a face's solid.
 const uint BAND_PX = 4u;
 // Distance across a fold, in widths of the patch.
@@ -21,8 +23,6 @@ bool counts(uint word) {
     return (face_at(face_instance_at(face_instance_of(seen_patch_instance(word))).face).flags & FACE_SOLID) == 0u;
 }
 
-bool in_picture(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(frame.size))); }
-
 // Whether at least three in four pixels around this one show the back of a solid's face: then the eye is within the
 // solid.
 bool among_backs(ivec2 at) {
@@ -32,7 +32,7 @@ bool among_backs(ivec2 at) {
         ivec2 beside = at;
         for (uint steps = 0u; steps < WIDE_BAND_PX; ++steps) {
             beside += step_;
-            if (!in_picture(beside)) break;
+            if (!is_in_picture(beside)) break;
             more += counts(imageLoad(visibility, beside).x) ? -3 : 1;
         }
     }
@@ -75,7 +75,7 @@ uint first_that_counts(ivec2 at, ivec2 step_, uint band, bool within, out ivec2 
     uint found = 0u;
     for (uint steps = 1u; steps <= band && found == 0u; ++steps) {
         beside += step_;
-        if (!in_picture(beside)) break;
+        if (!is_in_picture(beside)) break;
         seen = imageLoad(visibility, beside).xy;
         if (within || counts(seen.x)) found = steps;
     }

@@ -6,6 +6,7 @@
 #define SIDES_GLSL
 
 #include "triangle_depth.glsl"
+#include "triangle_mesh.glsl"
 
 // Whether some leaf is a boundary operand; the code for boundary operands is compiled in only then.
 layout(constant_id = 13) const bool SOLIDS_HAVE_BOUNDARY_OPERANDS = true;
@@ -15,17 +16,6 @@ struct Side {
     vec3 n; // normal of the side, model directions, not of unit length
     uint surface; // number of its surface, or OWN_PLANE and the triangle's number
 };
-
-OperandMesh mesh_of(uint triangle) {
-    uint from = 0u;
-    uint end = uint(operand_meshes.length());
-    while (end - from > 1u) {
-        uint middle = (from + end) / 2u;
-        if (operand_meshes[middle].first_triangle <= triangle) from = middle;
-        else end = middle;
-    }
-    return operand_meshes[from];
-}
 
 vec3 across_side(uint side, float t, Ray ray) {
     uint i = side >> SIDE_SHIFT;

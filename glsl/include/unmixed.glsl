@@ -3,6 +3,8 @@
 #ifndef UNMIXED_GLSL
 #define UNMIXED_GLSL
 
+#include "in_picture.glsl"
+
 // Linear, multiplied by its opacity.
 vec4 unmixed(vec4 seen) {
     if (seen.a < UNSEEN) return vec4(seen.rgb, 1.0);
@@ -11,9 +13,5 @@ vec4 unmixed(vec4 seen) {
 }
 
 vec4 unmixed_at(ivec2 at) { return unmixed(imageLoad(resolved, at)); }
-
-bool is_in_picture(ivec2 at) {
-    return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(frame.size)));
-}
 
 #endif

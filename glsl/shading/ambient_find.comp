@@ -81,7 +81,7 @@ float hidden_at(ivec2 at, vec3 p, vec3 n, vec3 v, float reach_px) {
 
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (!in_picture(at)) return;
+    if (!is_in_picture(at)) return;
     float depth = depth_at(at);
     float hidden = 0.0;
     int x = 0;

@@ -33,7 +33,7 @@ float slope(ivec2 at, ivec2 axis, float depth) {
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     bool shows_light = frame.style == STYLE_SHADED || frame.style == STYLE_CLAY;
-    if (!in_picture(at) || !shows_light) return;
+    if (!is_in_picture(at) || !shows_light) return;
     vec2 own = imageLoad(ambient, at).xy;
     if (own.y >= UNSEEN) return;
     vec2 slopes = vec2(slope(at, ivec2(1, 0), own.y), slope(at, ivec2(0, 1), own.y));
@@ -41,7 +41,7 @@ void main() {
     float weights = 0.0;
     for (int i = 0; i < 16; ++i) {
         ivec2 way = ivec2(i & 3, i >> 2) - 2;
-        if (!in_picture(at + way)) continue;
+        if (!is_in_picture(at + way)) continue;
         vec2 there = imageLoad(ambient, at + way).xy;
         float off = abs(there.y - own.y - dot(slopes, vec2(way)));
         float weight = max(1.0 - off / (OFF * push.radius), 0.0);

@@ -13,7 +13,7 @@ use super::data::SceneData;
 use super::deep_zoom::KnownEdges;
 use super::fold_seeds::{PartFaces, seeds};
 use crate::abi;
-use crate::model::{EdgeKind, Edges, Model, Part};
+use crate::model::{Edge, EdgeKind, Edges, Model, Part};
 use crate::picture::{EdgeChoice, EdgeSettings, LineStyle};
 use glam::{DAffine3, DVec3, DVec4};
 use rayon::prelude::*;
@@ -140,7 +140,7 @@ impl EdgeData {
         let beside = PartFaces { part: &of.model.parts[part], first_face, faces: of.faces, patches: of.patches };
         for (edge, number) in edges.edges.iter().zip(number..) {
             let style = self.settings.style(edge.kind);
-            let may_fold = self.settings.silhouettes && edge.kind == EdgeKind::Smooth;
+            let may_fold = self.settings.silhouettes && goes_on(edge);
             let (count, texels) = if may_fold { seeds(edge, edges.reach, &beside) } else { Default::default() };
             if style.is_none() && count == 0 {
                 continue;
@@ -188,6 +188,16 @@ impl EdgeData {
         self.pieces.push(abi::EdgePiece { first, degree: points.len() as u32 - 1, edge });
         self.points.extend(points.iter().map(|p| (p.truncate() - origin * p.w).extend(p.w).as_vec4().to_array()));
         self.pieces.len() as u32 - 1
+    }
+}
+
+/// A curved surface goes on across the edge, and its fold may lie so close to the edge that no pixel's centre sees the
+/// face between them. Across the seam of a face without trims `edge_fold` itself goes on.
+fn goes_on(edge: &Edge) -> bool {
+    match edge.kind {
+        EdgeKind::Smooth => true,
+        EdgeKind::Seam => edge.uses.iter().any(|used| used.trim_loop.is_some()),
+        EdgeKind::Sharp | EdgeKind::Border => false,
     }
 }
 

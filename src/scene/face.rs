@@ -10,7 +10,7 @@ use super::flatten::flattened;
 use super::sub_patches::{SubPatches, sub_patches};
 use crate::abi;
 use crate::abi::Side;
-use crate::model::{Face, SurfaceKind, TrimLoop};
+use crate::model::{Face, TrimLoop};
 use crate::picture::TakenWay;
 use crate::spline::{Bezier, Control, Patch, PatchGrid, SurfacePatch};
 use crate::trim::{ExactTrim, LoopIndex, RectSide, chord_bend};
@@ -42,12 +42,6 @@ pub(super) struct FaceData {
     pub pieces: bool,
     /// Some patch has a fine net.
     pub fine: bool,
-}
-
-/// Whether one equation holds for all patches of such a surface.
-fn is_elementary(kind: SurfaceKind) -> bool {
-    use SurfaceKind::{Cone, Cylinder, Plane, Sphere, Torus};
-    matches!(kind, Plane | Cylinder | Cone | Sphere | Torus)
 }
 
 /// The kind of part that a face belongs to.
@@ -125,7 +119,7 @@ impl FaceData {
             },
             edit: None,
             rational: !face.surface.is_polynomial(),
-            pieces: flat.patches.len() > 1 && !is_elementary(face.kind),
+            pieces: flat.patches.len() > 1 && !face.kind.is_elementary(),
             fine: false,
         };
         let flag = |on: bool, bit: u32| if on { bit } else { 0 };

@@ -1,5 +1,5 @@
-//! Where curved faces begin beside smooth edges: from there pass `edge_line` finds folds that are closer to the edge
-//! than pixels are to each other.
+//! Where curved faces begin beside smooth edges and seams: from there pass `edge_line` finds folds that are closer to
+//! the edge than pixels are to each other.
 //!
 //! ```text
 //!    plane  ════════●  smooth edge      pieces of the edge ─(u, v) beside both ends, on each curved face─▶ two texels
@@ -8,15 +8,13 @@
 //! ```
 
 use crate::abi::{self, Side};
-use crate::edges::Sheet;
+use crate::edges::{Sheet, Track};
 use crate::model::{Edge, EdgeUse, Part};
-use crate::spline::{Bezier, Control};
+use crate::spline::Bezier;
 use glam::{DVec2, DVec3, DVec4};
 
 /// Of a piece: near its ends.
 const ENDS: [f64; 2] = [abi::SEED_END as f64, 1.0 - abi::SEED_END as f64];
-/// Points of each trim curve among which the one next to a place is looked for.
-const SAMPLES: u32 = 24;
 /// Of the domain: so far within the face the patch is looked for.
 const WITHIN: f64 = 1e-5;
 /// Single precision has no odd integers beyond: numbers of faces and patches are stored as such.
@@ -35,9 +33,7 @@ pub(super) struct PartFaces<'a> {
 struct Beside<'a> {
     sheet: Sheet<'a>,
     used: &'a EdgeUse,
-    curves: Vec<Bezier<DVec3>>,
-    /// Number of the curve, parameter, point.
-    samples: Vec<(usize, f64, DVec3)>,
+    track: Track,
 }
 
 impl<'a> Beside<'a> {
@@ -47,30 +43,15 @@ impl<'a> Beside<'a> {
         if sheet.plane.is_some() {
             return None;
         }
-        let curves = sheet.along(used, reach);
-        let share = |k: u32| f64::from(k) / f64::from(SAMPLES);
-        let of = |(i, c): (usize, &Bezier<DVec3>)| {
-            (0..=SAMPLES).map(|k| (i, share(k), sheet.at(c, share(k)))).collect::<Vec<_>>()
-        };
-        let samples = curves.iter().enumerate().flat_map(of).collect();
-        Some(Self { sheet, used, curves, samples })
+        let track = Track::new(&sheet, used, reach);
+        Some(Self { sheet, used, track })
     }
 
     /// (u, v) of the trim curve next to a point, in shares of the domain.
     fn place(&self, p: DVec3) -> Option<DVec2> {
-        let nearest = self.samples.iter().min_by(|a, b| a.2.distance_squared(p).total_cmp(&b.2.distance_squared(p)))?;
-        let (curve, mut t) = (&self.curves[nearest.0], nearest.1);
-        for _ in 0..4 {
-            let (h, dh) = curve.jet(t);
-            let uv = h.point();
-            let slope = (dh.truncate() - uv * dh.z) / h.z;
-            let jet = self.sheet.grid.jet(uv.x, uv.y);
-            let along = jet.du * slope.x + jet.dv * slope.y;
-            let step = (p - jet.point).dot(along) / along.length_squared();
-            t = if step.is_finite() { (t + step).clamp(0.0, 1.0) } else { t };
-        }
+        let place = self.track.place(&self.sheet, p)?;
         let ((u0, u1), (v0, v1)) = self.sheet.face.surface.domain();
-        Some((curve.point(t) - DVec2::new(u0, v0)) / DVec2::new(u1 - u0, v1 - v0))
+        Some((place - DVec2::new(u0, v0)) / DVec2::new(u1 - u0, v1 - v0))
     }
 
     /// The texels of a piece.
@@ -97,7 +78,7 @@ impl<'a> Beside<'a> {
     }
 }
 
-/// Texels for the pieces of a smooth edge, as many for each: how many faces, and the texels of each piece.
+/// Texels for the pieces of a smooth edge or a seam, as many for each: how many faces, and the texels of each piece.
 pub(super) fn seeds(edge: &Edge, reach: f64, of: &PartFaces<'_>) -> (u32, Vec<Vec<[f32; 4]>>) {
     let most = abi::EDGE_MOST_SEEDS as usize;
     let mut count = 0;

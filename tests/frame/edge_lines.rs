@@ -6,14 +6,15 @@ use glam::{DAffine3, DVec2, DVec3, DVec4};
 use selvedge::construct::{Chain, extrude, extruded_solid};
 use selvedge::edges::flatten::{Flattening, LinePoint};
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
-use selvedge::model::{Camera, EdgeKind, Face, Model, Projection};
+use selvedge::model::{Camera, EdgeKind, Face, Instance, Model, Projection, SurfaceKind};
 use selvedge::picture::{
-    BadEdges, EdgeChoice, EdgeSettings, FrameSettings, Outputs, Picture, Samples, SceneSettings, TangentEdges,
+    BadEdges, EdgeChoice, EdgeSettings, FrameSettings, Outputs, Picture, Samples, SceneSettings, TangentEdges, TrimWay,
 };
 use selvedge::renderer::RenderError;
-use selvedge::spline::BSpline;
+use selvedge::spline::{BSpline, Surface};
 use selvedge_check::drawing::{DrawingSettings, LineImage, judge_lines};
 use selvedge_check::{EdgeTracer, Tracer, Visibility};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 const SIZE: (u32, u32) = (160, 120);
 const ALL: Outputs = Outputs { edge: true, part: true, instance: true, ..Outputs::ALL };
@@ -75,6 +76,17 @@ fn faults(model: &Model, camera: &Camera, picture: &Picture) -> (usize, usize, u
     (seen.count(), bare, stray)
 }
 
+/// Points of an outline, a pixel or more within the picture, without a line pixel within half its width and half a
+/// pixel; and line pixels that are farther than that from the outline.
+fn faults_of_outline(picture: &Picture, outline: &[DVec2]) -> (usize, usize) {
+    let marked: Vec<DVec2> = centres(picture).map(|(at, _)| at).collect();
+    let last = DVec2::new(f64::from(picture.size.0), f64::from(picture.size.1)) - 1.0;
+    let inside = |p: &&DVec2| p.cmpge(DVec2::ONE).all() && p.cmple(last).all();
+    let near = |all: &[DVec2], at: DVec2| all.iter().any(|p| p.distance(at) <= HALF + 0.5);
+    let bare = outline.iter().filter(inside).filter(|p| !near(&marked, **p)).count();
+    (bare, marked.iter().filter(|at| !near(outline, **at)).count())
+}
+
 /// Shapes with edges of every kind, some of them placed twice, from afar and in a parallel view.
 #[test]
 fn lines_are_where_exact_rays_see_edges() {
@@ -115,14 +127,13 @@ fn an_edge_close_behind_a_grazing_face_is_hidden() {
     assert_eq!((bare, stray), (0, 0), "{} line pixels of the box behind", boxes.len());
 }
 
-/// The outline of a ball is a circle in space, and the lines lie on it: at the exact fold, all around.
-#[test]
-fn a_balls_outline_is_where_it_folds() {
-    let model = shapes::sphere();
-    let camera = perspective(&model, SIZE);
+/// The outline of a ball is a circle in space, and the lines lie on it: at the exact fold, all around. `model` has the
+/// ball of [`shapes::sphere`] at the origin, and nothing else that folds.
+fn assert_the_balls_outline(model: &Model, camera: &Camera) {
     let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
-    let picture = draw(&model, with(settings), &camera);
-    let radius = 0.5 * (model.control_bounds().max.z - model.control_bounds().min.z);
+    let picture = draw(model, with(settings), camera);
+    let ball = shapes::sphere().control_bounds();
+    let radius = 0.5 * (ball.max.z - ball.min.z);
     let away = camera.eye.length();
     let (axis, middle) = (camera.eye / away, camera.eye * (radius * radius / (away * away)));
     let round = radius * (1.0 - radius * radius / (away * away)).sqrt();
@@ -130,15 +141,89 @@ fn a_balls_outline_is_where_it_folds() {
     let up = axis.cross(right);
     let outline: Vec<DVec2> = (0..4000)
         .map(|k| {
-            let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 4000.0).sin_cos();
+            let (sin, cos) = (f64::from(k) * TAU / 4000.0).sin_cos();
             camera.project(middle + (right * cos + up * sin) * round).unwrap().0
         })
         .collect();
-    let marked: Vec<(DVec2, u32)> = centres(&picture).collect();
-    assert!(marked.iter().all(|(_, edge)| *edge == OUTLINE));
-    let stray = marked.iter().filter(|(at, _)| !outline.iter().any(|p| p.distance(*at) <= HALF + 0.5)).count();
-    let bare = outline.iter().filter(|p| !marked.iter().any(|(at, _)| at.distance(**p) <= HALF + 0.5)).count();
-    assert_eq!((bare, stray), (0, 0), "of {} pixels", marked.len());
+    assert!(centres(&picture).all(|(_, edge)| edge == OUTLINE));
+    assert_eq!(faults_of_outline(&picture, &outline), (0, 0), "of {} pixels", centres(&picture).count());
+}
+
+#[test]
+fn a_balls_outline_is_where_it_folds() {
+    let model = shapes::sphere();
+    assert_the_balls_outline(&model, &perspective(&model, SIZE));
+}
+
+/// A ring that is trimmed along its seams, in a view that shows neither them nor a patch that they cross: the trim
+/// table has no rows there.
+#[test]
+fn an_outline_away_from_all_trim_curves_is_a_line() {
+    let mut model = shapes::torus();
+    model.parts[0].faces[0].loops = vec![shapes::rectangle(DVec2::ZERO, DVec2::splat(TAU))];
+    let round = shapes::TORUS_RADII.0 - shapes::TORUS_RADII.1;
+    let at = |angle: f64| DVec2::from_angle(angle).extend(0.0) * round;
+    // three eighths of a turn from the seam across the ring, and half a turn from the one along it
+    let target = at(0.375 * TAU);
+    let camera = Camera {
+        eye: target + DVec3::Z * 10.0,
+        target,
+        up: DVec3::Y,
+        projection: Projection::Orthographic { height: 1.5 },
+        depth_range: (1.0, 20.0),
+        size: SIZE,
+    };
+    let outline: Vec<DVec2> = (0..8000).map(|k| camera.project(at(f64::from(k) * TAU / 8000.0)).unwrap().0).collect();
+    for trim in [TrimWay::Table, TrimWay::Exact] {
+        let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
+        let picture = draw(&model, SceneSettings { trim, ..with(settings) }, &camera);
+        assert_eq!(faults_of_outline(&picture, &outline), (0, 0), "{trim:?}");
+        assert!(centres(&picture).count() > 100, "{trim:?}");
+    }
+}
+
+/// A cylinder of which half a pixel beyond its seam is seen, between the centres of pixels: the seam is a trim curve,
+/// and the outline runs beyond it.
+#[test]
+fn an_outline_close_beyond_a_seam_is_a_line() {
+    let model = shapes::cylinder();
+    let (radius, height) = shapes::CYLINDER;
+    // the axis is in the middle of the picture: the outlines at 80 ± 31.2 px, the seam at 110.7 px
+    let (round_px, beyond_px) = (31.2_f64, 0.5);
+    let beyond = (1.0 - beyond_px / round_px).acos();
+    let from = DVec2::from_angle(beyond - FRAC_PI_2).extend(0.0);
+    let projection = Projection::Orthographic { height: f64::from(SIZE.1) * radius / round_px };
+    let camera = Camera { projection, ..Camera::around(model.control_bounds(), from, DVec3::Z, 0.6, SIZE) };
+    let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
+    let picture = draw(&model, with(settings), &camera);
+    let sides = [beyond, beyond - PI].map(|angle| (DVec2::from_angle(angle) * radius).extend(0.0));
+    let along = |k: u32| DVec3::Z * (height * f64::from(k) / 400.0);
+    let outline = sides.into_iter().flat_map(|side| (0..=400).map(move |k| side + along(k)));
+    let outline: Vec<DVec2> = outline.map(|p| camera.project(p).unwrap().0).collect();
+    assert!((outline[0].x - 111.2).abs() < 1e-6, "{}", outline[0]);
+    assert_eq!(faults_of_outline(&picture, &outline), (0, 0));
+}
+
+/// Behind the ball each pixel sees another patch of a floor, so there are many places beside a pixel of the outline.
+#[test]
+fn an_outline_before_many_patches_is_whole() {
+    const SPANS: usize = 96;
+    let mut model = shapes::sphere();
+    let ball = model.control_bounds();
+    let knots: Vec<f64> = [0].into_iter().chain(0..=SPANS).chain([SPANS]).map(|k| k as f64).collect();
+    let reach = 12.0 * ball.max.z;
+    let at = |k: usize| (2.0 * k as f64 / SPANS as f64 - 1.0) * reach;
+    let points = (0..=SPANS).flat_map(|j| (0..=SPANS).map(move |i| (i, j)));
+    let points = points.map(|(i, j)| DVec4::new(at(i), at(j), 1.3 * ball.min.z, 1.0)).collect();
+    let floor = Surface::new((1, 1), knots.clone(), knots, points).unwrap();
+    let face = Face { id: 77, kind: SurfaceKind::Plane, surface: floor, ..model.parts[0].faces[0].clone() };
+    let floor = shapes::one("floor", false, vec![face]);
+    model.parts.extend(floor.parts);
+    model.instances.push(Instance { part: 1, ..floor.instances[0].clone() });
+    let from = DVec3::new(0.8, -0.6, 0.08);
+    let mut camera = Camera { eye: from * 6.0 * ball.max.z, target: DVec3::ZERO, ..perspective(&model, SIZE) };
+    camera.fit_depth(model.control_bounds());
+    assert_the_balls_outline(&model, &camera);
 }
 
 /// A block of which one edge is rounded.
@@ -186,7 +271,7 @@ fn of_wider_cylinder(fillet: &mut Face, radius: f64) {
         let place = DVec2::splat(2.0 - radius) + DVec2::from_angle(angle) * away;
         DVec4::new(place.x * w, place.y * w, 0.0, w)
     };
-    let middle = std::f64::consts::FRAC_PI_4;
+    let middle = FRAC_PI_4;
     let (from, to) = (at(middle - half, radius, 1.0), at(middle + half, radius, 1.0));
     let points = vec![from, at(middle, radius / half.cos(), half.cos()), to];
     let arc = BSpline::new(2, vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], points).unwrap();
@@ -207,7 +292,7 @@ fn a_face_that_ends_before_it_folds_has_no_outline() {
     let whole = rounded_block(radius);
     let mut trimmed = whole.clone();
     of_wider_cylinder(&mut trimmed.parts[0].faces[2], radius);
-    for model in [whole, trimmed] {
+    for (model, trim) in [(&whole, TrimWay::Table), (&trimmed, TrimWay::Table), (&trimmed, TrimWay::Exact)] {
         let id = model.parts[0].faces[2].id;
         // seen from above the top, which the fillet would fold away from by 0.1, 0.3 and 0.5 px
         for steep in [8.0, 12.0, 16.0f64] {
@@ -215,9 +300,10 @@ fn a_face_that_ends_before_it_folds_has_no_outline() {
             let camera = Camera::around(model.control_bounds(), from, DVec3::Y, 0.6, SIZE);
             let projection = Projection::Orthographic { height: model.control_bounds().diagonal() };
             let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
-            let picture = draw(&model, with(settings), &Camera { projection, ..camera });
+            let settings = SceneSettings { trim, ..with(settings) };
+            let picture = draw(model, settings, &Camera { projection, ..camera });
             assert!(picture.face.iter().filter(|face| **face == id).count() > 200);
-            assert_eq!(centres(&picture).count(), 0, "{steep} degrees");
+            assert_eq!(centres(&picture).count(), 0, "{steep} degrees, {trim:?}");
         }
     }
 }

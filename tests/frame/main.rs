@@ -27,6 +27,7 @@ mod hidden_parts;
 mod in_sight;
 mod layers;
 mod ledges;
+mod left_out;
 mod lengths;
 mod light;
 mod living;

@@ -1,29 +1,16 @@
 //! Views that need larger buffers than a scene begins with: drawn again until the picture is complete.
 
 use crate::shapes;
-use crate::support::{assert_identical, assert_silent, watched_with};
+use crate::support::{assert_identical, assert_silent, plain, watched_with};
 use crate::watched::limited;
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 use selvedge::gpu::LowerLimits;
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::{Camera, LoopAt, Model, Projection};
-use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, SolidWay, TrimWay};
+use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings, TrimWay};
 
 /// Its buffers grow with the view.
-const BY_TABLE: SceneSettings = SceneSettings {
-    trim: TrimWay::Table,
-    solids: SolidWay::Events,
-    editable: false,
-    samples: Samples::One,
-    smooth: Smooth::None,
-    ambient: None,
-    curvature: false,
-    thickness: false,
-    highlight: None,
-    sun: None,
-    edges: None,
-    solid_budget: None,
-};
+const BY_TABLE: SceneSettings = plain(TrimWay::Table);
 
 fn draw(renderer: &mut HeadlessRenderer, camera: &Camera, tolerance_px: f64) -> Picture {
     let settings = FrameSettings { tolerance_px, ..FrameSettings::default() };

@@ -6,10 +6,10 @@
 
 use crate::edges::{blocks, contrast_errors, coverage_errors, covered, root_mean_square};
 use crate::shapes;
-use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, watched_with};
+use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, render_with, watched_with};
 use crate::watched::limited;
 use selvedge::gpu::LowerLimits;
-use selvedge::model::{Camera, Model};
+use selvedge::model::Model;
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, TrimWay};
 use selvedge_check::Tracer;
 
@@ -17,13 +17,6 @@ const SIZE: (u32, u32) = (96, 72);
 
 fn settings(smooth: Smooth, trim: TrimWay) -> SceneSettings {
     SceneSettings { smooth, trim, ..SceneSettings::default() }
-}
-
-fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
-    let mut renderer = watched_with(model, settings);
-    let picture = render(&mut renderer, camera);
-    assert_silent(renderer);
-    picture
 }
 
 /// A plate with a round hole: straight and bent trims before nothing.
@@ -34,7 +27,7 @@ fn outlines_cover_what_exact_rays_say() {
     for camera in [perspective(&model, SIZE), orthographic(&model, SIZE)] {
         let truth = covered(&tracer, &camera);
         for way in TrimWay::ALL.iter().copied() {
-            let errors = |smooth| coverage_errors(&draw(&model, settings(smooth, way), &camera), &truth);
+            let errors = |smooth| coverage_errors(&render_with(&model, settings(smooth, way), &camera), &truth);
             let (rough, smooth) = (errors(Smooth::None), errors(Smooth::Borders));
             let mean = smooth.iter().map(|e| e.abs()).sum::<f64>() / smooth.len() as f64;
             let far = smooth.iter().filter(|e| e.abs() > 0.125).count();
@@ -76,7 +69,8 @@ fn borders_are_as_the_frame_sixteen_times_as_large() {
             let mut fine = watched_with(&model, settings(Smooth::None, TrimWay::Auto));
             let blocks = blocks(&mut fine, &camera);
             assert_silent(fine);
-            let errors = |smooth| contrast_errors(&draw(&model, settings(smooth, TrimWay::Auto), &camera), &blocks);
+            let errors =
+                |smooth| contrast_errors(&render_with(&model, settings(smooth, TrimWay::Auto), &camera), &blocks);
             let (rough, smooth) = (errors(Smooth::None), errors(Smooth::Borders));
             let pixels = rough.len();
             let (rough, smooth) = (root_mean_square(&rough), root_mean_square(&smooth));
@@ -95,8 +89,8 @@ fn nothing_else_changes() {
     let (mut alone, mut on_faces) = (0, 0);
     for shape in shapes::all() {
         let camera = perspective(&shape.model, SIZE);
-        let [before, after] =
-            [Smooth::None, Smooth::Borders].map(|smooth| draw(&shape.model, settings(smooth, TrimWay::Exact), &camera));
+        let [before, after] = [Smooth::None, Smooth::Borders]
+            .map(|smooth| render_with(&shape.model, settings(smooth, TrimWay::Exact), &camera));
         let same_colour = Picture { colour: before.colour.clone(), stats: before.stats.clone(), ..after.clone() };
         assert_identical(&before, &same_colour, shape.name);
         let has_creases =
@@ -174,9 +168,9 @@ fn bands_make_the_same_picture() {
         let pixels = in_bands.objects().iter().filter(|name| *name == "border pixels").count();
         assert_eq!(pixels, 2, "{}: as many lists", model.name);
         assert_silent(in_bands);
-        let whole = draw(&model, smooth, &camera);
+        let whole = render_with(&model, smooth, &camera);
         assert_identical(&whole, &banded, &model.name);
-        let rough = draw(&model, settings(Smooth::None, TrimWay::Exact), &camera);
+        let rough = render_with(&model, settings(Smooth::None, TrimWay::Exact), &camera);
         let mixed = whole.colour.iter().zip(&rough.colour).filter(|(a, b)| a != b).count();
         assert!(mixed > 200, "{}: {mixed} pixels are mixed", model.name);
     }

@@ -6,7 +6,9 @@
 
 use crate::edges::{blocks, contrast_errors, coverage_errors, covered, linear, root_mean_square};
 use crate::shapes;
-use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, watched_with};
+use crate::support::{
+    assert_identical, assert_silent, orthographic, perspective, plain, render, render_with, watched_with,
+};
 use glam::{DVec2, DVec3};
 use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, LoopAt, Model, Projection, TrimLoop};
@@ -17,31 +19,8 @@ use selvedge_check::Tracer;
 
 const SIZE: (u32, u32) = (64, 48);
 
-const SMOOTH: SceneSettings = SceneSettings { smooth: Smooth::Trims, ..plain() };
-
-const fn plain() -> SceneSettings {
-    SceneSettings {
-        trim: TrimWay::Exact,
-        solids: selvedge::picture::SolidWay::Events,
-        editable: false,
-        samples: Samples::One,
-        smooth: Smooth::None,
-        ambient: None,
-        curvature: false,
-        thickness: false,
-        highlight: None,
-        sun: None,
-        edges: None,
-        solid_budget: None,
-    }
-}
-
-fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
-    let mut renderer = watched_with(model, settings);
-    let picture = render(&mut renderer, camera);
-    assert_silent(renderer);
-    picture
-}
+const PLAIN: SceneSettings = plain(TrimWay::Exact);
+const SMOOTH: SceneSettings = SceneSettings { smooth: Smooth::Trims, ..PLAIN };
 
 /// The plate's outline, and round holes: centre and radius.
 fn holes(holes: &[(DVec2, f64)]) -> Model {
@@ -79,10 +58,10 @@ fn a_plates_borders_cover_what_exact_rays_say() {
     for (name, camera) in views(&model) {
         let truth = covered(&tracer, &camera);
         let error = |settings| {
-            let errors = coverage_errors(&draw(&model, settings, &camera), &truth);
+            let errors = coverage_errors(&render_with(&model, settings, &camera), &truth);
             (root_mean_square(&errors), errors.iter().fold(0.0f64, |a, e| a.max(e.abs())), errors.len())
         };
-        let (rough, (smooth, worst, pixels)) = (error(plain()).0, error(SMOOTH));
+        let (rough, (smooth, worst, pixels)) = (error(PLAIN).0, error(SMOOTH));
         println!("{name}: {rough:.4}, smooth {smooth:.4}, worst {worst:.3}, {pixels} pixels");
         assert!(pixels > 60 && rough > 0.2, "{name}: {rough}, {pixels}");
         assert!(smooth <= 0.02, "{name}: {smooth}");
@@ -99,11 +78,11 @@ fn solids_are_as_the_frame_sixteen_times_as_large() {
     }
     for (model, bound) in [(cube, 0.1), (shapes::cylinder(), 0.8), (shapes::beside(), 0.95)] {
         for camera in [perspective(&model, SIZE), orthographic(&model, SIZE)] {
-            let mut fine = watched_with(&model, plain());
+            let mut fine = watched_with(&model, PLAIN);
             let blocks = blocks(&mut fine, &camera);
             assert_silent(fine);
-            let errors = |settings| contrast_errors(&draw(&model, settings, &camera), &blocks);
-            let (rough, smooth) = (errors(plain()), errors(SMOOTH));
+            let errors = |settings| contrast_errors(&render_with(&model, settings, &camera), &blocks);
+            let (rough, smooth) = (errors(PLAIN), errors(SMOOTH));
             let worse = rough.iter().zip(&smooth).fold(0.0f64, |a, (r, s)| a.max(s - r));
             let pixels = rough.len();
             let (rough, smooth) = (root_mean_square(&rough), root_mean_square(&smooth));
@@ -131,8 +110,8 @@ fn small_holes() {
         let model = holes(&(0..25).map(|i| (at(i), radius / px)).collect::<Vec<_>>());
         let camera = camera(&model);
         let truth = covered(&Tracer::new(&model), &camera);
-        let error = |settings| root_mean_square(&coverage_errors(&draw(&model, settings, &camera), &truth));
-        let (rough, smooth) = (error(plain()), error(SMOOTH));
+        let error = |settings| root_mean_square(&coverage_errors(&render_with(&model, settings, &camera), &truth));
+        let (rough, smooth) = (error(PLAIN), error(SMOOTH));
         println!("radius {radius} px ({px:.1} px a unit): {rough:.4}, smooth {smooth:.4}");
         assert!(smooth <= bound && smooth <= rough, "{radius}: {smooth} of {rough}");
     }
@@ -144,7 +123,7 @@ fn small_holes() {
 fn nothing_else_changes() {
     for shape in shapes::all() {
         let cameras = [perspective(&shape.model, SIZE), orthographic(&shape.model, SIZE)];
-        let [before, after] = [plain(), SMOOTH].map(|settings| {
+        let [before, after] = [PLAIN, SMOOTH].map(|settings| {
             let mut renderer = watched_with(&shape.model, settings);
             let pictures = cameras.map(|camera| render(&mut renderer, &camera));
             assert_silent(renderer);
@@ -177,7 +156,7 @@ fn nothing_else_changes() {
 fn only_smooth_trims_have_what_they_need() {
     let camera = |model: &Model| perspective(model, SIZE);
     for (model, settings, has) in
-        [(shapes::plate(), SMOOTH, true), (shapes::plate(), plain(), false), (shapes::wave(), SMOOTH, false)]
+        [(shapes::plate(), SMOOTH, true), (shapes::plate(), PLAIN, false), (shapes::wave(), SMOOTH, false)]
     {
         let mut renderer = watched_with(&model, settings);
         renderer.render(&camera(&model), &FrameSettings::default(), Outputs::default()).unwrap();
@@ -202,7 +181,7 @@ fn a_loop_that_is_edited_is_smooth_at_once() {
     renderer.edit_loop(at, &edited.parts[0].faces[0].loops[1]).unwrap();
     let after = renderer.render(&camera, &FrameSettings::default(), Outputs::ALL).unwrap();
     assert_silent(renderer);
-    assert_identical(&draw(&edited, settings, &camera), &after, "after the edit");
+    assert_identical(&render_with(&edited, settings, &camera), &after, "after the edit");
     assert!(after.colour.iter().any(|c| (0.3..0.9).contains(&linear(*c).x)));
 }
 

@@ -5,7 +5,7 @@ use crate::watched::renderer;
 use glam::DVec3;
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Model, Projection};
-use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
+use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, SolidWay, TrimWay};
 
 /// A renderer under validation and synchronisation validation, with a model.
 pub fn watched(model: &Model) -> HeadlessRenderer {
@@ -19,9 +19,35 @@ pub fn watched_with(model: &Model, settings: SceneSettings) -> HeadlessRenderer 
     renderer
 }
 
+/// Settings of a scene without effects, with this way to trim.
+pub const fn plain(trim: TrimWay) -> SceneSettings {
+    SceneSettings {
+        trim,
+        solids: SolidWay::Events,
+        editable: false,
+        samples: Samples::One,
+        smooth: Smooth::None,
+        ambient: None,
+        curvature: false,
+        thickness: false,
+        highlight: None,
+        sun: None,
+        edges: None,
+        solid_budget: None,
+    }
+}
+
 /// One picture with every image, at the default tolerance.
 pub fn render(renderer: &mut HeadlessRenderer, camera: &Camera) -> Picture {
     renderer.render(camera, &FrameSettings::default(), Outputs::ALL).unwrap()
+}
+
+/// The same by a renderer of its own, which has no messages.
+pub fn render_with(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
+    let mut renderer = watched_with(model, settings);
+    let picture = render(&mut renderer, camera);
+    assert_silent(renderer);
+    picture
 }
 
 /// All of the model, from the front, the right and above.

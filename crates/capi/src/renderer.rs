@@ -7,8 +7,8 @@ use glam::{DMat3, DVec3};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Samples, SceneSettings, Style};
 use selvedge_session::{
-    Ambient, Backdrop, DeviceOptions, Directions, FOV_DEG, Image, Job, Lens, Limits, Pinhole, Viewpoint, Worker,
-    colour, lines, smooth,
+    Ambient, Backdrop, DeviceOptions, Directions, Image, Job, Lens, Limits, Pinhole, Viewpoint, Worker, colour, lines,
+    smooth,
 };
 use std::ffi::c_char;
 use std::str::FromStr;
@@ -315,7 +315,7 @@ impl SelvedgeView {
         }
         if self.standard.is_null() && self.eye != self.target {
             let lens = match (self.fov, self.ortho) {
-                (0.0, 0.0) => Lens::Fov(FOV_DEG),
+                (0.0, 0.0) => Lens::Fov(Camera::FOV_DEG),
                 (fov, 0.0) => Lens::Fov(fov),
                 (0.0, height) => Lens::Ortho(height),
                 _ => return Err(argument("fov and ortho exclude each other")),

@@ -6,6 +6,7 @@ mod draw;
 mod images;
 mod lines;
 mod many;
+mod measure;
 mod read;
 mod report;
 mod thumbnail;
@@ -19,6 +20,7 @@ pub use draw::DrawArgs;
 pub use images::Aov;
 pub use lines::LineArgs;
 pub use many::ManyArgs;
+pub use measure::MeasureArgs;
 pub use read::{ReadArgs, SubdivideArgs};
 pub use report::ReportArgs;
 pub use thumbnail::ThumbnailArgs;
@@ -65,6 +67,9 @@ pub enum Command {
     /// Describe the content of a file; needs no GPU
     #[command(after_help = STATUSES)]
     Info(InfoArgs),
+    /// Measure lengths, areas, volumes and smallest distances, with their errors; needs no GPU
+    #[command(after_help = STATUSES)]
+    Measure(MeasureArgs),
     /// Write a model as a STEP file; needs no GPU
     #[command(after_help = STATUSES)]
     Export(ExportArgs),

@@ -9,11 +9,11 @@
 //! The first frame is not in the table: the driver compiles for it, and its time is reported separately.
 
 use crate::args::{BenchArgs, Motion, Size};
+use crate::model_renderer::{self, FirstFrame, ModelRenderer};
 use crate::progress::during;
 use crate::series::{Gathered, Row};
-use crate::session::{self, FirstFrame, Session};
 use crate::target::{self, CSV, JSON, Target};
-use crate::{Outcome, camera, edit, output, path, verdict};
+use crate::{Outcome, camera, edit, output, path, reading, verdict};
 use anyhow::Result;
 use comfy_table::CellAlignment;
 use selvedge::model::Camera;
@@ -105,7 +105,7 @@ pub fn inputs(args: &BenchArgs) -> Vec<&Path> {
 
 /// One model along the path; true when the validation layer complained.
 fn measure(args: &BenchArgs, model: &Path, outputs: &[Target]) -> Result<(Report, bool)> {
-    let mut import = session::open(model, &args.read, &Default::default())?;
+    let mut import = reading::open(model, &args.read, &Default::default())?;
     target::check_read(&import, outputs)?;
     args.cut.apply(&mut import.model, &args.read)?;
     let bounds = camera::bounds(&import.model);
@@ -116,23 +116,24 @@ fn measure(args: &BenchArgs, model: &Path, outputs: &[Target]) -> Result<(Report
         Motion::Turn => path::turned(bounds, size, index),
         Motion::Still => path::turned(bounds, size, 0),
     };
-    let mut session = Session::smooth(session::opened(&args.frame, None)?, &args.frame, &import, &args.edges)?;
+    let mut renderer =
+        ModelRenderer::smooth(model_renderer::opened(&args.frame, None)?, &args.frame, &import, &args.edges)?;
     let mut stats = FrameStats::default();
     let mut gathered = Gathered::default();
-    session.record_all(args.motion == Motion::Still);
+    renderer.record_all(args.motion == Motion::Still);
     during(&format!("{}: {} frames", model.display(), args.frames), || -> Result<()> {
         for _ in 0..WARM_UP_FRAMES {
-            let picture = session.render(&camera(0), Outputs::default())?;
-            if !session.shows(&camera(0), &picture)? {
-                session.blank(model, &import.model, size, &args.read)?;
+            let picture = renderer.render(&camera(0), Outputs::default())?;
+            if !renderer.shows(&camera(0), &picture)? {
+                renderer.blank(model, &import.model, size, &args.read)?;
             }
         }
         for index in 0..args.frames {
-            stats = timed(&mut session, &camera(index), &mut gathered)?;
+            stats = timed(&mut renderer, &camera(index), &mut gathered)?;
             if args.motion == Motion::Still {
-                session.record_all(false);
-                timed(&mut session, &camera(index), &mut gathered)?;
-                session.record_all(true);
+                renderer.record_all(false);
+                timed(&mut renderer, &camera(index), &mut gathered)?;
+                renderer.record_all(true);
             }
         }
         Ok(())
@@ -143,7 +144,7 @@ fn measure(args: &BenchArgs, model: &Path, outputs: &[Target]) -> Result<(Report
         let from_end = WARM_UP_FRAMES * (args.frames - 1);
         let cameras = (0..args.frames + 2 * WARM_UP_FRAMES).map(|nth| camera((nth + from_end) % args.frames));
         let cameras: Vec<Camera> = cameras.collect();
-        during("drawing with several frames in flight", || throughput(&mut session, &cameras))
+        during("drawing with several frames in flight", || throughput(&mut renderer, &cameras))
     });
     let throughput = throughput.transpose()?;
     let mut error = Error::default();
@@ -151,7 +152,7 @@ fn measure(args: &BenchArgs, model: &Path, outputs: &[Target]) -> Result<(Report
     for index in judged(args.frames, args.judged) {
         let tracer = tracer.get_or_insert_with(|| during("preparing the exact model", || Tracer::new(&import.model)));
         let camera = camera(index);
-        let picture = session.render(&camera, Outputs::ALL)?;
+        let picture = renderer.render(&camera, Outputs::ALL)?;
         let what = format!("frame {index}");
         error.add(&verdict::of(tracer, &camera, &picture, JUDGED_SAMPLES, args.frame.tolerance, 1.0, &what));
     }
@@ -164,21 +165,21 @@ fn measure(args: &BenchArgs, model: &Path, outputs: &[Target]) -> Result<(Report
         tolerance_px: args.frame.tolerance,
         device: stats.device,
         driver: stats.driver,
-        first_frame: session.first_frame(),
+        first_frame: renderer.first_frame(),
         frames: args.frames,
         throughput,
         rows: gathered.rows(),
         error,
     };
-    Ok((report, session.complaints()))
+    Ok((report, renderer.complaints()))
 }
 
 /// Draws pictures with several frames in flight, and measures all but [`WARM_UP_FRAMES`] at either end: as many frames
 /// are in flight when the clock starts as when it stops. Each picture is copied, as a caller that stores it would.
-fn throughput(session: &mut Session, cameras: &[Camera]) -> Result<Throughput> {
+fn throughput(renderer: &mut ModelRenderer, cameras: &[Camera]) -> Result<Throughput> {
     let measured = WARM_UP_FRAMES..cameras.len() - WARM_UP_FRAMES;
     let (mut start, mut wall_ms, mut passes_ms, mut kept) = (Instant::now(), 0.0, 0.0, Vec::new());
-    session.render_sequence(cameras, Outputs::default(), |nth, picture| {
+    renderer.render_sequence(cameras, Outputs::default(), |nth, picture| {
         output::clamps(&picture.stats);
         kept.clear();
         kept.extend_from_slice(picture.colour);
@@ -200,9 +201,9 @@ fn all_passes(stats: &FrameStats) -> f64 {
 }
 
 /// Draws one frame, and records its cost.
-fn timed(session: &mut Session, camera: &Camera, gathered: &mut Gathered) -> Result<FrameStats> {
+fn timed(renderer: &mut ModelRenderer, camera: &Camera, gathered: &mut Gathered) -> Result<FrameStats> {
     let start = Instant::now();
-    let stats = session.render(camera, Outputs::default())?.stats;
+    let stats = renderer.render(camera, Outputs::default())?.stats;
     let took = start.elapsed().as_secs_f64() * 1e3;
     let row = |name: &str| if stats.reused { format!("reused: {name}") } else { name.to_owned() };
     gathered.push(&row("wall clock, with read-back"), "ms", took);

@@ -1,7 +1,7 @@
 //! Cameras from the command line, and the built-in views.
 //!
 //! ```text
-//!   whole     the model in the picture, as large as it fits, from FROM
+//!   whole     the model in the picture, as large as it fits, from Camera::FROM
 //!   close     the same direction, CLOSER times nearer, at the nearest detail that is seen
 //!   grazing   along the largest extent, GRAZING_DEG above the two larger ones
 //! ```
@@ -12,7 +12,7 @@ use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use selvedge::model::{Bounds, Camera, Model, Projection};
 use selvedge_io::import::{Import, NamedCamera};
-use selvedge_session::{Direction, FOV_DEG, FROM};
+use selvedge_session::Direction;
 
 /// How much nearer the close view is. At six times a 1080p picture shows the detail of 6480 lines: far beyond the
 /// resolution of a mesh made for the whole view.
@@ -54,8 +54,8 @@ impl CameraArgs {
         fitted(self.framed(&import.model, direction.from(), up, size), bounds(&import.model))
     }
 
-    /// For a drawing: parallel, fitted to the picture, from a direction or from [`FROM`], unless the arguments state
-    /// another camera.
+    /// For a drawing: parallel, fitted to the picture, from a direction or from [`Camera::FROM`], unless the arguments
+    /// state another camera.
     pub fn parallel(&self, direction: Option<Direction>, import: &Import) -> Result<Camera> {
         let size = self.pixels(import);
         let given = self.eye.is_some() || self.camera.is_some() || self.fov.is_some() || self.ortho.is_some();
@@ -63,7 +63,7 @@ impl CameraArgs {
             Some(direction) if given => self.standard(direction, import, size),
             None if given => self.of(import),
             _ => {
-                let (from, up) = direction.map_or((FROM, DVec3::Z), |d| (d.from(), d.up()));
+                let (from, up) = direction.map_or((Camera::FROM, DVec3::Z), |d| (d.from(), d.up()));
                 let up = self.up.unwrap_or(up);
                 let mut camera = Camera::framing(&import.model, from, up, NARROW, size);
                 let back = camera.eye - camera.target;
@@ -105,11 +105,11 @@ impl CameraArgs {
         if let Some(eye) = self.eye {
             let target = self.target.unwrap_or(if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() });
             return fitted(
-                Camera { eye, target, ..self.projected(Camera::around(bounds, FROM, up, self.fov(), size)) },
+                Camera { eye, target, ..self.projected(Camera::around(bounds, Camera::FROM, up, self.fov(), size)) },
                 bounds,
             );
         }
-        let mut camera = self.framed(model, FROM, up, size);
+        let mut camera = self.framed(model, Camera::FROM, up, size);
         if let Some(target) = self.target {
             (camera.eye, camera.target) = (camera.eye + target - camera.target, target);
         }
@@ -169,7 +169,7 @@ impl CameraArgs {
 
     /// Vertical field of view, radians.
     fn fov(&self) -> f64 {
-        self.fov.unwrap_or(FOV_DEG).to_radians()
+        self.fov.unwrap_or(Camera::FOV_DEG).to_radians()
     }
 }
 
@@ -183,7 +183,7 @@ fn fitted(camera: Camera, bounds: Bounds) -> Result<Camera> {
 /// to the eye, which little can hide.
 pub fn zoomed(model: &Model, size: (u32, u32), zoom: f64) -> Camera {
     let bounds = bounds(model);
-    let mut camera = Camera::around(bounds, FROM, DVec3::Z, 35f64.to_radians(), size);
+    let mut camera = Camera::around(bounds, Camera::FROM, DVec3::Z, Camera::FOV_DEG.to_radians(), size);
     let solid = model.parts.iter().any(|part| part.closed);
     let from = if solid { camera.eye } else { bounds.centre() };
     let nearest = |p: &DVec3| p.distance_squared(from);

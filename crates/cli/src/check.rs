@@ -2,10 +2,10 @@
 
 use crate::args::CheckArgs;
 use crate::camera::{CameraFile, View};
+use crate::model_renderer::{self, ModelRenderer};
 use crate::progress::during;
-use crate::session::{self, Session};
 use crate::target::{self, JSON, PNG, Target};
-use crate::{Outcome, output, verdict};
+use crate::{Outcome, output, reading, verdict};
 use anyhow::Result;
 use glam::DAffine3;
 use selvedge::picture::{EdgeSettings, FrameStats, Outputs, TangentEdges};
@@ -35,7 +35,7 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     let json = args.json.iter().map(|path| Target::new(path, JSON));
     let difference = args.difference.iter().map(|path| Target::new(path, PNG));
     target::check(&inputs, &difference.chain(json.clone()).collect::<Vec<_>>())?;
-    let mut import = session::open(&args.model, &args.read, &args.subdivide)?;
+    let mut import = reading::open(&args.model, &args.read, &args.subdivide)?;
     let missing = Some(import.summary()).filter(|summary| !summary.is_complete());
     if let Some(by) = args.moved {
         let by = DAffine3::from_translation(by);
@@ -51,14 +51,15 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     target::check(&inputs, &outputs)?;
     target::check_read(&import, &outputs)?;
     let lines = args.edges.then(|| judged_lines(views.iter().map(|view| view.camera.size.1).min().unwrap_or(1)));
-    let mut session = Session::with_lines(&args.frame, &import, lines)?;
+    let mut renderer = ModelRenderer::with_lines(&args.frame, &import, lines)?;
     let tracer = during("preparing the exact model", || Tracer::new(&import.model));
-    let sun = session::sun(&args.frame, &import).map(|towards| SunTracer::new(&import.model, towards)).transpose()?;
+    let sun =
+        model_renderer::sun(&args.frame, &import).map(|towards| SunTracer::new(&import.model, towards)).transpose()?;
     let tolerance_px = args.frame.tolerance;
     let mut verdicts = Vec::new();
     for (index, View { name, camera }) in views.iter().enumerate() {
         let times = args.zoom.get(index).copied().unwrap_or(1.0);
-        let picture = session.render(camera, Outputs { edge: args.edges, ..Outputs::ALL })?;
+        let picture = renderer.render(camera, Outputs { edge: args.edges, ..Outputs::ALL })?;
         let judgement = verdict::of(&tracer, camera, &picture, args.samples, tolerance_px, times, name);
         if let Some(path) = pictures.get(index) {
             output::png(path, picture.size, &judgement.paint())?;
@@ -69,7 +70,7 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
         let wrong = verdict::wrong(&judgement) + sun.map_or(0, |sun| sun.wrong);
         let wrong = wrong + drawn.as_ref().map_or(0, |lines| lines.missing + lines.stray);
         let kept = wrong == 0 && picture.stats.clamps == 0;
-        let (camera, seen, stats) = (camera.into(), session::shows(&picture), picture.stats);
+        let (camera, seen, stats) = (camera.into(), model_renderer::shows(&picture), picture.stats);
         verdicts.push(Verdict {
             view: name.clone(),
             camera,
@@ -92,12 +93,12 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     }
     let blank = |v: &&Verdict| v.kept && !v.seen;
     if verdicts.iter().all(|v| blank(&v)) {
-        session.blank(&args.model, &import.model, views[0].camera.size, &args.read)?;
+        renderer.blank(&args.model, &import.model, views[0].camera.size, &args.read)?;
     }
     for Verdict { view, .. } in verdicts.iter().filter(blank) {
         tracing::warn!("view {view}: no pixel shows anything of the model: nothing was judged");
     }
-    let complained = session.complaints();
+    let complained = renderer.complaints();
     Ok(if complained || verdicts.iter().any(|v| !v.kept) { Outcome::Broken } else { Outcome::Good })
 }
 

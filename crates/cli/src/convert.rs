@@ -2,7 +2,7 @@
 
 use crate::args::ConvertArgs;
 use crate::target::{self, NATIVE, Target};
-use crate::{Outcome, remains, session};
+use crate::{Outcome, reading, remains};
 use anyhow::Result;
 use selvedge_io::native;
 
@@ -10,7 +10,7 @@ use selvedge_io::native;
 pub fn run(args: &ConvertArgs) -> Result<Outcome> {
     let output = [Target::new(&args.output, NATIVE)];
     target::check(&[&args.model], &output)?;
-    let import = session::open(&args.model, &args.read, &args.subdivide)?;
+    let import = reading::open(&args.model, &args.read, &args.subdivide)?;
     remains::judge(&args.model, &import.model)?;
     target::check_read(&import, &output)?;
     let bytes = native::write(&import.model);

@@ -1,7 +1,7 @@
 //! A model cut open or made transparent before it is drawn: `--section`, `--trim-by`, `--xray`.
 
 use crate::args::ReadArgs;
-use crate::session;
+use crate::reading;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use glam::DVec3;
@@ -84,7 +84,7 @@ impl CutArgs {
             model.xray(&[name], *opacity).context("--xray")?;
         }
         if let Some(path) = &self.trim_by {
-            let by = session::open(path, read, &Default::default())?.model;
+            let by = reading::open(path, read, &Default::default())?.model;
             let told = || path.display().to_string();
             if !by.instances.is_empty() {
                 bail!("{}: holds parts, and a volume that trims needs equations", told());

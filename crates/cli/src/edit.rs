@@ -4,11 +4,11 @@
 //! again from a fresh upload of the edited model: every pixel must be the same.
 
 use crate::args::{BenchArgs, Size};
+use crate::model_renderer::ModelRenderer;
 use crate::progress::during;
 use crate::series::{Gathered, Row};
-use crate::session::{self, Session};
 use crate::target::{self, JSON};
-use crate::{Outcome, bench, output, path};
+use crate::{Outcome, bench, output, path, reading};
 use anyhow::{Result, bail};
 use glam::DVec2;
 use selvedge::model::{LoopAt, Model, TrimLoop};
@@ -59,11 +59,11 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
 }
 
 fn drag(args: &BenchArgs, path: &Path) -> Result<(Report, bool)> {
-    let mut import = session::open(path, &args.read, &Default::default())?;
+    let mut import = reading::open(path, &args.read, &Default::default())?;
     let Some(at) = busiest(&import.model) else { bail!("{}: no face has a loop", path.display()) };
     let Size(width, height) = args.size;
     let camera = path::camera(import.model.bounds(), (width, height), 0, FRAMES);
-    let mut session = Session::editable(&args.frame, &import)?;
+    let mut renderer = ModelRenderer::editable(&args.frame, &import)?;
     let start = loop_at(&import, at).clone();
     let (lo, hi) = start.bounds();
     let mut gathered = Gathered::default();
@@ -77,14 +77,14 @@ fn drag(args: &BenchArgs, path: &Path) -> Result<(Report, bool)> {
         different: 0,
         rows: Vec::new(),
     };
-    session.render(&camera, Outputs::default())?;
+    renderer.render(&camera, Outputs::default())?;
     for frame in 1..=FRAMES {
         let turn = DVec2::from_angle(TAU * frame as f64 / FRAMES as f64) - DVec2::X;
         let moved = start.translated(turn * (hi - lo) * REACH)?;
         let begun = Instant::now();
-        session.edit(at, &moved)?;
+        renderer.edit(at, &moved)?;
         gathered.push("edit, on the CPU", "ms", begun.elapsed().as_secs_f64() * 1e3);
-        let picture = session.render(&camera, Outputs::default())?;
+        let picture = renderer.render(&camera, Outputs::default())?;
         gathered.push("from the edit to the picture in memory", "ms", begun.elapsed().as_secs_f64() * 1e3);
         gathered.push("bytes sent for the edit", "", picture.stats.edit_bytes as f64);
         gathered.push("all passes", "ms", picture.stats.passes.iter().map(|p| p.gpu_ms).sum());
@@ -93,14 +93,14 @@ fn drag(args: &BenchArgs, path: &Path) -> Result<(Report, bool)> {
         }
         import.model.parts[at.part].faces[at.face].loops[at.trim_loop] = moved;
         if frame % COMPARED == 0 {
-            let fresh = during("uploading the edited model", || Session::editable(&args.frame, &import))?
+            let fresh = during("uploading the edited model", || ModelRenderer::editable(&args.frame, &import))?
                 .render(&camera, Outputs::default())?;
             report.compared += 1;
             report.different += usize::from(fresh.colour != picture.colour);
         }
     }
     report.rows = gathered.rows();
-    Ok((report, session.complaints()))
+    Ok((report, renderer.complaints()))
 }
 
 fn loop_at(import: &Import, at: LoopAt) -> &TrimLoop {

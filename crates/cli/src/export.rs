@@ -2,7 +2,7 @@
 
 use crate::args::ExportArgs;
 use crate::target::{self, STEP, Target};
-use crate::{Outcome, remains, session};
+use crate::{Outcome, reading, remains};
 use anyhow::Result;
 use selvedge_io::export;
 
@@ -10,7 +10,7 @@ use selvedge_io::export;
 pub fn run(args: &ExportArgs) -> Result<Outcome> {
     let output = [Target::new(&args.output, STEP)];
     target::check(&[&args.model], &output)?;
-    let import = session::open(&args.model, &args.read, &args.subdivide)?;
+    let import = reading::open(&args.model, &args.read, &args.subdivide)?;
     remains::judge(&args.model, &import.model)?;
     target::check_read(&import, &output)?;
     let model = import.model;

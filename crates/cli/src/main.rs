@@ -7,6 +7,7 @@
 //!   report   all of these as one document
 //!   convert  model ─▶ the engine's own form
 //!   export   model ─▶ STEP file                draw    lines of a view ─▶ SVG
+//!   measure  lengths, areas, volumes, distances
 //!   view     models in a window
 //!   thumbnail model ─▶ small picture
 //!   devices  features and limits of the system's GPUs
@@ -27,15 +28,17 @@ mod edit;
 mod export;
 mod heap;
 mod info;
+mod measure;
+mod model_renderer;
 mod npy;
 mod output;
 mod path;
 mod progress;
+mod reading;
 mod remains;
 mod render;
 mod report;
 mod series;
-mod session;
 mod sheet;
 mod sweep;
 mod target;
@@ -96,6 +99,7 @@ fn dispatch(command: &Command) -> anyhow::Result<Outcome> {
         Command::Render(args) => render::run(args),
         Command::Draw(args) => draw::run(args),
         Command::Info(args) => info::run(args),
+        Command::Measure(args) => measure::run(args),
         Command::Export(args) => export::run(args),
         Command::Check(args) => check::run(args),
         Command::Bench(args) => bench::run(args),

@@ -14,7 +14,6 @@ use std::f64::consts::TAU;
 
 /// Closest approach of the path, relative to the view of the whole model.
 const LARGEST_ZOOM: f64 = 8.0;
-const FOV_DEG: f64 = 35.0;
 
 /// Camera of frame `index` of `count`.
 pub fn camera(bounds: Bounds, size: (u32, u32), index: usize, count: usize) -> Camera {
@@ -22,7 +21,7 @@ pub fn camera(bounds: Bounds, size: (u32, u32), index: usize, count: usize) -> C
     let elevation = (30.0 + 20.0 * azimuth.sin()).to_radians();
     let zoom = LARGEST_ZOOM.powf((1.0 - (2.0 * azimuth).cos()) / 2.0);
     let from = DVec3::new(azimuth.sin() * elevation.cos(), -azimuth.cos() * elevation.cos(), elevation.sin());
-    let mut camera = Camera::around(bounds, from, DVec3::Z, FOV_DEG.to_radians(), size);
+    let mut camera = Camera::around(bounds, from, DVec3::Z, Camera::FOV_DEG.to_radians(), size);
     // the eye comes nearer to the front of the bounding sphere, never into it
     let radius = (bounds.diagonal() * 0.5).max(1e-9);
     let distance = (camera.eye - camera.target).length();
@@ -36,7 +35,7 @@ pub fn turned(bounds: Bounds, size: (u32, u32), index: usize) -> Camera {
     let azimuth = (3.0 * index as f64).to_radians();
     let elevation = 30f64.to_radians();
     let from = DVec3::new(azimuth.sin() * elevation.cos(), -azimuth.cos() * elevation.cos(), elevation.sin());
-    Camera::around(bounds, from, DVec3::Z, FOV_DEG.to_radians(), size)
+    Camera::around(bounds, from, DVec3::Z, Camera::FOV_DEG.to_radians(), size)
 }
 
 #[cfg(test)]

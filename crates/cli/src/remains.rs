@@ -3,7 +3,7 @@
 //! The exact tracer follows rays through a picture of the whole model, coarse to fine, until one meets a surface. A model
 //! with a surface costs a few rays, an empty one a picture of [`SIZE`].
 
-use crate::{camera, session};
+use crate::{camera, reading};
 use anyhow::{Result, bail};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -25,7 +25,7 @@ pub fn judge(path: &Path, model: &Model) -> Result<()> {
     bail!(
         "{}: nothing of it can be drawn: its solids leave no surface, or none at the centre of any pixel of a picture of \
          {width} x {height}",
-        session::named(path)
+        reading::named(path)
     )
 }
 

@@ -8,9 +8,9 @@ mod task;
 pub use task::named_for;
 
 use crate::args::{Aov, RenderArgs};
-use crate::session::{self, Measured, Session};
+use crate::model_renderer::{self, Measured, ModelRenderer};
 use crate::sheet::Sheet;
-use crate::{Outcome, output, target};
+use crate::{Outcome, output, reading, target};
 use anyhow::{Error, Result};
 use selvedge::gpu::{BudgetOwner, GpuError};
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
@@ -35,13 +35,13 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
 /// Draws one file: its error is the error of the call.
 fn alone(args: &RenderArgs, task: &Task) -> Result<Outcome> {
     target::check(&args.cut.inputs(&task.model), &task.outputs())?;
-    let limits = args.read.limits(&session::named(&task.model));
+    let limits = args.read.limits(&reading::named(&task.model));
     let (import, device) = rayon::join(
-        || session::open_within(&task.model, &args.read, &args.subdivide, &limits),
-        || session::device(&args.frame, args.read.most_memory()),
+        || reading::open_within(&task.model, &args.read, &args.subdivide, &limits),
+        || model_renderer::device(&args.frame, args.read.most_memory()),
     );
-    let session = drawn(args, task, (import?, &limits), || device, &mut |_| Ok(()))?;
-    Ok(if session.close() { Outcome::Broken } else { Outcome::Good })
+    let renderer = drawn(args, task, (import?, &limits), || device, &mut |_| Ok(()))?;
+    Ok(if renderer.close() { Outcome::Broken } else { Outcome::Good })
 }
 
 /// The source and the cost of a picture.
@@ -60,7 +60,7 @@ fn drawn(
     (import, limits): (Import, &Limits),
     device: impl FnOnce() -> Result<HeadlessRenderer>,
     record: &mut dyn FnMut(&Drawn) -> Result<()>,
-) -> Result<Session> {
+) -> Result<ModelRenderer> {
     pictures(args, task, (import, limits), device, record).map_err(|error| {
         let is_over = gpu(&error).is_some_and(is_over_limit);
         if is_over { error.context("more than --limit-mib allows") } else { error }
@@ -73,7 +73,7 @@ fn pictures(
     (mut import, limits): (Import, &Limits),
     device: impl FnOnce() -> Result<HeadlessRenderer>,
     record: &mut dyn FnMut(&Drawn) -> Result<()>,
-) -> Result<Session> {
+) -> Result<ModelRenderer> {
     let preparing = limits.begin(Work::Preparing);
     let outputs = task.outputs();
     target::check_read(&import, &outputs)?;
@@ -91,11 +91,11 @@ fn pictures(
     let begun = Instant::now();
     let look = &args.look;
     let looks = (&args.edges, look, args.lines.settings(look.style)?);
-    let mut session = Session::of_one(device()?, &args.frame, &import, (&model, &preparing), looks)?;
+    let mut renderer = ModelRenderer::of_one(device()?, &args.frame, &import, (&model, &preparing), looks)?;
     let upload_s = begun.elapsed().as_secs_f64();
     let backdrop = look.backdrop(&import);
     let range = if look.style.is_curvature() { look.range(&model) } else { 1.0 };
-    session.look(backdrop.colour(), look.style, range);
+    renderer.look(backdrop.colour(), look.style, range);
     let images = task.shots.first().map_or(Outputs::default(), |shot| wanted(&shot.aovs));
     let cameras = &cameras;
     let mut pictures = Pictures { args, task, cameras, backdrop, range, sheet, upload_s, all: Vec::new(), record };
@@ -105,16 +105,16 @@ fn pictures(
     let mut in_flight = is_small && cameras.len() > 1 && task.shots.iter().all(|shot| shot.stats.is_none());
     drop(preparing);
     let drawing = Arc::new(limits.begin(Work::Drawing));
-    session.watch(&drawing);
+    renderer.watch(&drawing);
     while next < cameras.len() {
-        drawing.test().map_err(session::beyond)?;
+        drawing.test().map_err(reading::beyond)?;
         if in_flight {
             let (first, mut begun) = (next, Instant::now());
-            let taken = session.render_sequence(&cameras[first..], images, |nth, picture| {
-                if session::is_of_one_colour(picture.colour) {
+            let taken = renderer.render_sequence(&cameras[first..], images, |nth, picture| {
+                if model_renderer::is_of_one_colour(picture.colour) {
                     return Err(Alone.into());
                 }
-                drawing.test().map_err(session::beyond)?;
+                drawing.test().map_err(reading::beyond)?;
                 output::clamps(&picture.stats);
                 pictures.take(first + nth, picture.to_picture(), begun.elapsed().as_secs_f64(), None)?;
                 (next, begun) = (first + nth + 1, Instant::now());
@@ -129,18 +129,18 @@ fn pictures(
         }
         let Some(camera) = cameras.get(next) else { break };
         let begun = Instant::now();
-        let picture = session.render(camera, images)?;
+        let picture = renderer.render(camera, images)?;
         let draw_s = begun.elapsed().as_secs_f64();
-        if !session.shows(camera, &picture)? {
-            session.blank(&task.model, &model, camera.size, &args.read)?;
+        if !renderer.shows(camera, &picture)? {
+            renderer.blank(&task.model, &model, camera.size, &args.read)?;
         }
-        drawing.test().map_err(session::beyond)?;
-        let stats = task.shots[next].stats.as_ref().map(|_| session.measured(camera, images, &picture.stats));
+        drawing.test().map_err(reading::beyond)?;
+        let stats = task.shots[next].stats.as_ref().map(|_| renderer.measured(camera, images, &picture.stats));
         pictures.take(next, picture, draw_s, stats.transpose()?.as_ref())?;
         next += 1;
     }
     pictures.finish()?;
-    Ok(session)
+    Ok(renderer)
 }
 
 /// A picture that may show nothing: another frame says so, and none is drawn in the middle of a sequence.

@@ -19,7 +19,7 @@ use crate::args::{Size, SubdivideArgs, SweepArgs};
 use crate::closer::Approach;
 use crate::progress::during;
 use crate::target::{self, CSV, Target};
-use crate::{Outcome, device, output, session, verdict};
+use crate::{Outcome, device, output, reading, verdict};
 use anyhow::{Result, bail};
 use glam::{DAffine3, DVec3};
 use selvedge::baselines::SceneOptions;
@@ -34,8 +34,6 @@ use std::path::{Path, PathBuf};
 
 pub use divided::Divided;
 
-const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
-const FOV_DEG: f64 = 35.0;
 /// Frames of each way before the first measured one.
 const WARM_UP_FRAMES: usize = 1;
 
@@ -119,7 +117,7 @@ pub fn run(args: &SweepArgs) -> Result<Outcome> {
 fn models(args: &SweepArgs, outputs: &[Target]) -> Result<Vec<(String, Model)>> {
     let mut models = Vec::new();
     for file in &args.models {
-        let import = session::open(file, &args.read, &SubdivideArgs::default())?;
+        let import = reading::open(file, &args.read, &SubdivideArgs::default())?;
         target::check_read(&import, outputs)?;
         if import.model.trim.is_some() {
             bail!("{}: a volume trims it, and would not go with the copies", file.display());
@@ -170,7 +168,7 @@ fn copied(model: &Model, copies: usize, distinct: bool) -> Model {
 
 fn camera(model: &Model, zoom: f64, size: (u32, u32)) -> Camera {
     let bounds = model.bounds();
-    let whole = Camera::around(bounds, FROM, DVec3::Z, FOV_DEG.to_radians(), size);
+    let whole = Camera::around(bounds, Camera::FROM, DVec3::Z, Camera::FOV_DEG.to_radians(), size);
     let mut camera = if zoom > 1.0 { Approach::new(model, whole).closer(zoom) } else { whole };
     camera.fit_depth(bounds);
     camera

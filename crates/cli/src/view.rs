@@ -9,12 +9,14 @@ use std::path::PathBuf;
 /// Opens the window, and returns when it is closed.
 pub fn run(args: &ViewArgs) -> Result<Outcome> {
     let folder = |name: &str| std::env::var_os(name).map(PathBuf::from);
-    let usual = settings::path(folder("XDG_CONFIG_HOME"), folder("HOME"));
+    let desktop = settings::folder(folder("XDG_CONFIG_HOME"), folder("HOME"));
+    let usual = desktop.as_deref().map(settings::path);
     let closed = run_window(ViewOptions {
         files: args.models.clone(),
         device: args.device.clone(),
         validation: args.validation,
         settings: args.settings.clone().or(usual),
+        desktop,
         size: args.size.map(|size| (size.0, size.1)),
         ..ViewOptions::default()
     })?;

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use selvedge_session::{Directions, FOV_DEG, Lens, Pinhole, Viewpoint};
+use selvedge_session::{Directions, Lens, Pinhole, Viewpoint};
 
 /// Where a picture is taken from, for any size: ``Camera.look_at`` or ``Camera.opencv``.
 #[pyclass(frozen, module = "selvedge")]
@@ -28,7 +28,7 @@ impl Camera {
     fn look_at(eye: [f64; 3], target: [f64; 3], up: [f64; 3], fov: Option<f64>, ortho: Option<f64>) -> PyResult<Self> {
         let lens = match (fov, ortho) {
             (Some(_), Some(_)) => return Err(PyValueError::new_err("fov and ortho exclude each other")),
-            (fov, None) => Lens::Fov(fov.unwrap_or(FOV_DEG)),
+            (fov, None) => Lens::Fov(fov.unwrap_or(selvedge::model::Camera::FOV_DEG)),
             (None, Some(height)) => Lens::Ortho(height),
         };
         let [eye, target, up] = [eye, target, up].map(DVec3::from);

@@ -13,10 +13,6 @@ use glam::{DMat3, DVec3};
 use selvedge::model::{Bounds, Camera, CameraError, Model, Projection};
 use serde::Serialize;
 
-/// From the model towards the eye: front, right, a little above; no axis of the model seen edge-on.
-pub const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
-/// Default vertical field of view, degrees.
-pub const FOV_DEG: f64 = 35.0;
 /// Largest deviation of a rotation from orthonormal, and of the zeros and the one in K: decimal files round so much
 /// off.
 const ROUNDED: f64 = 1e-6;
@@ -32,7 +28,7 @@ pub enum Lens {
 
 impl Default for Lens {
     fn default() -> Self {
-        Self::Fov(FOV_DEG)
+        Self::Fov(Camera::FOV_DEG)
     }
 }
 
@@ -90,7 +86,7 @@ impl Viewpoint {
         }
         let camera = match *self {
             Self::Standard(direction) => {
-                Camera::framing(model, direction.from(), direction.up(), FOV_DEG.to_radians(), size)
+                Camera::framing(model, direction.from(), direction.up(), Camera::FOV_DEG.to_radians(), size)
             }
             Self::LookAt { eye, target, up, lens } => {
                 Camera { eye, target, up, projection: lens.projection(), depth_range: (1.0, 2.0), size }
@@ -133,7 +129,7 @@ pub fn bounds(model: &Model) -> Bounds {
 
 /// A camera with all of the model in the picture.
 pub fn whole(bounds: Bounds, size: (u32, u32)) -> Camera {
-    Camera::around(bounds, FROM, DVec3::Z, FOV_DEG.to_radians(), size)
+    Camera::around(bounds, Camera::FROM, DVec3::Z, Camera::FOV_DEG.to_radians(), size)
 }
 
 /// `camera` with a depth range that holds the model, checked.

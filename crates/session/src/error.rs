@@ -1,15 +1,12 @@
-//! Why there is no model or no picture, and how a caller stops work that takes too long.
+//! Why there is no model or no picture.
 
 use crate::limits::Exceeded;
 use selvedge::edges::EdgeError;
 use selvedge::headless::HeadlessError;
 use selvedge::model::CameraError;
 use selvedge::picture::BadEdges;
-use selvedge_io::import::{ImportError, Summary};
-use std::any::Any;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+pub use selvedge_io::import::Stop;
+use selvedge_io::import::{ImportError, Summary, Unwound, caught};
 
 /// Why a file gives no model, or a job no picture.
 #[derive(Debug, thiserror::Error)]
@@ -69,35 +66,6 @@ pub enum SessionError {
     Panicked(String),
 }
 
-/// A flag that ends an import or an upload: set from any thread, tested where an import reports progress, and between
-/// two faces of an upload.
-#[derive(Clone, Debug, Default)]
-pub struct Stop {
-    set: Arc<AtomicBool>,
-}
-
-/// The panic that unwinds through the library to the caller who stopped it.
-struct Stopping;
-
-impl Stop {
-    /// From now on.
-    pub fn set(&self) {
-        self.set.store(true, Ordering::Relaxed);
-    }
-
-    /// Whether it was set.
-    pub fn is_set(&self) -> bool {
-        self.set.load(Ordering::Relaxed)
-    }
-
-    /// Unwinds to [`guarded`] if it was set: progress callbacks cannot return an error.
-    pub fn check(&self) {
-        if self.is_set() {
-            resume_unwind(Box::new(Stopping));
-        }
-    }
-}
-
 /// Runs work whose progress callbacks call [`Stop::check`] or [`Step::check`](crate::Step::check); a panic becomes an
 /// error.
 ///
@@ -106,19 +74,17 @@ impl Stop {
 /// # Errors
 /// Those of the work, [`SessionError::Stopped`], [`SessionError::Limit`], [`SessionError::Panicked`].
 pub fn guarded<T>(work: impl FnOnce() -> Result<T, SessionError>) -> Result<T, SessionError> {
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|cause| Err(unwound(cause)))
+    caught(work).unwrap_or_else(|unwound| Err(failed(&unwound)))
 }
 
-fn unwound(cause: Box<dyn Any + Send>) -> SessionError {
-    if cause.is::<Stopping>() {
-        return SessionError::Stopped;
+fn failed(unwound: &Unwound) -> SessionError {
+    match unwound {
+        Unwound::Stopped => SessionError::Stopped,
+        Unwound::Cause(cause) => match cause.downcast_ref::<Exceeded>() {
+            Some(exceeded) => SessionError::Limit(exceeded.clone()),
+            None => SessionError::Panicked(unwound.message().unwrap_or_else(|| "no message".to_owned())),
+        },
     }
-    if let Some(exceeded) = cause.downcast_ref::<Exceeded>() {
-        return exceeded.clone().into();
-    }
-    let text = cause.downcast_ref::<String>().cloned();
-    let text = text.or_else(|| cause.downcast_ref::<&str>().map(|text| (*text).to_owned()));
-    SessionError::Panicked(text.unwrap_or_else(|| "no message".to_owned()))
 }
 
 #[cfg(test)]

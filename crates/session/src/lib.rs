@@ -32,7 +32,7 @@ mod worker;
 
 pub use ambient::Ambient;
 pub use backdrop::{Backdrop, colour};
-pub use camera::{CameraFile, FOV_DEG, FROM, Lens, Pinhole, Viewpoint, bounds, fitted, whole};
+pub use camera::{CameraFile, Lens, Pinhole, Viewpoint, bounds, fitted, whole};
 pub use directions::{Direction, Directions, NAMED};
 pub use drawer::{DeviceOptions, Drawer, Drawn, Job, MOST_IN_FLIGHT};
 pub use error::{SessionError, Stop, guarded};
@@ -41,7 +41,7 @@ pub use legend::legend;
 pub use limits::{Bound, Exceeded, Limits, Step, Work, resident};
 pub use lines::lines;
 pub use png::{save as save_png, write as write_png};
-pub use read::{Loaded, ReadOptions, Source, memory, read};
+pub use read::{Loaded, ReadOptions, Source, import_within, memory, read};
 pub use smooth::smooth;
 pub use snap::{SNAP_KINDS, Snapped, Snapper};
 pub use tree::{Body, Node};

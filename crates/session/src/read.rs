@@ -1,10 +1,11 @@
 //! Files and bytes to models that have something to draw.
 
 use crate::error::{SessionError, Stop, guarded};
-use crate::limits::{Limits, Work};
+use crate::limits::{Limits, Step, Work};
 use selvedge::model::Model;
 use selvedge_io::import::{
-    self, Facets, Folders, Import, ImportReport, NamedCamera, Options, PictureSettings, Stage, Summary, Warning,
+    self, Facets, Folders, Import, ImportError, ImportReport, NamedCamera, Options, PictureSettings, Stage, Summary,
+    Warning,
 };
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -69,14 +70,9 @@ pub fn read(
         Source::Bytes { name, .. } => name.to_owned(),
     };
     let step = Limits::new(&file, how.most_time, None).begin(Work::Reading);
-    let tell = |stage: Stage| {
-        stop.check();
-        step.check_at(stage);
-        progress(stage);
-    };
     let folders = Folders::new(how.search.clone());
     let options = Options {
-        progress: Some(&tell),
+        progress: Some(progress),
         most_bytes: Some(how.most_bytes.unwrap_or_else(|| memory() / 4 * 3)),
         files: Some(&folders),
         facets: Facets::Round,
@@ -84,15 +80,35 @@ pub fn read(
         run_openscad: false,
         ..Options::default()
     };
-    let import = guarded(|| {
-        Ok(match source {
-            Source::Path(path) => import::open_with(path, &options),
-            Source::Bytes { mut bytes, name } => import::read_from(&mut bytes, name, &options),
-        }?)
+    let import = import_within(&step, stop, &options, |options| match source {
+        Source::Path(path) => import::open_with(path, options),
+        Source::Bytes { mut bytes, name } => import::read_from(&mut bytes, name, options),
     });
-    let import = import?;
+    Loaded::new(file, import?)
+}
+
+/// Imports as a step of the work on a file: the step is tested where the import reports progress, and at its end, and
+/// the flag where it reports progress. `import` gets the options with a progress callback that does so.
+///
+/// # Errors
+/// [`SessionError::Import`], [`SessionError::Stopped`], [`SessionError::Limit`], [`SessionError::Panicked`].
+pub fn import_within(
+    step: &Step,
+    stop: &Stop,
+    options: &Options<'_>,
+    import: impl FnOnce(&Options<'_>) -> Result<Import, ImportError>,
+) -> Result<Import, SessionError> {
+    let progress = options.progress;
+    let tell = |stage: Stage| {
+        stop.check();
+        step.check_at(stage);
+        if let Some(progress) = progress {
+            progress(stage);
+        }
+    };
+    let import = guarded(|| Ok(import(&Options { progress: Some(&tell), ..*options })?))?;
     step.test()?;
-    Loaded::new(file, import)
+    Ok(import)
 }
 
 impl Loaded {
@@ -121,7 +137,6 @@ pub fn memory() -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use selvedge_io::import::ImportError;
     use std::io::ErrorKind;
 
     const BRACKET: &[u8] = include_bytes!("../../../samples/bracket.step");

@@ -64,10 +64,14 @@ pub enum Command {
     Save,
     /// Check the view against exact rays.
     Check,
+    /// The picture that would be written, to the clipboard.
+    CopyPicture,
     /// The line of `selvedge render` for this view, to the clipboard.
     CopyCommand,
     /// A text to the clipboard.
     CopyText(String),
+    /// Start picking points to measure between, or stop.
+    Points,
     /// Keep the measurement of the selection in the list.
     Measure,
     /// Show the help, or hide it.
@@ -128,15 +132,17 @@ pub fn shortcuts() -> Vec<Shortcut> {
         (Key::A, NONE, Command::ShowAll, "show everything"),
         (Key::C, NONE, Command::Cut, "cut at the selected face"),
         (Key::X, NONE, Command::SeeThrough, "see through selection"),
+        (Key::P, NONE, Command::Points, "measure between points"),
         (Key::M, NONE, Command::Measure, "keep the measurement"),
         (Key::Z, CTRL, Command::Undo, "undo"),
         (Key::Z, CTRL.plus(SHIFT), Command::Redo, "redo"),
-        (Key::T, NONE, Command::Trims, "drag trim loops of the selected face"),
+        (Key::T, NONE, Command::Trims, "drag a trim loop of the selected face"),
         (Key::E, CTRL, Command::SaveAs, "save the model"),
         (Key::S, CTRL, Command::Screenshot, "write the picture to a file"),
         (Key::S, CTRL.plus(SHIFT), Command::WritePicture, "write it there at once"),
         (Key::K, NONE, Command::Check, "check this view against exact rays"),
         (Key::C, CTRL.plus(SHIFT), Command::CopyCommand, "copy the command of this view"),
+        (Key::P, CTRL.plus(SHIFT), Command::CopyPicture, "copy the picture"),
         (Key::Escape, NONE, Command::Clear, "select nothing"),
         (Key::Questionmark, NONE, Command::Help, "help"),
         (Key::Q, CTRL, Command::Quit, "close"),

@@ -1,9 +1,8 @@
 //! Exact descriptions of selected items, and the command that draws the view.
 
-use crate::session::Picked;
-use crate::session::{Session, World};
+use crate::session::{Picked, PointKind, Session, World};
 use crate::settings::{Lines, SUN, Settings};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use selvedge::model::{Camera, EdgeKind, Face, Projection, SurfaceKind};
 use selvedge::picture::Style;
 
@@ -17,7 +16,9 @@ pub fn number(x: f64) -> String {
     }
     let digits = (11 - x.abs().log10().floor() as i32).clamp(0, 15) as usize;
     let text = format!("{x:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    let short = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text.as_str() };
+    let short = if short == "-0" { "0" } else { short };
+    short.to_owned()
 }
 
 /// A point or a direction.
@@ -55,6 +56,15 @@ pub fn short(world: &World, picked: &Picked) -> String {
             format!("edge {number} of {}", world.instance_name(instance))
         }
         Picked::Vertex { instance, vertex } => format!("vertex {} of {}", vertex + 1, world.instance_name(instance)),
+        Picked::Point { instance, kind, of, .. } => {
+            let (what, on) = match kind {
+                PointKind::Centre => ("centre of", Picked::Edge { instance, edge: of }),
+                PointKind::Middle => ("middle of", Picked::Edge { instance, edge: of }),
+                PointKind::OnEdge => ("point on", Picked::Edge { instance, edge: of }),
+                PointKind::OnFace => ("point on", Picked::Face { instance, face: of, uv: DVec2::ZERO }),
+            };
+            format!("{what} {}", short(world, &on))
+        }
         Picked::Instance(instance) => world.instance_name(instance),
         Picked::Number { instance: Some(instance), id } => format!("face #{id} of {}", world.instance_name(instance)),
         Picked::Number { instance: None, id } => format!("face #{id} of a solid"),
@@ -99,11 +109,8 @@ pub fn long(world: &World, picked: &Picked) -> Description {
                 lines.push(("faces", faces.collect::<Vec<_>>().join(", ")));
             }
         }
-        Picked::Vertex { instance, vertex } => {
-            let placed = &world.model.instances[instance];
-            if let Some(p) = world.edges_of(placed.part).and_then(|edges| edges.vertices.get(vertex)) {
-                lines.push(("point", vector(placed.transform.transform_point3(*p))));
-            }
+        Picked::Vertex { .. } | Picked::Point { .. } => {
+            lines.extend(world.point_of(picked).map(|p| ("point", vector(p))));
         }
         Picked::Instance(instance) => {
             let part = &world.model.parts[world.model.instances[instance].part];
@@ -208,9 +215,9 @@ mod tests {
 
     #[test]
     fn numbers_have_the_digits_that_they_need() {
-        let all = [0.0, 5.0, -0.5, 12.7, 1.0 / 3.0, 1234567.0, 2.0e-7, 25.4 / 3.0];
+        let all = [0.0, 5.0, -0.5, 12.7, 1.0 / 3.0, 1234567.0, 2.0e-7, 25.4 / 3.0, -1e-17];
         let text = all.map(number);
-        assert_eq!(text, ["0", "5", "-0.5", "12.7", "0.333333333333", "1234567", "0.0000002", "8.46666666667"]);
+        assert_eq!(text, ["0", "5", "-0.5", "12.7", "0.333333333333", "1234567", "0.0000002", "8.46666666667", "0"]);
     }
 
     /// The program's own default is ambient occlusion, and a light that casts no shadows.

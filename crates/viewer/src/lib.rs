@@ -10,11 +10,11 @@
 //! |---|---|
 //! | [`navigation`] | orbit, zoom, pan, presets of mice, standard views, view cube, transitions: pure functions |
 //! | [`view`] | the camera that the mouse moves, and the next picture |
-//! | [`pacing`] | fewer pixels while the view moves |
+//! | [`pacing`] | fewer pixels and effects while the view moves |
 //! | [`session`] | open files, visibility, colours, sections, selection, undo |
-//! | [`pick`], [`describe`], [`measure`] | items under the cursor, their description, sizes and distances |
+//! | [`pick`], [`describe`], [`measure`] | items and points under the cursor, their description, sizes and distances |
 //! | [`panels`], [`commands`] | the panels around the picture, and the commands |
-//! | [`settings`], [`watch`] | stored settings; files that change on the disk |
+//! | [`settings`], [`watch`], [`desktop`] | stored settings; files that change on the disk; the desktop's settings |
 //! | [`run`] | the window itself |
 //!
 //! The viewer uses the engine as any host does.
@@ -22,6 +22,7 @@
 
 pub mod commands;
 pub mod describe;
+pub mod desktop;
 pub mod measure;
 pub mod navigation;
 pub mod pacing;

@@ -47,7 +47,7 @@ pub struct Settings {
     pub preset: Preset,
     /// How a drag turns the model.
     pub orbit: OrbitStyle,
-    /// Views change at once.
+    /// Views change at once, whatever the desktop's settings say.
     pub reduced_motion: bool,
     /// Light or dark.
     pub theme: Theme,
@@ -92,11 +92,16 @@ impl Default for Settings {
     }
 }
 
-/// Where settings are, by the XDG Base Directory Specification 0.8: `$XDG_CONFIG_HOME`, else `~/.config`.
-pub fn path(config_home: Option<PathBuf>, home: Option<PathBuf>) -> Option<PathBuf> {
+/// The folder of the user's settings, by the XDG Base Directory Specification 0.8: `$XDG_CONFIG_HOME`, else
+/// `~/.config`.
+pub fn folder(config_home: Option<PathBuf>, home: Option<PathBuf>) -> Option<PathBuf> {
     let absolute = config_home.filter(|folder| folder.is_absolute());
-    let folder = absolute.or_else(|| home.map(|home| home.join(".config")))?;
-    Some(folder.join("selvedge").join("viewer.json"))
+    absolute.or_else(|| home.map(|home| home.join(".config")))
+}
+
+/// The window's settings in that [`folder`].
+pub fn path(folder: &Path) -> PathBuf {
+    folder.join("selvedge").join("viewer.json")
 }
 
 impl Settings {
@@ -194,7 +199,9 @@ mod tests {
 
     #[test]
     fn the_folder_is_that_of_the_specification() {
-        let at = |config: Option<&str>, home: Option<&str>| path(config.map(PathBuf::from), home.map(PathBuf::from));
+        let at = |config: Option<&str>, home: Option<&str>| {
+            folder(config.map(PathBuf::from), home.map(PathBuf::from)).map(|folder| path(&folder))
+        };
         assert_eq!(at(Some("/c"), Some("/h")), Some(PathBuf::from("/c/selvedge/viewer.json")));
         assert_eq!(at(Some("relative"), Some("/h")), Some(PathBuf::from("/h/.config/selvedge/viewer.json")));
         assert_eq!(at(None, None), None);

@@ -5,7 +5,7 @@
 //!   visibility, resolved ──find──▶ list of pixels ──mix──▶ their means ──write──▶ resolved
 //!
 //!        ┌────────────┐    sixteen points of the pixel: which of the surfaces that the pixels around see is nearest
-//!        │·  A  ╲     │    there, by its exact point and its trims?
+//!        │·  A  ╲     │    there, by its second-order terms and its trims?
 //!        │    ·  ╲  B │
 //!        └────────────┘
 //!

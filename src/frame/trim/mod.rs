@@ -7,7 +7,7 @@
 //! ```
 //!
 //! A scene uses one way; passes, pipelines and buffers of the other ways do not exist. The test of the way is compiled
-//! into the passes `visibility` and `gap_fill` ([`TrimTest`](crate::shaders::TrimTest)).
+//! into the passes that [`TrimTest`](crate::shaders::TrimTest) names.
 
 pub(crate) mod capacities;
 pub(crate) mod carry;

@@ -207,6 +207,16 @@ class Report:
         return {"schema": SCHEMA, **whole, "exit_status": self.exit_status()}
 
 
+def worst_cell(found):
+    """The worst distance that a judge of pictures found, a bound where it searched no farther."""
+    return f"> {found['worst_px'] / 2:g}" if found["beyond"] else found["worst_px"]
+
+
+def error_cells(found):
+    """Worst distance, that of one pixel in a thousand, and pixels off; empty where nothing was judged."""
+    return [worst_cell(found), found["p999_px"], found["off"]] if found else [""] * 3
+
+
 def plain(value):
     """Dataclasses as dictionaries, all the way down."""
     if isinstance(value, Missing):

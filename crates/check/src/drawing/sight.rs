@@ -15,8 +15,7 @@ use super::sources::Scene;
 use crate::edges::scale;
 use crate::{Hit, Probe, Visibility};
 use glam::{DAffine3, DVec3};
-use selvedge_geometry::edges::Sheet;
-use selvedge_geometry::spline::{Bezier, Control};
+use selvedge_geometry::edges::{Sheet, Track};
 
 /// Pixels by which a ray passes a fold.
 const BESIDE: f64 = 1e-3;
@@ -26,8 +25,6 @@ const BEFORE: f64 = 1e-9;
 const EDGE_ON: f64 = 1e-6;
 /// Sine above which neighbours that meet smoothly are both seen from the same side.
 const CLEARLY: f64 = 0.03;
-/// Samples of a trim curve, to find the place of a point.
-const SAMPLES: u32 = 24;
 
 /// What a place is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,26 +40,13 @@ pub(crate) enum State {
 /// A use of an edge, to find the face's normal at a point.
 struct Side<'s> {
     sheet: &'s Sheet<'s>,
-    curves: Vec<Bezier<DVec3>>,
-    /// Number of the curve, parameter, point.
-    samples: Vec<(usize, f64, DVec3)>,
+    track: Track,
 }
 
 impl Side<'_> {
     /// The unit outward normal next to a point, part coordinates.
     fn normal(&self, p: DVec3) -> Option<DVec3> {
-        let nearest = self.samples.iter().min_by(|a, b| a.2.distance_squared(p).total_cmp(&b.2.distance_squared(p)))?;
-        let (curve, mut t) = (&self.curves[nearest.0], nearest.1);
-        for _ in 0..4 {
-            let (h, dh) = curve.jet(t);
-            let uv = h.point();
-            let slope = (dh.truncate() - uv * dh.z) / h.z;
-            let jet = self.sheet.grid.jet(uv.x, uv.y);
-            let along = jet.du * slope.x + jet.dv * slope.y;
-            let step = (p - jet.point).dot(along) / along.length_squared();
-            t = if step.is_finite() { (t + step).clamp(0.0, 1.0) } else { t };
-        }
-        let uv = curve.point(t);
+        let uv = self.track.place(self.sheet, p)?;
         let normal = self.sheet.grid.normal(uv.x, uv.y)?;
         Some(if self.sheet.face.same_sense { normal } else { -normal })
     }
@@ -88,13 +72,7 @@ impl<'s> Sight<'s> {
                 let edges = &scene.edges[part];
                 let side = |used: &crate::model::EdgeUse| {
                     let sheet = &scene.sheets[part][used.face];
-                    let curves = sheet.along(used, edges.reach);
-                    let share = |k: u32| f64::from(k) / f64::from(SAMPLES);
-                    let of = |(i, c): (usize, &Bezier<DVec3>)| {
-                        (0..=SAMPLES).map(|k| (i, share(k), sheet.at(c, share(k)))).collect::<Vec<_>>()
-                    };
-                    let samples = curves.iter().enumerate().flat_map(of).collect();
-                    Side { sheet, curves, samples }
+                    Side { sheet, track: Track::new(sheet, used, edges.reach) }
                 };
                 edges.edges[edge].uses.iter().map(side).collect()
             }

@@ -7,7 +7,7 @@ use crate::camera::CameraFile;
 use crate::progress::during;
 use crate::render::named_for;
 use crate::target::{self, JSON, SVG, Target};
-use crate::{Outcome, output, session};
+use crate::{Outcome, output, reading};
 use anyhow::{Result, bail};
 use selvedge::model::{Camera, Projection};
 use selvedge::picture::{EdgeChoice, TangentEdges};
@@ -23,7 +23,7 @@ pub fn run(args: &DrawArgs) -> Result<Outcome> {
     let sheets = sheets(args)?;
     let outputs: Vec<Target> = sheets.iter().flat_map(Sheet::outputs).collect();
     target::check(&args.cut.inputs(&args.model), &outputs)?;
-    let mut import = session::open(&args.model, &args.read, &args.subdivide)?;
+    let mut import = reading::open(&args.model, &args.read, &args.subdivide)?;
     target::check_read(&import, &outputs)?;
     args.cut.apply(&mut import.model, &args.read)?;
     let cameras = sheets.iter().map(|sheet| args.camera.parallel(sheet.direction, &import));
@@ -46,7 +46,7 @@ pub fn run(args: &DrawArgs) -> Result<Outcome> {
         let drawing = during("drawing", || Drawing::new(model, &tracer, camera, &settings))?;
         let strokes = drawing.strokes();
         if strokes.is_empty() {
-            bail!("{}: nothing to draw: no line of the kinds asked for is in the picture", session::named(&args.model));
+            bail!("{}: nothing to draw: no line of the kinds asked for is in the picture", reading::named(&args.model));
         }
         if drawing.unresolved > 0 {
             tracing::warn!("{} places where silhouettes cross each other are left open", drawing.unresolved);

@@ -12,7 +12,7 @@ mod text;
 mod tiles;
 
 use crate::args::InfoArgs;
-use crate::{Outcome, output, remains, session};
+use crate::{Outcome, output, reading, remains};
 use anyhow::Result;
 use selvedge::model::{EdgeCounts, Mesh, Model, Part, SurfaceKind};
 use selvedge::picture::{SceneSettings, TrimWay};
@@ -89,7 +89,7 @@ struct PartRow<'a> {
 
 /// Reads the model and prints its description.
 pub fn run(args: &InfoArgs) -> Result<Outcome> {
-    let import = session::described(&args.model, &args.read, &args.subdivide)?;
+    let import = reading::described(&args.model, &args.read, &args.subdivide)?;
     let mut info = Info::new(&import);
     if !import.model.solids.is_empty() && info.bounds.is_some() {
         info.folded_tiles = Tiles::new(&import.model, &args.camera.of(&import)?);
@@ -102,7 +102,7 @@ pub fn run(args: &InfoArgs) -> Result<Outcome> {
             output::print(&deep::text(info.face_records))?;
         }
     }
-    session::judge(&args.model, &import, &args.read)?;
+    reading::judge(&args.model, &import, &args.read)?;
     remains::judge(&args.model, &import.model)?;
     Ok(Outcome::Good)
 }

@@ -12,9 +12,9 @@ use super::manifest::{Known, Manifest};
 use super::task::Task;
 use super::{Drawn, drawn};
 use crate::args::RenderArgs;
+use crate::model_renderer::{self, ModelRenderer};
 use crate::progress::{Files, files};
-use crate::session::{self, Session};
-use crate::{Outcome, explained, heap, target};
+use crate::{Outcome, explained, heap, reading, target};
 use anyhow::{Error, Result};
 use selvedge::gpu::GpuError;
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
@@ -35,10 +35,10 @@ pub fn run(args: &RenderArgs, tasks: &[Task]) -> Result<Outcome> {
     }
     let mut run = Run { args, manifest, device: None, failed: 0, complained: false };
     if !todo.is_empty() {
-        run.device = Some(session::opened(&args.frame, args.read.most_memory())?);
+        run.device = Some(model_renderer::opened(&args.frame, args.read.most_memory())?);
         run.all(&todo)?;
     }
-    let complained = run.device.take().is_some_and(session::close) | run.complained;
+    let complained = run.device.take().is_some_and(model_renderer::close) | run.complained;
     let drawn = todo.len() - run.failed;
     eprintln!("{drawn} of {} files drawn, {} skipped, {} failed", tasks.len(), done.len(), run.failed);
     Ok(if complained || run.failed > 0 { Outcome::Broken } else { Outcome::Good })
@@ -88,20 +88,20 @@ impl Run<'_> {
     /// Opens the device, if it is not open.
     fn open(&mut self) -> Result<()> {
         if self.device.is_none() {
-            self.device = Some(session::device(&self.args.frame, self.args.read.most_memory())?);
+            self.device = Some(model_renderer::device(&self.args.frame, self.args.read.most_memory())?);
         }
         Ok(())
     }
 
     /// Frees the device, and with it the model that was drawn.
     fn free(&mut self) {
-        self.complained |= self.device.take().is_some_and(session::close);
+        self.complained |= self.device.take().is_some_and(model_renderer::close);
         heap::trim();
     }
 
     /// Draws one file; an error ends the run.
     fn one(&mut self, task: &Task, opened: Result<Opened>, bar: &Files) -> Result<()> {
-        let (name, mut count) = (session::named(&task.model), 0);
+        let (name, mut count) = (reading::named(&task.model), 0);
         let result = opened.and_then(|opened| self.drawn(task, opened, &mut count));
         bar.one(&name);
         let Err(error) = result else { return Ok(()) };
@@ -122,15 +122,15 @@ impl Run<'_> {
         let (args, manifest) = (self.args, &mut self.manifest);
         target::check(&args.cut.inputs(&task.model), &task.outputs())?;
         let kept = self.device.take();
-        let device = || kept.map_or_else(|| session::device(&args.frame, args.read.most_memory()), Ok);
+        let device = || kept.map_or_else(|| model_renderer::device(&args.frame, args.read.most_memory()), Ok);
         let mut record = |drawn: &Drawn| -> Result<()> {
             let shot = &task.shots[*count];
             *count += 1;
             manifest.iter_mut().try_for_each(|manifest| manifest.drawn(task, shot, &known, drawn))
         };
-        let session = drawn(args, task, (import, &limits), device, &mut record)?;
-        self.complained |= session.complaints();
-        self.device = Some(Session::into_renderer(session));
+        let renderer = drawn(args, task, (import, &limits), device, &mut record)?;
+        self.complained |= renderer.complaints();
+        self.device = Some(ModelRenderer::into_headless(renderer));
         Ok(())
     }
 }
@@ -138,8 +138,8 @@ impl Run<'_> {
 /// Reads a file, with the facts for a manifest.
 fn imported(args: &RenderArgs, task: &Task, hashed: bool) -> Result<Opened> {
     let begun = Instant::now();
-    let limits = args.read.limits(&session::named(&task.model));
-    let import = session::open_within(&task.model, &args.read, &args.subdivide, &limits)?;
+    let limits = args.read.limits(&reading::named(&task.model));
+    let import = reading::open_within(&task.model, &args.read, &args.subdivide, &limits)?;
     let read_s = begun.elapsed().as_secs_f64();
     let of = || Known::new(&task.model, &import.summary(), import.warnings.len(), import.model.instances.len(), read_s);
     let known = if hashed { of()? } else { Known::default() };

@@ -7,8 +7,8 @@
 
 use crate::args::{Aov, RenderArgs};
 use crate::camera::CameraFile;
+use crate::model_renderer::Measured;
 use crate::output;
-use crate::session::Measured;
 use crate::target::{self, JSON, NPY, PNG, Target};
 use anyhow::{Result, bail};
 use selvedge::model::Camera;

@@ -3,6 +3,7 @@
 mod devices;
 mod draw;
 mod many;
+mod measure;
 mod missing;
 #[cfg(target_os = "linux")]
 mod openscad;
@@ -36,7 +37,8 @@ fn help_names_every_command_and_the_exit_statuses() {
     let help = selvedge(&["--help"]);
     assert_eq!(help.status.code(), Some(0));
     let help = text(&help.stdout);
-    let commands = ["render", "draw", "info", "check", "bench", "trims", "sweep", "report", "convert", "devices"];
+    let commands =
+        ["render", "draw", "info", "measure", "check", "bench", "trims", "sweep", "report", "convert", "devices"];
     for word in commands.into_iter().chain(["Exit status: 0 done; 1 a picture breaks"]) {
         assert!(help.contains(word), "{word} in {help}");
     }

@@ -8,7 +8,8 @@
 //!   mesh      creases and borders of triangles
 //!   flatten   an edge as a line in the picture
 //!   nearest   the point of an edge nearest to a pixel
-//!   curve     length of an edge; the line or circle that it is
+//!   track     the place in a face's (u, v) next to a point of its edge
+//!   curve     length and middle of an edge; the line or circle that it is
 //! ```
 //!
 //! Edges are found on demand, not when a file is read. An import stores only data that cannot be found again: the edge
@@ -27,10 +28,12 @@ mod mesh;
 pub mod nearest;
 mod sheet;
 mod stretch;
+mod track;
 mod vertices;
 
 pub use cut::CutCurve;
 pub use sheet::Sheet;
+pub use track::Track;
 
 use crate::math::golden::section;
 use crate::model::{Bounds, Edge, EdgeLimits, EdgeUse, Edges, Face, Part};

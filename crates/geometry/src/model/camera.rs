@@ -90,6 +90,12 @@ pub enum CameraError {
 }
 
 impl Camera {
+    /// Where the standard view looks from, from the model towards the eye: front, right, a little above; no axis of the
+    /// model is seen edge-on.
+    pub const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
+    /// The standard view's vertical field of view, degrees.
+    pub const FOV_DEG: f64 = 35.0;
+
     /// Checks that the camera defines a picture.
     ///
     /// # Errors

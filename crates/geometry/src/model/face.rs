@@ -22,6 +22,13 @@ pub enum SurfaceKind {
     BSpline,
 }
 
+impl SurfaceKind {
+    /// Whether it is given by one equation in space, which then holds for all patches of the surface.
+    pub fn is_elementary(self) -> bool {
+        matches!(self, Self::Plane | Self::Cylinder | Self::Cone | Self::Sphere | Self::Torus)
+    }
+}
+
 /// A closed chain of rational Bézier curves in the `(u, v)` domain of its face.
 ///
 /// Control points are homogeneous, `(w u, w v, w)`. The end of each curve is the start of the next,

@@ -124,6 +124,8 @@ pub struct Bounds {
 impl Bounds {
     /// The empty box.
     pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+    /// All of space.
+    pub const ALL: Self = Self { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
 
     /// Grown to hold `p`.
     pub fn with(self, p: DVec3) -> Self {

@@ -9,6 +9,7 @@
 //! The library opens no file by itself: the caller's [`Files`] find and read them, [`Folders`] on a disk. A file that
 //! is not found, cannot be read or contains itself is left out with a warning that names it.
 
+use super::guard::MAX_INSTANCES;
 use super::{Import, ImportError, Options, Place, Warnings};
 use crate::model::{Colour, Instance, Model, Primitive, Solid, SolidError};
 use glam::DAffine3;
@@ -45,9 +46,6 @@ pub(super) struct Mention {
 
 /// A file's own content, and its mentions of other files.
 pub(super) type Read = (Import, Vec<Mention>);
-
-/// Largest number of instances of all files together.
-const MAX_INSTANCES: usize = 1 << 20;
 
 const NOT_FOLLOWED: &str = "external file not followed";
 const NOT_READ: &str = "external file not read";

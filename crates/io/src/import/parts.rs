@@ -5,12 +5,11 @@
 //!   (name, mesh) … ─┘        └▶ a record a face
 //! ```
 
-use super::{FaceRecord, ImportReport, facets};
+use super::{FaceRecord, ImportReport, facets, stem};
 use crate::brep::BuiltFace;
 use crate::model::{Face, Instance, Mesh, Model, Part};
 use glam::DAffine3;
 use std::collections::HashMap;
-use std::path::Path;
 
 /// A face whose curves in `(u, v)` are the file's, with notes on repairs; or its number and why it is lost.
 pub(super) type Stated = Result<(Face, Vec<String>), (u32, String)>;
@@ -60,6 +59,5 @@ pub(super) fn assemble(
         body.closed = facets::closed(&body.meshes);
         instances.push(Instance { part, transform: DAffine3::IDENTITY, colour: None, name: body.name.clone() });
     }
-    let name = Path::new(file).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    Model { name, parts, instances, ..Model::default() }
+    Model { name: stem(file), parts, instances, ..Model::default() }
 }

@@ -18,8 +18,8 @@ pub trait Preview: Sync {
     fn is_due(&self) -> bool;
 
     /// Takes the finished parts in their places. Of one file all instances are there, with the numbers that they have at
-    /// the end, and parts that are not finished have no faces. Of several files the instances of those that are read are
-    /// there. Boolean solids come at the end alone. Such a model may have nothing to draw.
+    /// the end, and parts that are not finished have no faces; Boolean solids are not there. Of several files the
+    /// instances and the Boolean solids of those that are read are there. Such a model may have nothing to draw.
     fn take(&self, model: Model);
 }
 

@@ -56,8 +56,8 @@ pub enum Stage {
 pub struct Options<'a> {
     /// Called at the beginning of each stage, of STEP files before every body, after every face and some bytes of text,
     /// of IGES and OpenSCAD files between entities, and a hundred times a second while `openscad` runs, from several
-    /// threads. It should return at once, or unwind to end the import. Files that a file names have stages of their
-    /// own.
+    /// threads. It should return at once, or unwind to end the import, as [`Stop::check`](super::Stop::check) does. Files
+    /// that a file names have stages of their own.
     pub progress: Option<&'a (dyn Fn(Stage) + Sync)>,
     /// Takes the finished parts of STEP and IGES files and of assemblies in several files, while the rest is read.
     pub preview: Option<&'a dyn Preview>,

@@ -1,4 +1,4 @@
-//! A solid under construction, for the readers of Boolean solids.
+//! A solid under construction, and why it cannot be read, for the readers of Boolean solids.
 //!
 //! ```text
 //!   add(shape, placed) ──▶ leaf ─┐
@@ -7,9 +7,28 @@
 //!      box * {n·x <= d} * ...  ──┘   the box bounds the rest, so that the whole has a size
 //! ```
 
+use super::ImportError;
 use crate::csg::{Builder, Node, Op};
 use crate::model::{Bounds, Colour, GREY, Primitive, Shape, Solid};
 use glam::{DAffine3, DVec3};
+
+/// Why a text of Boolean solids is not read, and where.
+#[derive(Clone, Debug)]
+pub(super) struct Fault {
+    pub line: usize,
+    pub message: String,
+}
+
+impl Fault {
+    pub fn new(line: usize, message: impl Into<String>) -> Self {
+        Self { line, message: message.into() }
+    }
+
+    /// As an error of the file of this name.
+    pub fn of_file(self, name: &str) -> ImportError {
+        ImportError::Solid { file: name.to_owned(), line: self.line, message: self.message }
+    }
+}
 
 /// Where a primitive stands and how it looks.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,8 +6,8 @@
 //! | cylinder, cone, torus | through the axis, across the line from there to the picked point |
 //! | sphere | through the centre, across that line |
 
-use super::surface::{self, SurfaceShape};
 use crate::session::{Picked, Section, Session};
+use selvedge_geometry::measure::surface::{self, SurfaceShape};
 
 /// The section at the face that was selected last; `None` where no face is, or the face has none of these shapes.
 pub fn at_selection(session: &Session) -> Option<Section> {

@@ -1,40 +1,16 @@
-//! Measuring, in `f64`, on the surfaces and curves of the model: nothing is read from a picture.
+//! What a selection measures, and its text.
 //!
-//! | selected | measured |
-//! |---|---|
-//! | vertex | coordinates |
-//! | edge | length; radius, diameter and centre of a circle |
-//! | face | area; radius, diameter, axis, angle of its surface |
-//! | part | area, volume, centre of mass |
-//! | two of them | smallest distance and where; angle; distance of centres or axes |
-//!
-//! Values carry an estimate of their own error; the accuracy of the file is the limit.
+//! Numbers are those of [`selvedge_geometry::measure`].
 
 pub mod cut;
-pub mod distance;
-pub mod mass;
-pub mod surface;
 
 use crate::describe;
 use crate::session::Picked;
 use crate::session::World;
-use distance::{Distance, Sampled};
-use glam::{DAffine3, DVec3};
-use selvedge_geometry::edges::curve::{self, Circle, CurveShape};
-use surface::SurfaceShape;
+use glam::DVec3;
+use selvedge_geometry::measure::{self, Dimension, Item};
 
-/// One measured number.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Value {
-    /// Its name.
-    pub what: &'static str,
-    /// The number.
-    pub value: f64,
-    /// Estimate of its error, in the same unit.
-    pub error: f64,
-    /// `mm`, `mm²`, `mm³`, `°`.
-    pub unit: &'static str,
-}
+pub use selvedge_geometry::measure::Value;
 
 /// The measurement of a selection.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -50,14 +26,6 @@ pub struct Measurement {
 }
 
 impl Measurement {
-    fn add(&mut self, what: &'static str, value: f64, error: f64, unit: &'static str) {
-        self.values.push(Value { what, value, error, unit });
-    }
-
-    fn dimension(&mut self, ends: [DVec3; 2], what: &str, value: f64) {
-        self.dimensions.push((ends, format!("{what} {}", describe::number(value))));
-    }
-
     /// As text, a line a number.
     pub fn text(&self) -> String {
         let values = self.values.iter().map(|v| format!("{}: {} {}", v.what, describe::number(v.value), v.unit));
@@ -83,169 +51,96 @@ pub const CSV_HEADER: &str = "things,quantity,value,error,unit\n";
 /// Measures one or two items; `None` for another number of items, and where nothing can be measured.
 pub fn measure(world: &World, selection: &[Picked]) -> Option<Measurement> {
     let title = selection.iter().map(|picked| describe::short(world, picked)).collect::<Vec<_>>().join(" and ");
-    let mut all = Measurement { title, ..Measurement::default() };
-    match selection {
-        [one] => single(world, one, &mut all)?,
-        [a, b] => pair(world, a, b, &mut all)?,
+    let measured = match selection {
+        [one] => measure::one(&item(world, one)?)?,
+        [a, b] => measure::two(&item(world, a)?, &item(world, b)?)?,
         _ => return None,
+    };
+    let between_points = selection.len() == 2 && selection.iter().all(Picked::is_point);
+    let text = |d: Dimension| (d.ends, label(&d, between_points));
+    let dimensions = measured.dimensions.into_iter().map(text).collect();
+    Some(Measurement { title, values: measured.values, points: measured.points, dimensions })
+}
+
+/// The text of a dimension. Of one between points it says how far they are apart along the axes, too.
+fn label(dimension: &Dimension, between_points: bool) -> String {
+    let mut text = format!("{} {}", dimension.what, describe::number(dimension.value)).trim_start().to_owned();
+    if between_points {
+        let [x, y, z] = (dimension.ends[1] - dimension.ends[0]).to_array().map(describe::number);
+        text += &format!("\ndx {x}  dy {y}  dz {z}");
     }
-    Some(all)
+    text
 }
 
-/// An item in its place.
-enum Thing<'a> {
-    Point(DVec3),
-    Edge(&'a selvedge::model::Edge, DAffine3),
-    Face(&'a selvedge::model::Face, DAffine3),
-}
-
-fn thing<'a>(world: &'a World, picked: &Picked) -> Option<Thing<'a>> {
+/// The geometry of an item, in its place.
+fn item<'a>(world: &'a World, picked: &Picked) -> Option<Item<'a>> {
     let placed = world.model.instances.get(picked.instance()?)?;
+    let part = world.model.parts.get(placed.part)?;
     let edges = world.edges_of(placed.part);
     match *picked {
-        Picked::Face { face, .. } => {
-            Some(Thing::Face(world.model.parts[placed.part].faces.get(face)?, placed.transform))
-        }
-        Picked::Edge { edge, .. } => Some(Thing::Edge(edges?.edges.get(edge)?, placed.transform)),
-        Picked::Vertex { vertex, .. } => {
-            Some(Thing::Point(placed.transform.transform_point3(*edges?.vertices.get(vertex)?)))
-        }
-        Picked::Instance(_) | Picked::Number { .. } => None,
+        Picked::Face { face, .. } => Some(Item::Face(part.faces.get(face)?, placed.transform)),
+        Picked::Edge { edge, .. } => Some(Item::Edge(vec![edges?.edges.get(edge)?], placed.transform)),
+        Picked::Vertex { .. } | Picked::Point { .. } => world.point_of(picked).map(Item::Point),
+        Picked::Instance(_) => Some(Item::Part(part, placed.transform)),
+        Picked::Number { .. } => None,
     }
-}
-
-fn round(all: &mut Measurement, circle: &Circle) {
-    all.add("radius", circle.radius, 0.0, "mm");
-    all.add("diameter", 2.0 * circle.radius, 0.0, "mm");
-    all.points.push(("centre", circle.centre));
-    let rim = circle.centre + circle.axis.any_orthonormal_vector() * circle.radius;
-    all.dimension([circle.centre, rim], "R", circle.radius);
-}
-
-fn single(world: &World, picked: &Picked, all: &mut Measurement) -> Option<()> {
-    if let Picked::Instance(instance) = *picked {
-        let placed = world.model.instances.get(instance)?;
-        let part = world.model.parts.get(placed.part)?;
-        if part.faces.is_empty() {
-            return None;
-        }
-        let mass = mass::mass(part, placed);
-        all.add("area", mass.area.area, mass.area.error, "mm²");
-        if part.closed {
-            all.add("volume", mass.volume, mass.error, "mm³");
-            all.points.push(("centre of mass", mass.centre));
-        }
-        return Some(());
-    }
-    match thing(world, picked)? {
-        Thing::Point(p) => all.points.push(("point", p)),
-        Thing::Edge(edge, transform) => {
-            let (length, error) = curve::length(edge, transform);
-            all.add("length", length, error, "mm");
-            match curve::shape(edge, transform) {
-                CurveShape::Circle(circle) => round(all, &circle),
-                CurveShape::Line(direction) => all.points.push(("direction", direction)),
-                CurveShape::Other => {}
-            }
-        }
-        Thing::Face(face, transform) => {
-            let area = mass::area(face, transform);
-            all.add("area", area.area, area.error, "mm²");
-            match surface::shape(face, transform) {
-                SurfaceShape::Plane { normal, .. } => all.points.push(("normal", normal)),
-                SurfaceShape::Cylinder { axis, point, radius } => {
-                    round(all, &Circle { centre: point, axis, radius });
-                    all.points.push(("axis", axis));
-                }
-                SurfaceShape::Sphere { centre, radius } => {
-                    round(all, &Circle { centre, axis: DVec3::Z, radius });
-                }
-                SurfaceShape::Cone { axis, apex, half_angle } => {
-                    all.add("half angle", half_angle.to_degrees(), 0.0, "°");
-                    all.points.extend([("apex", apex), ("axis", axis)]);
-                }
-                SurfaceShape::Torus { axis, centre, major, minor } => {
-                    all.add("major radius", major, 0.0, "mm");
-                    all.add("minor radius", minor, 0.0, "mm");
-                    all.points.extend([("centre", centre), ("axis", axis)]);
-                }
-                SurfaceShape::Other => {}
-            }
-        }
-    }
-    Some(())
-}
-
-/// A direction to measure angles to, whether it is a normal, and a middle: a point or a line.
-type Frame = (Option<(DVec3, bool)>, Option<(DVec3, Option<DVec3>)>);
-
-fn frame(thing: &Thing<'_>) -> Frame {
-    match thing {
-        Thing::Point(p) => (None, Some((*p, None))),
-        Thing::Edge(edge, transform) => match curve::shape(edge, *transform) {
-            CurveShape::Line(direction) => (Some((direction, false)), None),
-            CurveShape::Circle(circle) => (Some((circle.axis, false)), Some((circle.centre, None))),
-            CurveShape::Other => (None, None),
-        },
-        Thing::Face(face, transform) => {
-            let shape = surface::shape(face, *transform);
-            let is_normal = matches!(shape, SurfaceShape::Plane { .. });
-            (shape.direction().map(|d| (d, is_normal)), shape.middle())
-        }
-    }
-}
-
-fn pieces<'a>(thing: &Thing<'a>) -> Vec<Sampled<'a>> {
-    match *thing {
-        Thing::Point(p) => Sampled::point(p),
-        Thing::Edge(edge, transform) => Sampled::edge(edge, transform),
-        Thing::Face(face, transform) => Sampled::face(face, transform),
-    }
-}
-
-fn pair(world: &World, a: &Picked, b: &Picked, all: &mut Measurement) -> Option<()> {
-    let (a, b) = (thing(world, a)?, thing(world, b)?);
-    let Distance { distance, points: [p, q], error } = distance::smallest(&pieces(&a), &pieces(&b))?;
-    all.add("distance", distance, error, "mm");
-    for (what, x) in ["along x", "along y", "along z"].into_iter().zip((q - p).to_array()) {
-        all.add(what, x, error, "mm");
-    }
-    all.points.extend([("from", p), ("to", q)]);
-    all.dimension([p, q], "", distance);
-    let ((turn_a, middle_a), (turn_b, middle_b)) = (frame(&a), frame(&b));
-    if let (Some((d, d_is_normal)), Some((e, e_is_normal))) = (turn_a, turn_b) {
-        let angle = d.cross(e).length().atan2(d.dot(e).abs()).to_degrees();
-        // a plane's angle to a line is that of its normal, less a right angle
-        let angle = if d_is_normal == e_is_normal { angle } else { 90.0 - angle };
-        all.add("angle", angle, 0.0, "°");
-    }
-    if let (Some((c, along_c)), Some((d, along_d))) = (middle_a, middle_b)
-        && let Some((p, q)) = between(c, along_c, d, along_d)
-    {
-        let what = if along_c.is_some() || along_d.is_some() { "between axes" } else { "between centres" };
-        all.add(what, p.distance(q), 0.0, "mm");
-        all.dimension([p, q], "axes", p.distance(q));
-    }
-    Some(())
-}
-
-/// The nearest points of two points or lines.
-fn between(p: DVec3, along_p: Option<DVec3>, q: DVec3, along_q: Option<DVec3>) -> Option<(DVec3, DVec3)> {
-    let foot = |on: DVec3, along: DVec3, of: DVec3| on + along * (of - on).dot(along);
-    Some(match (along_p, along_q) {
-        (None, None) => (p, q),
-        (Some(d), None) => (foot(p, d, q), q),
-        (None, Some(e)) => (p, foot(q, e, p)),
-        (Some(d), Some(e)) => {
-            let cross = d.cross(e);
-            if cross.length() < 1e-9 {
-                return Some((p, foot(q, e, p)));
-            }
-            let (apart, square) = (q - p, cross.length_squared());
-            (p + d * (apart.cross(e).dot(cross) / square), q + e * (apart.cross(d).dot(cross) / square))
-        }
-    })
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+    use crate::session::PointKind;
+    use glam::{DAffine3, DQuat};
+    use selvedge::construct::shapes;
+    use selvedge::model::{Instance, Model};
+
+    #[test]
+    fn a_dimension_between_points_says_how_far_they_are_apart_along_the_axes() {
+        let ends = [DVec3::new(1.0, 2.0, 3.0), DVec3::new(3.0, 5.0, -3.0)];
+        let of = |what, between_points| label(&Dimension { ends, what, value: 7.0 }, between_points);
+        assert_eq!([of("", true), of("", false), of("R", false)], ["7\ndx 2  dy 3  dz -6", "7", "R 7"]);
+    }
+
+    /// A part that is turned and moved: its points are measured where they are.
+    #[test]
+    fn picked_points_are_measured_in_their_place() {
+        let block = shapes::block(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)).expect("a block").part;
+        let turn = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
+        let transform = DAffine3::from_rotation_translation(turn, DVec3::new(10.0, 0.0, 0.0));
+        let placed = Instance { part: 0, transform, colour: None, name: String::new() };
+        let mut world = World::default();
+        world.model = Model { parts: vec![block], instances: vec![placed], ..Model::default() };
+        world.find_edges();
+        let vertices = &world.edges_of(0).expect("found").vertices;
+        let vertex = vertices.iter().position(|p| p.length() < 1e-12).expect("a corner at the origin");
+        let at = DVec3::new(1.0, 1.0, 1.5);
+        let selection =
+            [Picked::Vertex { instance: 0, vertex }, Picked::Point { instance: 0, kind: PointKind::OnFace, of: 0, at }];
+        let measured = measure(&world, &selection).expect("two points");
+        let all = measured.values.iter().map(|v| (v.what, v.value));
+        // x is y of the part, turned around
+        let expected = [("distance", 4.25_f64.sqrt()), ("along x", -1.0), ("along y", 1.0), ("along z", 1.5)];
+        for ((what, value), (name, number)) in all.clone().zip(expected) {
+            assert!(what == name && (value - number).abs() < 1e-14, "{what}: {value}");
+        }
+        assert_eq!(all.len(), expected.len());
+        let [(ends, text)] = &measured.dimensions[..] else { panic!("{:?}", measured.dimensions) };
+        assert!(ends[1].distance(DVec3::new(9.0, 1.0, 1.5)) < 1e-14 && text.contains("dx -1  dy 1  dz 1.5"), "{text}");
+        assert!(measured.csv().contains(",along x,-1"), "{}", measured.csv());
+        assert!(measured.text().contains("along z: 1.5 mm"), "{}", measured.text());
+    }
+
+    #[test]
+    fn a_measurement_is_text_and_a_table() {
+        let all = Measurement {
+            title: "edge \"1\"".to_owned(),
+            values: vec![Value { what: "length", value: 1.0 / 3.0, error: 1e-16, unit: "mm" }],
+            points: vec![("centre", DVec3::new(1.0, 2.5, -3.0))],
+            dimensions: Vec::new(),
+        };
+        assert_eq!(all.text(), "edge \"1\"\nlength: 0.333333333333 mm\ncentre: 1, 2.5, -3");
+        let title = "\"edge \"\"1\"\"\"";
+        let rows = ["length,0.3333333333333333,0.0000000000000001", "centre x,1,0", "centre y,2.5,0", "centre z,-3,0"];
+        assert_eq!(all.csv(), rows.map(|row| format!("{title},{row},mm\n")).concat());
+    }
+}

@@ -7,11 +7,17 @@
 //! | Onshape | R | M, Ctrl+R | wheel |
 //! | CATIA | M+L or M+R | M | hold M, click L or R, drag |
 //! | Blender, FreeCAD | M; FreeCAD M+L | Shift+M; FreeCAD M | wheel, Ctrl+M |
-//! | F3D, trackpad | L | M, Shift+L | wheel |
+//! | F3D | L | M, Shift+L | wheel |
+//! | trackpad | L, Shift + two fingers | two fingers, M, Shift+L | pinch, Ctrl + two fingers, wheel |
 //!
-//! L, M, R are the buttons. A left button that goes down and up in one place selects, whatever the style.
+//! L, M, R are the buttons. With the other styles two fingers are a wheel; a pinch zooms with every style. A left
+//! button that goes down and up in one place selects, whatever the style.
 
+use glam::DVec2;
 use serde::{Deserialize, Serialize};
+
+/// Pixels that two fingers move on a trackpad for one line of a wheel.
+pub const LINE_PX: f64 = 40.0;
 
 /// A program's style.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -38,6 +44,26 @@ pub enum Action {
     Pan,
     /// Closer and farther.
     Zoom,
+}
+
+/// A scroll as the system reports it: right and down, as what is scrolled would move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scroll {
+    /// Lines: a wheel. X11 reports two fingers so, too.
+    Lines(DVec2),
+    /// Pixels: two fingers on a trackpad.
+    Pixels(DVec2),
+}
+
+/// The effect of a scroll.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scrolled {
+    /// Turn as by a drag of so many pixels.
+    Orbit(DVec2),
+    /// Move by so many pixels.
+    Pan(DVec2),
+    /// Come closer by so many lines of a wheel.
+    Zoom(f64),
 }
 
 /// A mouse button.
@@ -98,7 +124,10 @@ impl Preset {
             Self::Catia => ["middle + left, middle + right", "middle", "wheel, hold middle and click left, drag"],
             Self::Blender => ["middle", "Shift + middle", "wheel, Ctrl + middle"],
             Self::FreeCad => ["middle + left, middle + right", "middle", "wheel"],
-            Self::F3d | Self::Trackpad => ["left", "middle, Shift + left", "wheel"],
+            Self::F3d => ["left", "middle, Shift + left", "wheel"],
+            Self::Trackpad => {
+                ["left, Shift + two fingers", "two fingers, middle, Shift + left", "pinch, Ctrl + two fingers, wheel"]
+            }
         }
     }
 
@@ -131,6 +160,20 @@ impl Preset {
             Self::F3d | Self::Trackpad if m || l && held.shift => Some(Pan),
             Self::F3d | Self::Trackpad if l => Some(Orbit),
             _ => None,
+        }
+    }
+
+    /// The effect of a scroll while these are held. A wheel turns by whole lines up or down; anything else is two
+    /// fingers.
+    pub fn scroll(self, scroll: Scroll, held: Held) -> Scrolled {
+        let (by_fingers, pixels) = match scroll {
+            Scroll::Lines(lines) => (lines.x != 0.0 || lines.y.fract() != 0.0, lines * LINE_PX),
+            Scroll::Pixels(pixels) => (true, pixels),
+        };
+        match self {
+            Self::Trackpad if by_fingers && held.shift => Scrolled::Orbit(pixels),
+            Self::Trackpad if by_fingers && !held.ctrl => Scrolled::Pan(pixels),
+            _ => Scrolled::Zoom(pixels.y / LINE_PX),
         }
     }
 }
@@ -193,6 +236,24 @@ mod tests {
         for (preset, moves) in table {
             for (keys, action) in moves {
                 assert_eq!(preset.action(held(keys)), action, "{preset:?} {keys}");
+            }
+        }
+    }
+
+    #[test]
+    fn two_fingers_move_and_turn_with_the_trackpad_s_style_alone() {
+        let by = DVec2::new(12.0, -20.0);
+        let fingers = [Scroll::Pixels(by), Scroll::Lines(by / LINE_PX)];
+        let wheel = Scroll::Lines(DVec2::new(0.0, -2.0));
+        for preset in Preset::ALL {
+            assert_eq!(preset.scroll(wheel, held("")), Scrolled::Zoom(-2.0), "{preset:?}");
+            assert_eq!(preset.scroll(wheel, held("+")), Scrolled::Zoom(-2.0), "{preset:?}");
+            let is_trackpad = preset == Preset::Trackpad;
+            for scroll in fingers {
+                let zoom = Scrolled::Zoom(-0.5);
+                let [plain, shift, ctrl] = ["", "+", "^"].map(|keys| preset.scroll(scroll, held(keys)));
+                let wanted = if is_trackpad { [Scrolled::Pan(by), Scrolled::Orbit(by), zoom] } else { [zoom; 3] };
+                assert_eq!([plain, shift, ctrl], wanted, "{preset:?} {scroll:?}");
             }
         }
     }

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //!   orbit   eye, axis and up turn about a pivot      the pivot's pixel stays where it is
+//!   roll    eye and up turn about the view's axis    the pivot's pixel stays where it is
 //!   zoom    eye and target shrink towards an anchor  the anchor's pixel stays where it is
 //!   pan     eye moves across                         the anchor follows the cursor
 //!   settle  near and far plane around what is drawn  up to 10^6 times closer than the whole model
@@ -19,7 +20,7 @@ use selvedge::model::{Bounds, Camera, Projection};
 use serde::{Deserialize, Serialize};
 
 /// Vertical field of view of a perspective view, radians: that of the pictures that `selvedge render` draws.
-pub const FOV: f64 = 35.0 * std::f64::consts::PI / 180.0;
+pub const FOV: f64 = Camera::FOV_DEG * std::f64::consts::PI / 180.0;
 /// Room around what fits the picture.
 const MARGIN: f64 = 1.06;
 /// The near plane is no farther than this share of the distance to the target: the point that the mouse holds is not
@@ -60,6 +61,12 @@ pub fn orbit(camera: &Camera, pivot: DVec3, drag: DVec2, style: OrbitStyle) -> C
         }
     };
     turned(camera, pivot, turn)
+}
+
+/// Turns the view about its axis, so that the picture turns about `pivot` by an angle, radians, counterclockwise.
+pub fn roll(camera: &Camera, pivot: DVec3, angle: f64) -> Camera {
+    let (_, _, forward) = camera.axes();
+    turned(camera, pivot, DQuat::from_axis_angle(forward, angle))
 }
 
 /// The view turned about a point.

@@ -33,6 +33,19 @@ fn orbit_leaves_its_pivot_where_it_is() {
 }
 
 #[test]
+fn a_roll_turns_the_picture_counterclockwise_about_its_pivot() {
+    let pivot = DVec3::new(35.0, 12.0, 17.0);
+    for camera in cameras() {
+        let (right, _, _) = camera.axes();
+        let beside = |camera: &Camera| pixel(camera, pivot + right * 10.0) - pixel(camera, pivot);
+        let rolled = roll(&camera, pivot, std::f64::consts::FRAC_PI_2);
+        assert!(pixel(&rolled, pivot).distance(pixel(&camera, pivot)) < STILL_PX);
+        let (before, after) = (beside(&camera), beside(&rolled));
+        assert!(before.x > 10.0 && after.distance(DVec2::new(0.0, -before.x)) < STILL_PX, "{before} {after}");
+    }
+}
+
+#[test]
 fn a_turntable_stays_upright_and_stops_at_the_pole() {
     let mut camera = cameras()[0];
     for _ in 0..40 {

@@ -71,8 +71,10 @@ pub struct Ui {
     pub shot: Shot,
     /// The last verdict of the judge.
     pub verdict: Option<Verdict>,
-    /// Trim loops of the selected face can be dragged.
+    /// A trim loop of the selected face can be dragged.
     pub trims: bool,
+    /// The loop whose points have handles.
+    chosen: Option<trims::Chosen>,
     /// A notice on the selected face.
     pub notice: Option<String>,
     /// The file to save the model to, while its dialog is open.
@@ -127,6 +129,7 @@ impl Default for Ui {
             shot: Shot { open: false, path: PathBuf::from("view.png"), size: (1280, 720), transparent: false },
             verdict: None,
             trims: false,
+            chosen: None,
             notice: None,
             save: None,
         }
@@ -239,6 +242,10 @@ impl Ui {
                 }
             }),
             Command::Help => self.help = !self.help,
+            Command::Points => {
+                let is_on = self.filter == PickFilter::Points;
+                self.filter = if is_on { PickFilter::Any } else { PickFilter::Points };
+            }
             Command::Trims => self.trims = !self.trims,
             Command::SaveAs => {
                 self.save = if self.save.is_none() { Some(PathBuf::from("edited.selvedge")) } else { None };

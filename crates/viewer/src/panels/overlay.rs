@@ -1,18 +1,22 @@
-//! Drawings over the picture: view cube, marked edges and corners.
+//! Drawings over the picture: view cube, marked edges and points, dimensions.
 
 use super::{Facts, Ui};
 use crate::commands::Command;
 use crate::navigation::cube;
-use crate::session::Picked;
-use crate::session::Session;
+use crate::pick::PickFilter;
+use crate::session::{Picked, PointKind, Session};
 use egui::{Color32, Pos2, Rect, Shape, Stroke};
-use glam::{DVec2, DVec3};
-use selvedge::model::Camera;
+use glam::{DAffine3, DVec2, DVec3};
+use selvedge::model::{Camera, Edge};
 
 /// Side of the cube's widget, points.
 const CUBE: f32 = 96.0;
 /// Chords of one Bézier piece of a marked edge.
 const CHORDS: usize = 24;
+/// From a point to its name.
+const BESIDE: egui::Vec2 = egui::Vec2::new(12.0, -12.0);
+/// Half of the size of a point's mark.
+const MARK: f32 = 5.0;
 const HOVERED: Color32 = Color32::from_rgb(255, 150, 20);
 const SELECTED: Color32 = Color32::from_rgb(30, 110, 255);
 
@@ -28,6 +32,9 @@ pub fn show(ctx: &egui::Context, rect: Rect, ui: &mut Ui, session: &mut Session,
     let all = session.selection.iter().map(|picked| (picked, SELECTED)).chain(hovered.iter().map(|p| (p, HOVERED)));
     for (picked, colour) in all {
         mark(&painter, &place, session, picked, colour);
+    }
+    if let Some(picked) = hovered.filter(|_| ui.filter == PickFilter::Points) {
+        name(&painter, &place, session, &picked);
     }
     // dimensions are those of the model as it is
     let is_together = session.scene.now().explosion == 0.0;
@@ -48,10 +55,36 @@ fn dimension(painter: &egui::Painter, place: &Place<'_>, ends: [DVec3; 2], text:
     for end in [a, b] {
         painter.circle_filled(end, 3.0, SELECTED);
     }
+    label(painter, a + (b - a) * 0.5, egui::Align2::CENTER_CENTER, text, SELECTED);
+}
+
+/// A text on a ground of a colour.
+fn label(painter: &egui::Painter, at: Pos2, anchor: egui::Align2, text: &str, colour: Color32) {
     let galley = painter.layout_no_wrap(text.to_owned(), egui::FontId::proportional(13.0), Color32::WHITE);
-    let at = a + (b - a) * 0.5 - galley.size() * 0.5;
-    painter.rect_filled(Rect::from_min_size(at, galley.size()).expand(3.0), 3.0, SELECTED);
-    painter.galley(at, galley, Color32::WHITE);
+    let ground = anchor.anchor_size(at, galley.size());
+    painter.rect_filled(ground.expand(3.0), 3.0, colour);
+    painter.galley(ground.min, galley, Color32::WHITE);
+}
+
+/// The kind of the point under the cursor, beside it.
+fn name(painter: &egui::Painter, place: &Place<'_>, session: &Session, picked: &Picked) {
+    let text = match picked {
+        Picked::Vertex { .. } => "vertex",
+        Picked::Point { kind: PointKind::Centre, .. } => "centre",
+        Picked::Point { kind: PointKind::Middle, .. } => "middle",
+        Picked::Point { kind: PointKind::OnEdge, .. } => "on edge",
+        Picked::Point { kind: PointKind::OnFace, .. } => "on face",
+        _ => return,
+    };
+    let Some(at) = place_of(place, session, picked) else { return };
+    label(painter, at + BESIDE, egui::Align2::LEFT_BOTTOM, text, HOVERED);
+}
+
+/// Where a vertex or a point is drawn.
+fn place_of(place: &Place<'_>, session: &Session, picked: &Picked) -> Option<Pos2> {
+    let point = session.world.point_of(picked)?;
+    let moved = session.scene.now().moved(picked.instance()?, &session.world);
+    place.of(moved.transform_point3(point))
 }
 
 /// Wrong pixels of the verdict, while the view is the judged one.
@@ -81,36 +114,58 @@ impl Place<'_> {
     }
 }
 
-/// Draws an edge or a vertex; faces are marked in the picture.
+/// Draws an edge, a vertex or another point; faces are marked in the picture.
 fn mark(painter: &egui::Painter, place: &Place<'_>, session: &Session, picked: &Picked, colour: Color32) {
-    let world = &session.world;
+    let (world, state) = (&session.world, session.scene.now());
     let Some(instance) = picked.instance().filter(|i| *i < world.model.instances.len()) else { return };
-    let Some(edges) = world.edges_of(world.model.instances[instance].part) else { return };
-    let state = session.scene.now();
     if state.hidden.contains(&instance) {
         return;
     }
-    let transform = state.placement(instance, world);
+    let draw = |edge: usize, width: f32| {
+        let edges = world.edges_of(world.model.instances[instance].part);
+        if let Some(edge) = edges.and_then(|edges| edges.edges.get(edge)) {
+            curve(painter, place, edge, state.placement(instance, world), Stroke::new(width, colour));
+        }
+    };
     match *picked {
-        Picked::Edge { edge, .. } => {
-            let Some(edge) = edges.edges.get(edge) else { return };
-            for span in &edge.curve {
-                let points = (0..=CHORDS).map(|i| span.piece.point(i as f64 / CHORDS as f64));
-                let points: Vec<Option<Pos2>> = points.map(|p| place.of(transform.transform_point3(p))).collect();
-                for pair in points.windows(2) {
-                    if let [Some(a), Some(b)] = *pair {
-                        painter.line_segment([a, b], Stroke::new(3.0, colour));
-                    }
-                }
-            }
-        }
-        Picked::Vertex { vertex, .. } => {
-            let p = edges.vertices.get(vertex).and_then(|p| place.of(transform.transform_point3(*p)));
-            if let Some(at) = p {
-                painter.circle(at, 4.0, colour, Stroke::new(1.0, Color32::WHITE));
-            }
-        }
+        Picked::Edge { edge, .. } => draw(edge, 3.0),
+        // the edge that it is the centre, the middle or a point of
+        Picked::Point { kind, of, .. } if kind != PointKind::OnFace => draw(of, 1.5),
         _ => {}
+    }
+    let Some(at) = place_of(place, session, picked) else { return };
+    let (white, stroke) = (Stroke::new(1.0, Color32::WHITE), Stroke::new(2.0, colour));
+    match *picked {
+        Picked::Point { kind: PointKind::Centre, .. } => {
+            painter.circle_stroke(at, MARK, stroke);
+            painter.circle_filled(at, 1.5, colour);
+        }
+        Picked::Point { kind: PointKind::Middle, .. } => {
+            let corners = [(-MARK, MARK), (MARK, MARK), (0.0, -MARK)].map(|(x, y)| at + egui::Vec2::new(x, y));
+            painter.add(Shape::convex_polygon(corners.to_vec(), colour, white));
+        }
+        Picked::Point { kind: PointKind::OnEdge, .. } => {
+            for across in [egui::Vec2::new(MARK, MARK), egui::Vec2::new(MARK, -MARK)] {
+                painter.line_segment([at - across, at + across], stroke);
+            }
+        }
+        // a vertex, or a point of a face
+        _ => {
+            painter.circle(at, 4.0, colour, white);
+        }
+    }
+}
+
+/// Draws the curve of a placed edge.
+fn curve(painter: &egui::Painter, place: &Place<'_>, edge: &Edge, transform: DAffine3, stroke: Stroke) {
+    for span in &edge.curve {
+        let points = (0..=CHORDS).map(|i| span.piece.point(i as f64 / CHORDS as f64));
+        let points: Vec<Option<Pos2>> = points.map(|p| place.of(transform.transform_point3(p))).collect();
+        for pair in points.windows(2) {
+            if let [Some(a), Some(b)] = *pair {
+                painter.line_segment([a, b], stroke);
+            }
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use super::Ui;
 use crate::commands::Command;
 use crate::describe;
 use crate::measure::{CSV_HEADER, Measurement};
+use crate::pick::PickFilter;
 use crate::session::Session;
 
 /// Items that are described in full; further ones are only named.
@@ -11,13 +12,24 @@ const MOST: usize = 6;
 
 /// Shows it.
 pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
-    panel.heading("Selection");
+    let points = ui.filter == PickFilter::Points;
+    panel.horizontal(|row| {
+        row.heading("Selection");
+        if row.selectable_label(points, "Points").on_hover_text("Measure between points (P)").clicked() {
+            ui.commands.push(Command::Points);
+        }
+    });
     if session.selection.is_empty() {
-        panel.label("Click a face, an edge, a corner. Shift adds.");
+        panel.label(if points {
+            "Click two points: corners, centres and middles of edges, places on edges and faces."
+        } else {
+            "Click a face, an edge, a corner. Shift adds."
+        });
     }
     if let Some(notice) = &ui.notice {
         panel.colored_label(panel.visuals().warn_fg_color, notice);
     }
+    super::trims::list(panel, ui, session);
     // content wider than the panel scrolls: the picture keeps its size
     egui::ScrollArea::both().auto_shrink(false).show(panel, |area| {
         let world = session.world.clone();

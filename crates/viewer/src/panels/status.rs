@@ -20,8 +20,10 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &Session, facts: &Facts<
         badge(row, ui, session, facts);
         row.separator();
         let under = facts.view.hover.and_then(|hover| {
-            let name = describe::short(&session.world, hover.hit.picked.as_ref()?);
-            Some(hover.hit.point.map_or(name.clone(), |p| format!("{name}   {}", point(p))))
+            let picked = hover.hit.picked?;
+            let name = describe::short(&session.world, &picked);
+            let at = session.world.point_of(&picked).or(hover.hit.point);
+            Some(at.map_or(name.clone(), |p| format!("{name}   {}", point(p))))
         });
         row.label(under.unwrap_or_default());
         curvature_scale(row, ui.style, session);
@@ -145,6 +147,9 @@ pub fn windows(ctx: &egui::Context, ui: &mut Ui, session: &Session, settings: &S
             grid.label("select");
             grid.label("left click; Shift adds");
             grid.end_row();
+            grid.label("measure points");
+            grid.label("P, then left click on both");
+            grid.end_row();
         });
         window.separator();
         egui::ScrollArea::vertical().max_height(320.0).show(window, |area| {
@@ -160,10 +165,10 @@ pub fn windows(ctx: &egui::Context, ui: &mut Ui, session: &Session, settings: &S
     ui.help = open;
 }
 
-/// The file and the size of a picture to write.
+/// The file and the size of a picture to write or to copy.
 fn shot(ctx: &egui::Context, ui: &mut Ui) {
     let mut open = ui.shot.open;
-    let mut wanted = false;
+    let mut wanted = None;
     egui::Window::new("Write picture").open(&mut open).show(ctx, |window| {
         let shot = &mut ui.shot;
         let mut path = shot.path.to_string_lossy().into_owned();
@@ -176,12 +181,16 @@ fn shot(ctx: &egui::Context, ui: &mut Ui) {
             row.add(egui::DragValue::new(&mut shot.size.1).range(1..=16384));
             row.checkbox(&mut shot.transparent, "transparent");
         });
-        wanted = window.button("Write").clicked();
+        window.horizontal(|row| {
+            for (name, command) in [("Write", Command::WritePicture), ("Copy", Command::CopyPicture)] {
+                if row.button(name).clicked() {
+                    wanted = Some(command);
+                }
+            }
+        });
     });
     ui.shot.open = open;
-    if wanted {
-        ui.commands.push(Command::WritePicture);
-    }
+    ui.commands.extend(wanted);
 }
 
 /// The file for the edited model.

@@ -1,8 +1,9 @@
 //! Panels without a window: their texts, and the effects of clicks.
 
 use super::*;
-use crate::session::Picked;
-use crate::session::{Loaded, World};
+use crate::pick::Hit;
+use crate::session::{Loaded, Picked, PointKind, World};
+use crate::view::Hover;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -33,7 +34,12 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/assembly.step");
+        Self::of("assembly.step")
+    }
+
+    /// Of a sample.
+    fn of(name: &str) -> Self {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples").join(name);
         let import = selvedge_io::import::open(&path).expect("a sample");
         let mut session = Session::default();
         session.open(World::new(&[Arc::new(Loaded { path, import, partial: false })]));
@@ -137,6 +143,29 @@ fn the_tree_names_every_part_and_the_search_finds_one() {
 }
 
 #[test]
+fn the_tree_jumps_to_what_is_selected_in_the_picture() {
+    let path = Path::new("long.step").to_owned();
+    let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/bracket.step");
+    let mut import = selvedge_io::import::open(&sample).expect("a sample");
+    let one = import.model.instances[0].clone();
+    let named = |i: usize| selvedge::model::Instance { name: format!("item {i} of many"), ..one.clone() };
+    import.model.instances = (0..400).map(named).collect();
+    let mut bench = Bench::new();
+    bench.session.open(World::new(&[Arc::new(Loaded { path, import, partial: false })]));
+    assert!(bench.says("item 0 of many") && !bench.says("item 250 of many"));
+    let picked = Picked::Face { instance: 250, face: 0, uv: glam::DVec2::ZERO };
+    bench.session.select(Some(picked), false);
+    bench.ui.selected(&bench.session, None);
+    // a second, in which it scrolls there
+    (0..60).for_each(|_| drop(bench.frame(Vec::new())));
+    let all = bench.frame(Vec::new());
+    let has = |what: &str| all.iter().any(|(text, _)| text == what);
+    assert!(has("item 250 of many") && !has("item 0 of many"), "it did not scroll: {all:?}");
+    // once: the hand may scroll elsewhere
+    assert!(!bench.ui.show_selection);
+}
+
+#[test]
 fn progress_warnings_and_the_promise_are_shown() {
     let mut bench = Bench::new();
     assert!(bench.says("big.step: faces") && bench.says("exact within 0.5 px"));
@@ -172,13 +201,93 @@ fn buttons_hide_and_show_again() {
 }
 
 #[test]
+fn a_picture_is_written_or_copied_from_one_dialog() {
+    let mut bench = Bench::new();
+    bench.ui.obey(Command::Screenshot, &mut bench.session);
+    bench.click("Copy");
+    bench.click("Write");
+    assert_eq!(bench.ui.commands, [Command::CopyPicture, Command::WritePicture]);
+}
+
+#[test]
 fn the_help_has_the_preset_s_buttons_and_every_key() {
     let mut bench = Bench::new();
     assert!(!bench.says("Keys and buttons"));
     bench.click("?");
     bench.ui.obey(Command::Help, &mut bench.session);
     bench.settings.preset = crate::navigation::gesture::Preset::Catia;
-    assert!(bench.says("hold middle and click left") && bench.says("open files"));
+    assert!(bench.says("hold middle and click left") && bench.says("P, then left click on both"));
+    // rows out of sight are not drawn: the wheel brings them into it
+    let mut said = bench.frame(Vec::new());
+    let (_, first) = said.iter().find(|(text, _)| text == "open files").expect("the first key");
+    let pos = first.center();
+    for _ in 0..200 {
+        let (unit, delta) = (egui::MouseWheelUnit::Point, egui::Vec2::new(0.0, -6.0));
+        let wheel = egui::Event::MouseWheel { unit, delta, modifiers: egui::Modifiers::NONE };
+        said.extend(bench.frame(vec![egui::Event::PointerMoved(pos), wheel]));
+    }
+    for shortcut in commands::shortcuts() {
+        for wanted in [shortcut.label(), shortcut.what.to_owned()] {
+            assert!(said.iter().any(|(text, _)| *text == wanted), "{wanted}");
+        }
+    }
+}
+
+/// Two points of the first part with a round edge: its centre, and a corner.
+fn two_points(world: &World) -> [Picked; 2] {
+    let round = |placed: &selvedge::model::Instance| world.centres_of(placed.part).first().copied();
+    let mut instances = world.model.instances.iter().enumerate();
+    let first = instances.find_map(|(instance, placed)| Some((instance, round(placed)?)));
+    let (instance, (of, at)) = first.expect("a round edge");
+    [Picked::Point { instance, kind: PointKind::Centre, of, at }, Picked::Vertex { instance, vertex: 0 }]
+}
+
+#[test]
+fn a_point_under_the_cursor_is_named_beside_it() {
+    let mut bench = Bench::new();
+    let [centre, corner] = two_points(&bench.session.world);
+    for (picked, name) in [(centre, "centre"), (corner, "vertex")] {
+        let place = bench.place(bench.session.world.point_of(&picked).expect("a point"));
+        let mut beside = |filter: PickFilter| {
+            bench.ui.filter = filter;
+            let hit = Hit { picked: Some(picked), point: None };
+            bench.view.hover = Some(Hover { cursor: glam::DVec2::ZERO, hit });
+            let texts = bench.frame(Vec::new());
+            texts.iter().find(|(text, _)| text == name).map(|(_, rect)| rect.center().distance(place))
+        };
+        assert_eq!(beside(PickFilter::Any), None);
+        let away = beside(PickFilter::Points).expect(name);
+        assert!(away < 60.0, "{name} is {away} points from its point");
+        assert!(bench.says(&format!("{name} ")), "the status line says of what");
+    }
+}
+
+#[test]
+fn two_points_are_measured_listed_and_copied() {
+    let mut bench = Bench::new();
+    bench.click("Points");
+    assert_eq!(std::mem::take(&mut bench.ui.commands), [Command::Points]);
+    bench.ui.obey(Command::Points, &mut bench.session);
+    assert!(bench.ui.filter == PickFilter::Points && bench.says("Click two points"));
+    let points = two_points(&bench.session.world);
+    let [from, to] = points.map(|p| bench.session.world.point_of(&p).expect("a point"));
+    for picked in points {
+        bench.session.select_point(Some(picked), false);
+        bench.ui.selected(&bench.session, None);
+    }
+    assert!(std::mem::take(&mut bench.ui.wants_measure) && bench.session.selection == points);
+    bench.ui.measured(crate::measure::measure(&bench.session.world, &points));
+    bench.place(from);
+    let along = (to - from).to_array().map(crate::describe::number);
+    let [x, y, z] = &along;
+    assert!(bench.says(&format!("dx {x}  dy {y}  dz {z}")), "the dimension in the picture");
+    assert!(bench.says("along x") && bench.says(&format!("{x} mm")), "the panel");
+    bench.ui.obey(Command::Measure, &mut bench.session);
+    bench.click("Copy CSV");
+    let [Command::CopyText(text)] = &bench.ui.commands[..] else { panic!("{:?}", bench.ui.commands) };
+    assert!(text.contains(&format!(",along y,{},", (to - from).y)), "{text}");
+    bench.ui.obey(Command::Points, &mut bench.session);
+    assert_eq!(bench.ui.filter, PickFilter::Any);
 }
 
 #[test]
@@ -228,4 +337,26 @@ fn a_trim_point_follows_the_hand_on_its_surface() {
     let (far, near) = (nearest(&of_face.loops[0]), nearest(&edits[&(part, face, 0)]));
     assert!(far > 2.0 && near < 0.5, "{near} pixels from the hand, {far} before");
     assert!(bench.session.scene.undo() && bench.session.scene.now().edits.is_empty());
+}
+
+#[test]
+fn a_click_chooses_the_loop_beside_it_and_the_list_another() {
+    let mut bench = Bench::of("panel.step");
+    let world = bench.session.world.clone();
+    let (instance, face) = (0, 0);
+    let loops = &world.model.parts[world.model.instances[instance].part].faces[face].loops;
+    let chosen = |bench: &Bench| bench.ui.chosen.map(|chosen| chosen.trim_loop);
+    bench.ui.trims = true;
+    for nth in [2, 1] {
+        let uv = loops[nth].curves().next().expect("a curve").point(0.4);
+        bench.session.select(Some(Picked::Face { instance, face, uv }), false);
+        assert!(bench.says(&format!("Trim loop {} of {}", nth + 1, loops.len())));
+        assert_eq!(chosen(&bench), Some(nth));
+    }
+    let points: usize = loops[0].curves().map(|curve| curve.degree()).sum();
+    bench.click(&format!("Loop 1: {points} points"));
+    assert!(bench.says(&format!("Trim loop 1 of {}", loops.len())));
+    assert_eq!(chosen(&bench), Some(0));
+    bench.ui.obey(Command::Trims, &mut bench.session);
+    assert!(!bench.says("Trim loop") && chosen(&bench).is_none());
 }

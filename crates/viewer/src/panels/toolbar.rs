@@ -45,8 +45,7 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session, settings: 
         }
         row.separator();
         let mut explosion = session.scene.now().explosion;
-        let trims =
-            row.selectable_label(ui.trims, "Trims").on_hover_text("Drag the trim loops of the selected face (T)");
+        let trims = row.selectable_label(ui.trims, "Trims").on_hover_text("Drag a trim loop of the selected face (T)");
         if trims.clicked() {
             ui.commands.push(Command::Trims);
         }
@@ -95,6 +94,7 @@ fn file(menu: &mut egui::Ui, ui: &mut Ui, session: &Session, settings: &Settings
     menu.separator();
     item(menu, "Save model...", Command::SaveAs);
     item(menu, "Write picture...", Command::Screenshot);
+    item(menu, "Copy picture", Command::CopyPicture);
     item(menu, "Check this view", Command::Check);
     item(menu, "Copy command of this view", Command::CopyCommand);
     menu.separator();
@@ -183,7 +183,8 @@ fn choices(menu: &mut egui::Ui, settings: &mut Settings) {
     menu.separator();
     menu.radio_value(&mut settings.orbit, OrbitStyle::Turntable, "turn upright");
     menu.radio_value(&mut settings.orbit, OrbitStyle::Free, "turn freely");
-    menu.checkbox(&mut settings.reduced_motion, "views change at once");
+    let at_once = menu.checkbox(&mut settings.reduced_motion, "views change at once");
+    at_once.on_hover_text("They do so, too, where the desktop's settings ask for less motion");
     menu.separator();
     for (theme, name) in [(Theme::System, "as the system"), (Theme::Light, "light"), (Theme::Dark, "dark")] {
         menu.radio_value(&mut settings.theme, theme, name);

@@ -1,20 +1,28 @@
-//! From the images around the cursor to the face, edge or vertex under it.
+//! From the images around the cursor to the face, edge or vertex under it, or to a point to measure from.
 //!
 //! ```text
-//!   pixels within REACH of the cursor
+//!   pixels around the cursor
 //!      an edge's number nearest to it, within EDGE_PX ─▶ edge ─▶ an end of it within VERTEX_PX on the screen ─▶ vertex
 //!      else the face of the cursor's own pixel         ─▶ face, and (u, v) ─Newton─▶ the point under the cursor, in f64
 //! ```
+//!
+//! [`snap`] finds points.
+
+pub mod snap;
 
 use crate::session::{Picked, World};
 use glam::{DAffine3, DVec2, DVec3};
-use selvedge::model::Camera;
-use selvedge::spline::{Jet2, Surface};
+use selvedge::model::{Camera, TrimLoop};
+use selvedge::spline::{Bezier, Jet2, Surface};
+use std::collections::BTreeSet;
 
 /// Pixels from the cursor within which an edge is picked, and not the face under it.
 const EDGE_PX: f64 = 3.0;
 /// The same of an edge's end.
 const VERTEX_PX: f64 = 7.0;
+
+/// Chords of one curve of a loop, when the loop nearest to a point is looked for.
+const CHORDS: usize = 16;
 
 /// One pixel of the engine's images.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,11 +74,13 @@ pub enum PickFilter {
     Edges,
     Vertices,
     Parts,
+    /// Points to measure from and to.
+    Points,
 }
 
 impl PickFilter {
     /// All of them, as menus list them.
-    pub const ALL: [Self; 5] = [Self::Any, Self::Faces, Self::Edges, Self::Vertices, Self::Parts];
+    pub const ALL: [Self; 6] = [Self::Any, Self::Faces, Self::Edges, Self::Vertices, Self::Parts, Self::Points];
 
     /// As menus name it.
     pub fn name(self) -> &'static str {
@@ -80,6 +90,7 @@ impl PickFilter {
             Self::Edges => "Edges",
             Self::Vertices => "Vertices",
             Self::Parts => "Parts",
+            Self::Points => "Points",
         }
     }
 }
@@ -100,10 +111,19 @@ pub struct Seen<'a> {
     pub world: &'a World,
     /// Of each of the picture's instances the number in it.
     pub instances: &'a [usize],
+    /// Numbers in the world of what is not shown.
+    pub hidden: &'a BTreeSet<usize>,
     /// Where the picture has an instance of the world: part coordinates to the picture's.
     pub placement: &'a dyn Fn(usize) -> DAffine3,
     /// Of the picture.
     pub camera: &'a Camera,
+}
+
+impl Seen<'_> {
+    /// The world's instance of a number in the picture.
+    fn instance(&self, number: u32) -> Option<usize> {
+        self.instances.get((number as usize).checked_sub(1)?).copied()
+    }
 }
 
 impl Samples {
@@ -112,49 +132,60 @@ impl Samples {
         (x < self.width).then(|| self.samples.get((y * self.width + x) as usize)).flatten()
     }
 
-    /// Each pixel with its distance from the cursor, in pixels.
-    fn around(&self, cursor: DVec2) -> impl Iterator<Item = (f64, &Sample)> {
-        let width = self.width.max(1);
+    /// The pixel under the cursor.
+    fn under(&self, cursor: DVec2) -> Option<&Sample> {
+        self.at((cursor.x.max(0.0) as u32, cursor.y.max(0.0) as u32))
+    }
+
+    /// Each pixel with the place of its centre.
+    fn pixels(&self) -> impl Iterator<Item = (DVec2, &Sample)> {
+        let (width, corner) = (self.width.max(1), self.corner);
         (0..).zip(&self.samples).map(move |(i, sample): (u32, _)| {
-            let pixel = DVec2::new(f64::from(self.corner.0 + i % width), f64::from(self.corner.1 + i / width)) + 0.5;
-            (pixel.distance(cursor), sample)
+            (DVec2::new(f64::from(corner.0 + i % width), f64::from(corner.1 + i / width)) + 0.5, sample)
         })
+    }
+
+    /// Each pixel with its distance from a place, in pixels.
+    fn around(&self, place: DVec2) -> impl Iterator<Item = (f64, &Sample)> {
+        self.pixels().map(move |(pixel, sample)| (pixel.distance(place), sample))
+    }
+
+    /// Instance, part and edge of a sample with an edge, at `place`.
+    fn edge_at(&self, seen: &Seen<'_>, found: &Sample, place: DVec2) -> Option<(usize, usize, usize)> {
+        let (part, edge) = seen.world.edge(found.edge)?;
+        // a line beside a silhouette lies over another part, or over none
+        let of_part = |s: &Sample| s.part as usize == part + 1;
+        let beside = || self.around(place).filter(|(_, s)| of_part(s)).min_by(|a, b| a.0.total_cmp(&b.0));
+        let number = if of_part(found) { found.instance } else { beside()?.1.instance };
+        Some((seen.instance(number)?, part, edge))
     }
 
     /// The item under `cursor`, pixels of the picture.
     pub fn pick(&self, seen: &Seen<'_>, cursor: DVec2, filter: PickFilter) -> Hit {
-        let Seen { world, instances: shown, placement, camera } = *seen;
-        let Some(sample) = self.at((cursor.x.max(0.0) as u32, cursor.y.max(0.0) as u32)) else {
+        let Seen { world, placement, camera, .. } = *seen;
+        let Some(sample) = self.under(cursor) else {
             return Hit { picked: None, point: None };
         };
-        let instance_of = |number: u32| shown.get((number as usize).checked_sub(1)?).copied();
-        let instance = instance_of(sample.instance);
+        let instance = seen.instance(sample.instance);
         let face = instance.and_then(|i| Some((i, world.face(world.model.instances[i].part, sample.face)?)));
-        let seen = (sample.face != 0).then(|| {
-            let (origin, direction) = camera.ray(cursor);
-            let (_, _, forward) = camera.axes();
-            let near = origin + direction * (f64::from(sample.depth) / direction.dot(forward));
+        let under = (sample.face != 0).then(|| {
+            let near = near(camera, cursor, sample.depth);
             let uv = DVec2::new(f64::from(sample.uv[0]), f64::from(sample.uv[1]));
             let exact = face.and_then(|(instance, face)| {
                 let part = world.model.instances[instance].part;
                 let (surface, transform) = (&world.model.parts[part].faces[face].surface, placement(instance));
                 let back = transform.inverse();
-                let ray = (back.transform_point3(near), back.transform_vector3(direction));
+                let ray = (back.transform_point3(near), back.transform_vector3(camera.ray(cursor).1));
                 let (uv, point) = on_surface(surface, ray, uv)?;
                 Some((uv, transform.transform_point3(point)))
             });
             exact.unwrap_or((uv, near))
         });
-        let point = seen.map(|(_, point)| point);
+        let point = under.map(|(_, point)| point);
         let edge = || {
             let near = self.around(cursor).filter(|(distance, s)| s.edge != 0 && *distance <= EDGE_PX);
             let (_, found) = near.min_by(|a, b| a.0.total_cmp(&b.0))?;
-            let (part, edge) = world.edge(found.edge)?;
-            // a line beside a silhouette lies over another part, or over none
-            let of_part = |s: &Sample| s.part as usize == part + 1;
-            let beside = || self.around(cursor).filter(|(_, s)| of_part(s)).min_by(|a, b| a.0.total_cmp(&b.0));
-            let number = if of_part(found) { found.instance } else { beside()?.1.instance };
-            Some((instance_of(number)?, part, edge))
+            self.edge_at(seen, found, cursor)
         };
         let vertex = || {
             let (instance, part, edge) = edge()?;
@@ -170,7 +201,7 @@ impl Samples {
         };
         let as_edge = || edge().map(|(instance, _, edge)| Picked::Edge { instance, edge });
         let as_face = || match face {
-            Some((instance, face)) => seen.map(|(uv, _)| Picked::Face { instance, face, uv }),
+            Some((instance, face)) => under.map(|(uv, _)| Picked::Face { instance, face, uv }),
             None => (sample.face != 0).then_some(Picked::Number { instance, id: sample.face }),
         };
         let picked = match filter {
@@ -179,9 +210,17 @@ impl Samples {
             PickFilter::Edges => as_edge(),
             PickFilter::Vertices => vertex(),
             PickFilter::Parts => instance.map(Picked::Instance).or_else(as_face),
+            PickFilter::Points => self.snap(seen, cursor, face),
         };
         Hit { picked, point }
     }
+}
+
+/// The point at a pixel of the picture, as deep as the picture says, model coordinates.
+fn near(camera: &Camera, cursor: DVec2, depth: f32) -> DVec3 {
+    let (origin, direction) = camera.ray(cursor);
+    let (_, _, forward) = camera.axes();
+    origin + direction * (f64::from(depth) / direction.dot(forward))
 }
 
 /// The parameters and the point where a ray meets a surface, near `uv`. `None` where it does not, as beside the
@@ -224,6 +263,30 @@ pub fn towards(surface: &Surface, (origin, direction): (DVec3, DVec3), uv: DVec2
         apart = off(&jet);
     }
     apart.is_finite().then(|| (at, jet.point, apart.length()))
+}
+
+/// The loop on a surface that passes nearest to the point at `uv`, by distances in space; the first of several. `None`
+/// without loops.
+///
+/// Accuracy: each curve is followed by sixteen chords.
+pub fn nearest_loop<'a>(surface: &Surface, loops: impl IntoIterator<Item = &'a TrimLoop>, uv: DVec2) -> Option<usize> {
+    let from = surface.point(uv.x, uv.y);
+    let on_curve = |curve: Bezier<DVec3>| (0..CHORDS).map(move |i| curve.point(i as f64 / CHORDS as f64));
+    let distance = |trim_loop: &TrimLoop| {
+        let places = trim_loop.curves().flat_map(on_curve).map(|at| surface.point(at.x, at.y));
+        let places: Vec<DVec3> = places.collect();
+        let next = places.iter().cycle().skip(1);
+        places.iter().zip(next).map(|(a, b)| to_chord(from, *a, *b)).fold(f64::INFINITY, f64::min)
+    };
+    let all = loops.into_iter().map(distance).enumerate();
+    all.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(nth, _)| nth)
+}
+
+/// The distance of a point from a chord.
+fn to_chord(from: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let (along, squared) = (b - a, a.distance_squared(b));
+    let share = if squared > 0.0 { ((from - a).dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    from.distance(a + along * share)
 }
 
 #[cfg(test)]

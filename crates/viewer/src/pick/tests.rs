@@ -42,7 +42,7 @@ fn one(pixel: DVec2, sample: Sample) -> Samples {
 /// Picks in a picture of the world as it is.
 fn pick(samples: &Samples, world: &World, camera: &Camera, at: DVec2, filter: PickFilter) -> Hit {
     let placement = |instance: usize| world.model.instances[instance].transform;
-    samples.pick(&Seen { world, instances: &[0], placement: &placement, camera }, at, filter)
+    samples.pick(&Seen { world, instances: &[0], hidden: &BTreeSet::new(), placement: &placement, camera }, at, filter)
 }
 
 #[test]
@@ -69,7 +69,8 @@ fn the_point_of_a_moved_instance_moves_with_it() {
     let by = DVec3::new(30.0, -20.0, 11.0);
     (camera.eye, camera.target) = (camera.eye + by, camera.target + by);
     let placement = |instance: usize| DAffine3::from_translation(by) * world.model.instances[instance].transform;
-    let seen = Seen { world: &world, instances: &[0], placement: &placement, camera: &camera };
+    let hidden = BTreeSet::new();
+    let seen = Seen { world: &world, instances: &[0], hidden: &hidden, placement: &placement, camera: &camera };
     let hit = one(pixel, sample).pick(&seen, pixel, PickFilter::Any);
     let off = hit.point.expect("a point").distance(point + by);
     // as exact as where nothing is moved
@@ -146,4 +147,26 @@ fn the_hand_is_followed_to_the_border_of_a_surface() {
         let beyond = beyond.reject_from(normal);
         assert!(end.distance(beyond) < start.distance(beyond), "face {}", face.id);
     }
+}
+
+#[test]
+fn the_loop_nearest_to_a_point_passes_there() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/panel.step");
+    let import = selvedge_io::import::open(&path).expect("a sample");
+    let face = &import.model.parts[0].faces[0];
+    assert!(face.loops.len() > 2);
+    for (nth, trim_loop) in face.loops.iter().enumerate().take(12) {
+        // between two samples of the curve
+        let uv = trim_loop.curves().next().expect("a curve").point(0.31);
+        assert_eq!(nearest_loop(&face.surface, &face.loops, uv), Some(nth));
+    }
+    assert_eq!(nearest_loop(&face.surface, std::iter::empty::<&TrimLoop>(), DVec2::ZERO), None);
+}
+
+#[test]
+fn a_chord_ends_at_its_ends() {
+    let (a, b) = (DVec3::ZERO, DVec3::X * 2.0);
+    assert_eq!(to_chord(DVec3::new(1.0, 3.0, 0.0), a, b), 3.0);
+    assert_eq!(to_chord(DVec3::new(5.0, 0.0, 4.0), a, b), 5.0);
+    assert_eq!(to_chord(DVec3::new(0.0, 0.0, 4.0), a, a), 4.0);
 }

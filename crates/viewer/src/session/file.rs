@@ -2,12 +2,10 @@
 
 use super::schedule::Schedule;
 use selvedge::model::Model;
-use selvedge_io::import::{self, Files, Folders, Import, Options, Preview, Stage};
+use selvedge_io::import::{self, Files, Folders, Import, Options, Preview, Stage, Stop, caught};
 use std::fmt;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::Instant;
 
@@ -60,13 +58,10 @@ pub enum LoaderEvent {
 pub struct Loader {
     /// The file.
     pub path: PathBuf,
-    cancelled: Arc<AtomicBool>,
+    stop: Stop,
     previews: Arc<Schedule>,
     thread: Option<JoinHandle<()>>,
 }
-
-/// Ends an import that was stopped; it unwinds through the importer without a message.
-struct GivenUp;
 
 /// Share of a stage between two reports of progress.
 const STEP: f32 = 0.02;
@@ -75,15 +70,13 @@ impl Loader {
     /// Begins to read; `tell` is called by the thread. Without a finder, parts in other files are found beside the
     /// file.
     pub fn new(path: PathBuf, finder: Option<Finder>, tell: impl Fn(LoaderEvent) + Send + Sync + 'static) -> Self {
-        let cancelled = Arc::new(AtomicBool::new(false));
+        let stop = Stop::default();
         let previews = Arc::new(Schedule::new(Instant::now()));
-        let (stop, file, schedule) = (Arc::clone(&cancelled), path.clone(), Arc::clone(&previews));
+        let (stopped, file, schedule) = (stop.clone(), path.clone(), Arc::clone(&previews));
         let thread = thread::spawn(move || {
             let last = std::sync::Mutex::new(("", -1.0_f32));
             let progress = |stage: Stage| {
-                if stop.load(Ordering::Relaxed) {
-                    resume_unwind(Box::new(GivenUp));
-                }
+                stopped.check();
                 let (stage, share) = told(stage);
                 if let Ok(mut last) = last.lock() {
                     if last.0 == stage && share.is_none_or(|share| (share - last.1).abs() < STEP) {
@@ -106,9 +99,9 @@ impl Loader {
                 run_openscad: true,
                 ..Options::default()
             };
-            let read = catch_unwind(AssertUnwindSafe(|| import::open_with(&file, &options)));
+            let read = caught(|| import::open_with(&file, &options));
             let event = match read {
-                _ if stop.load(Ordering::Relaxed) => LoaderEvent::Cancelled,
+                _ if stopped.is_set() => LoaderEvent::Cancelled,
                 Ok(Ok(import)) => {
                     let summary = import.summary();
                     if summary.draws_nothing() {
@@ -122,12 +115,12 @@ impl Loader {
             };
             tell(event);
         });
-        Self { path, cancelled, previews, thread: Some(thread) }
+        Self { path, stop, previews, thread: Some(thread) }
     }
 
     /// Stops reading: the importer ends at its next report of progress, and sends only that it was stopped.
     pub fn cancel(&self) {
-        self.cancelled.store(true, Ordering::Relaxed);
+        self.stop.set();
     }
 
     /// The last preview is shown: the next one may be made after a while.

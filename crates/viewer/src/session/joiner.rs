@@ -7,8 +7,7 @@
 //! ```
 
 use super::{Loaded, World};
-use std::any::Any;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use selvedge_io::import::{Unwound, caught};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, Sender};
@@ -55,7 +54,7 @@ impl Joiner {
                 if is_old(number) {
                     continue;
                 }
-                let worked = catch_unwind(AssertUnwindSafe(|| {
+                let worked = caught(|| {
                     let world = Arc::new(join(&files));
                     tell(JoinerEvent::Joined(number, Arc::clone(&world)));
                     if !is_old(number) {
@@ -65,9 +64,9 @@ impl Joiner {
                         }
                         tell(JoinerEvent::EdgesFound(number));
                     }
-                }));
-                if let Err(panic) = worked {
-                    tell(JoinerEvent::Failed(number, reason(panic.as_ref())));
+                });
+                if let Err(unwound) = worked {
+                    tell(JoinerEvent::Failed(number, reason(&unwound)));
                 }
             }
         });
@@ -118,9 +117,8 @@ impl Joiner {
 }
 
 /// What a panic says.
-pub(crate) fn reason(panic: &(dyn Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
-    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no reason".to_owned())
+pub(crate) fn reason(unwound: &Unwound) -> String {
+    unwound.message().unwrap_or_else(|| "no reason".to_owned())
 }
 
 #[cfg(test)]

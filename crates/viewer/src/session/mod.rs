@@ -22,7 +22,7 @@ pub use carry::Carried;
 pub use file::{Finder, Loaded, Loader, LoaderEvent};
 pub use joiner::{Joiner, JoinerEvent};
 pub use loads::{Ended, Loads, News};
-pub use picked::Picked;
+pub use picked::{Picked, PointKind};
 pub use section::Section;
 pub use shown::{SceneState, Shown};
 pub use undo::History;
@@ -72,6 +72,12 @@ impl Session {
         }
     }
 
+    /// A click on a point to measure from or to: a second point joins the first, a third one begins anew.
+    pub fn select_point(&mut self, picked: Option<Picked>, add: bool) {
+        let joins = picked.is_some() && matches!(self.selection[..], [first] if first.is_point());
+        self.select(picked, add || joins);
+    }
+
     /// The selected items of the tree.
     pub fn selected_instances(&self) -> Vec<usize> {
         let mut all: Vec<usize> = self.selection.iter().filter_map(Picked::instance).collect();
@@ -84,7 +90,7 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec2;
+    use glam::{DVec2, DVec3};
 
     #[test]
     fn a_click_replaces_and_shift_adds_and_takes_away() {
@@ -101,5 +107,25 @@ mod tests {
         assert_eq!((session.selection.len(), session.selected_instances()), (1, vec![3]));
         session.select(None, false);
         assert!(session.selection.is_empty());
+    }
+
+    #[test]
+    fn two_clicks_select_two_points_and_a_third_begins_anew() {
+        let point = |x| Picked::Point { instance: 0, kind: PointKind::OnFace, of: 4, at: DVec3::X * x };
+        let (a, b, vertex) = (point(1.0), point(2.0), Picked::Vertex { instance: 0, vertex: 7 });
+        let mut session = Session::default();
+        session.select(Some(Picked::Instance(3)), false);
+        let mut after = |picked: Option<Picked>, add: bool| {
+            session.select_point(picked, add);
+            session.selection.clone()
+        };
+        assert_eq!(after(Some(a), false), [a], "a part is no point to join");
+        assert_eq!(after(Some(vertex), false), [a, vertex]);
+        assert_eq!(after(Some(b), false), [b]);
+        assert_eq!(after(Some(a), true), [b, a]);
+        assert_eq!(after(Some(vertex), true), [b, a, vertex]);
+        assert_eq!(after(None, false), []);
+        assert_eq!(after(Some(a), false), [a]);
+        assert_eq!(after(Some(a), false), [], "the same point again takes it away");
     }
 }

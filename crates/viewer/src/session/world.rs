@@ -1,9 +1,10 @@
 //! All open files as one model.
 
-use super::Loaded;
+use super::{Loaded, Picked};
 use glam::{DAffine3, DVec3};
 use selvedge::model::{Bounds, Edges, Instance, Model, Part, SurfaceKind};
 use selvedge::spline::Surface;
+use selvedge_geometry::edges::curve::{self, CurveShape};
 use selvedge_io::import::Summary;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -76,10 +77,21 @@ fn plane(surface: &Surface, transform: DAffine3) -> Option<(DVec3, f64)> {
     Some((normal, normal.dot(transform.transform_point3(jet.point))))
 }
 
+/// The centres of a part's round edges. A placement that makes ellipses of circles keeps their centres.
+fn centres(edges: &Edges) -> Vec<(usize, DVec3)> {
+    let centre = |edge| match curve::shape(edge, DAffine3::IDENTITY) {
+        CurveShape::Circle(circle) => Some(circle.centre),
+        CurveShape::Line(_) | CurveShape::Other => None,
+    };
+    edges.edges.iter().enumerate().filter_map(|(nth, edge)| Some((nth, centre(edge)?))).collect()
+}
+
 /// Edges of each part; for a part without curves none, and the reason.
 #[derive(Debug, Default)]
 struct PartEdges {
     parts: Vec<Edges>,
+    /// Round edges of each part with their centres, part coordinates.
+    centres: Vec<Vec<(usize, DVec3)>>,
     /// The number of each part's first edge, from 1 on, as in the engine; and one more at the end.
     first: Vec<u32>,
 }
@@ -210,13 +222,30 @@ impl World {
             for edges in &parts {
                 first.push(first[first.len() - 1] + (edges.edges.len() + edges.of_meshes.len()) as u32);
             }
-            PartEdges { parts, first }
+            let centres = parts.iter().map(centres).collect();
+            PartEdges { parts, centres, first }
         });
     }
 
     /// The edges of a part, once they are found.
     pub fn edges_of(&self, part: usize) -> Option<&Edges> {
         self.edges.get()?.parts.get(part)
+    }
+
+    /// Each edge of a part that is a circle or an arc of one, with its centre in part coordinates, once edges are found.
+    pub fn centres_of(&self, part: usize) -> &[(usize, DVec3)] {
+        self.edges.get().and_then(|edges| edges.centres.get(part)).map(Vec::as_slice).unwrap_or_default()
+    }
+
+    /// The picked vertex or point, model coordinates. `None` for another item, and for one that is not there.
+    pub fn point_of(&self, picked: &Picked) -> Option<DVec3> {
+        let placed = self.model.instances.get(picked.instance()?)?;
+        let own = match *picked {
+            Picked::Vertex { vertex, .. } => *self.edges_of(placed.part)?.vertices.get(vertex)?,
+            Picked::Point { at, .. } => at,
+            _ => return None,
+        };
+        Some(placed.transform.transform_point3(own))
     }
 
     /// Part and edge of a number in the engine's image of edges; `None` for sides of facets, and before edges are found.

@@ -9,7 +9,7 @@ use super::{Failure, ViewError, ViewOptions};
 use crate::measure::Measurement;
 use crate::navigation::gesture::Held;
 use crate::panels::{Facts, Ui, Verdict};
-use crate::pick::Seen;
+use crate::pick::{PickFilter, Seen};
 use crate::session::Picked;
 use crate::session::{Joiner, JoinerEvent, Loaded, LoaderEvent, Loads, Session};
 use crate::settings::{Settings, Theme};
@@ -43,6 +43,8 @@ pub enum Event {
     Measured(Vec<Picked>, Option<Measurement>),
     /// The verdict on a picture, or why there is none.
     Judged(Result<Verdict, String>),
+    /// The desktop asks for less motion.
+    LessMotion,
     /// The panels need to be drawn again.
     Repaint,
 }
@@ -88,6 +90,8 @@ pub struct App {
     pub view: View,
     pub ui: Ui,
     pub settings: Settings,
+    /// The desktop asks for less motion.
+    pub less_motion: bool,
     /// The settings in the file.
     kept: Settings,
     pub files: Vec<Arc<Loaded>>,
@@ -154,6 +158,7 @@ impl App {
             session: Session::default(),
             view: View::default(),
             ui,
+            less_motion: false,
             kept: settings.clone(),
             settings,
             files: Vec::new(),
@@ -252,7 +257,10 @@ impl App {
         }
         self.keep_settings();
         self.make_room();
+        let effects = self.opened.as_ref().map(|opened| opened.engine.effects());
+        self.view.pacing.set_effects(effects.unwrap_or_default());
         let (due, mut settings, marks) = (self.view.due(now), self.frame_settings(), self.marks());
+        settings.without = due.step.without;
         let (under, scene_settings) = (self.over_view(), self.scene_settings());
         let Some(Opened { window, waiter, engine, screen, .. }) = &mut self.opened else { return Ok(()) };
         let wanted = Wanted { world: &self.session.world, state: self.session.scene.now(), settings: scene_settings };
@@ -369,16 +377,17 @@ impl App {
         output
     }
 
-    /// The desktop's clipboard; what was copied is there as long as the window is.
-    fn set_clipboard(&mut self, text: String) {
-        if self.clipboard.is_none() {
-            self.clipboard = arboard::Clipboard::new().ok();
+    /// The desktop's clipboard, or why there is none; what was copied is there as long as the window is.
+    pub fn clipboard(&mut self) -> Result<&mut arboard::Clipboard, arboard::Error> {
+        match &mut self.clipboard {
+            Some(clipboard) => Ok(clipboard),
+            none => Ok(none.insert(arboard::Clipboard::new()?)),
         }
-        let copied = self.clipboard.as_mut().map(|clipboard| clipboard.set_text(text));
-        match copied {
-            Some(Ok(())) => {}
-            Some(Err(error)) => self.ui.tell(format!("Not copied: {error}")),
-            None => self.ui.tell("Not copied: there is no clipboard.".to_owned()),
+    }
+
+    fn set_clipboard(&mut self, text: String) {
+        if let Err(error) = self.clipboard().and_then(|clipboard| clipboard.set_text(text)) {
+            self.ui.tell(format!("Not copied: {error}"));
         }
     }
 
@@ -413,7 +422,7 @@ impl App {
             }
             // the first picture of a size makes its buffers, and an incomplete one is no measure
             if std::mem::replace(&mut self.drawn, due.camera.size) == due.camera.size && complete {
-                self.view.pacing.took(due.scale, start.elapsed());
+                self.view.pacing.took(due.step, start.elapsed());
             }
             self.again |= !complete;
             if !self.seen && complete {
@@ -421,7 +430,8 @@ impl App {
                 tracing::info!("first picture after {:.0?}", self.begun.elapsed());
             }
             let (width, height) = due.camera.size;
-            tracing::debug!("picture of {width} x {height} in {:.1?}, complete: {complete}", start.elapsed());
+            let (time, without) = (start.elapsed(), settings.without);
+            tracing::debug!("picture of {width} x {height} in {time:.1?}, complete: {complete}, without {without:?}");
         }
         let samples = screen.picked();
         let scene = scene.filter(|scene| Arc::ptr_eq(&scene.world, &self.session.world));
@@ -429,7 +439,7 @@ impl App {
             let scale = f64::from(camera.size.0) / f64::from(self.rect.width.max(1));
             let Drawn { world, state, instances } = &scene;
             let placed = |number: usize| state.placement(number, world);
-            let seen = Seen { world, instances, placement: &placed, camera: &camera };
+            let seen = Seen { world, instances, hidden: &state.hidden, placement: &placed, camera: &camera };
             let hit = samples.pick(&seen, at * scale, self.ui.filter);
             let before = self.view.hover.and_then(|h| h.hit.picked);
             self.view.hover = Some(Hover { cursor: at, hit });
@@ -439,7 +449,10 @@ impl App {
             }
             // a pick at an earlier place does not serve a click
             if let Some((add, _)) = self.click.take_if(|(_, place)| place.distance(at) < 0.5) {
-                self.session.select(hit.picked, add);
+                match self.ui.filter {
+                    PickFilter::Points => self.session.select_point(hit.picked, add),
+                    _ => self.session.select(hit.picked, add),
+                }
                 self.ui.selected(&self.session, hit.point);
                 self.again = true;
             }

@@ -10,12 +10,11 @@
 use super::living::{self, Placed};
 use crate::session::{SceneState, World, joiner};
 use selvedge::model::Model;
-use selvedge::picture::{SceneSettings, Smooth};
+use selvedge::picture::{Effects, SceneSettings, Smooth};
 use selvedge::renderer::{RenderError, Renderer};
+use selvedge_io::import::{Stop, Unwound, caught};
 use std::collections::BTreeSet;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver};
 use std::thread::{self, JoinHandle};
 
@@ -76,14 +75,11 @@ pub enum UploadError {
     GivenUp,
 }
 
-/// Ends an upload that was given up; it unwinds through the renderer without a message.
-struct GivenUp;
-
 /// An upload in a thread.
 struct Upload {
     thread: JoinHandle<()>,
     from: Receiver<Uploaded>,
-    given_up: Arc<AtomicBool>,
+    stop: Stop,
 }
 
 /// The result of a thread.
@@ -137,6 +133,16 @@ impl Engine {
         self.current.as_ref().is_some_and(|current| current.settings.curvature)
     }
 
+    /// Effects of what is drawn, which a frame may leave out.
+    pub fn effects(&self) -> Effects {
+        let of = |settings: &SceneSettings| Effects {
+            borders: settings.smooth == Smooth::Borders,
+            ambient: settings.ambient.is_some(),
+            lines: settings.edges.is_some(),
+        };
+        self.current.as_ref().map(|current| of(&current.settings)).unwrap_or_default()
+    }
+
     /// The renderer, when it holds a model.
     pub fn renderer(&mut self) -> Option<&mut Renderer> {
         self.renderer.as_mut().filter(|_| self.current.is_some())
@@ -154,27 +160,23 @@ impl Engine {
         let request = wanted.request();
         self.asked = Some(request.clone());
         let (to, from) = mpsc::channel();
-        let given_up = Arc::new(AtomicBool::new(false));
-        let ends = Arc::clone(&given_up);
+        let stop = Stop::default();
+        let stopped = stop.clone();
         let thread = thread::spawn(move || {
-            let between_faces = |_: usize| {
-                if ends.load(Ordering::Relaxed) {
-                    resume_unwind(Box::new(GivenUp));
-                }
-            };
-            let result = caught(|| upload(&mut renderer, request, &between_faces));
+            let between_faces = |_: usize| stopped.check();
+            let result = guarded(|| upload(&mut renderer, request, &between_faces));
             // when the window closes, the receiver is gone
             drop(to.send(Uploaded { renderer, result }));
             done();
         });
-        self.upload = Some(Upload { thread, from, given_up });
+        self.upload = Some(Upload { thread, from, stop });
     }
 
     /// Gives up the upload of a preview where all files are read by now.
     fn end_preview(&self, wanted: &World) {
         let is_of_preview = self.asked.as_ref().is_some_and(|asked| asked.world.is_partial());
         if let Some(upload) = self.upload.as_ref().filter(|_| is_of_preview && !wanted.is_partial()) {
-            upload.given_up.store(true, Ordering::Relaxed);
+            upload.stop.set();
         }
     }
 
@@ -244,16 +246,16 @@ impl Engine {
 }
 
 /// The result of an upload, or its panic. The renderer keeps the model before until it has all of the next one.
-fn caught<T>(upload: impl FnOnce() -> Result<T, RenderError>) -> Result<T, UploadError> {
-    match catch_unwind(AssertUnwindSafe(upload)) {
+fn guarded<T>(upload: impl FnOnce() -> Result<T, RenderError>) -> Result<T, UploadError> {
+    match caught(upload) {
         Ok(result) => result.map_err(UploadError::Render),
-        Err(panic) if panic.is::<GivenUp>() => Err(UploadError::GivenUp),
-        Err(panic) => Err(UploadError::Panic(joiner::reason(panic.as_ref()))),
+        Err(Unwound::Stopped) => Err(UploadError::GivenUp),
+        Err(unwound) => Err(UploadError::Panic(joiner::reason(&unwound))),
     }
 }
 
 /// Uploads a model with hidden instances in it, without those where one of them cannot be hidden. `between_faces` may
-/// unwind to [`caught`].
+/// unwind to [`guarded`].
 fn upload(
     renderer: &mut Renderer,
     request: Request,
@@ -302,11 +304,16 @@ mod tests {
 
     #[test]
     fn a_panic_of_an_upload_is_an_error() {
-        let failed = caught(|| -> Result<(), RenderError> { panic!("on purpose") });
+        let failed = guarded(|| -> Result<(), RenderError> { panic!("on purpose") });
         assert!(matches!(&failed, Err(UploadError::Panic(why)) if why == "on purpose"), "{failed:?}");
-        assert!(matches!(caught(|| Err::<(), _>(RenderError::Tolerance(0.0))), Err(UploadError::Render(_))));
-        assert!(matches!(caught(|| Ok(1)), Ok(1)));
-        let given_up = caught(|| -> Result<(), RenderError> { resume_unwind(Box::new(GivenUp)) });
+        assert!(matches!(guarded(|| Err::<(), _>(RenderError::Tolerance(0.0))), Err(UploadError::Render(_))));
+        assert!(matches!(guarded(|| Ok(1)), Ok(1)));
+        let stop = Stop::default();
+        stop.set();
+        let given_up = guarded(|| {
+            stop.check();
+            Ok(())
+        });
         assert!(matches!(given_up, Err(UploadError::GivenUp)));
     }
 }

@@ -2,9 +2,10 @@
 
 use super::app::{App, Event, Opened};
 use crate::commands::Command;
-use crate::navigation::gesture::Button;
+use crate::navigation::gesture::{Button, Scroll};
 use crate::navigation::standard::up_from;
 use crate::session::{Ended, Loaded, News, World};
+use crate::view::View;
 use glam::DVec2;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,9 +14,6 @@ use winit::application::ApplicationHandler;
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::window::WindowId;
-
-/// Pixels of a trackpad for one notch of a wheel.
-const NOTCH_PX: f64 = 40.0;
 
 impl ApplicationHandler<Event> for App {
     fn resumed(&mut self, events: &ActiveEventLoop) {
@@ -80,13 +78,20 @@ impl ApplicationHandler<Event> for App {
             }
             WindowEvent::MouseInput { state, button, .. } => self.button(*state, *button),
             WindowEvent::MouseWheel { delta, .. } => {
-                let notches = match delta {
-                    MouseScrollDelta::LineDelta(_, lines) => f64::from(*lines),
-                    MouseScrollDelta::PixelDelta(pixels) => pixels.y / NOTCH_PX,
+                let scroll = match delta {
+                    MouseScrollDelta::LineDelta(x, y) => Scroll::Lines(DVec2::new(f64::from(*x), f64::from(*y))),
+                    MouseScrollDelta::PixelDelta(by) => Scroll::Pixels(DVec2::new(by.x, by.y)),
                 };
-                self.wheel(notches);
+                let scrolled = self.settings.preset.scroll(scroll, self.held);
+                let style = self.settings.orbit;
+                self.move_at_cursor(|view, at, now| view.scroll(at, scrolled, style, now));
             }
-            WindowEvent::PinchGesture { delta, .. } => self.wheel(*delta * 8.0),
+            // macOS has these
+            WindowEvent::PinchGesture { delta, .. } => self.move_at_cursor(|view, at, now| view.pinch(at, *delta, now)),
+            WindowEvent::RotationGesture { delta, .. } => {
+                let (angle, style) = (f64::from(*delta).to_radians(), self.settings.orbit);
+                self.move_at_cursor(|view, at, now| view.twist(at, angle, style, now));
+            }
             _ => {}
         }
         if response.repaint {
@@ -117,7 +122,7 @@ impl ApplicationHandler<Event> for App {
             }
             Event::Uploaded => self.uploaded(),
             Event::Loader(number, event) => {
-                let previews = self.has_previews();
+                let previews = self.previews().count();
                 match self.loads.take(number, event) {
                     Some(News::Preview(loaded)) => self.previewed(&loaded),
                     Some(News::Ended(Ended { result: Ok(loaded), .. })) => self.loaded(loaded),
@@ -145,6 +150,10 @@ impl ApplicationHandler<Event> for App {
                     Err(why) => self.ui.tell(why),
                 }
                 self.redraw();
+            }
+            Event::LessMotion => {
+                tracing::info!("the desktop asks for less motion");
+                self.less_motion = true;
             }
             Event::Repaint => self.redraw(),
         }
@@ -230,9 +239,10 @@ impl App {
         self.redraw();
     }
 
-    fn wheel(&mut self, notches: f64) {
+    /// Moves the view at the cursor, while that is over it.
+    fn move_at_cursor(&mut self, act: impl FnOnce(&mut View, DVec2, Instant)) {
         if let Some(at) = self.over_view() {
-            self.view.wheel(at, notches, Instant::now());
+            act(&mut self.view, at, Instant::now());
             self.redraw();
         }
     }
@@ -258,10 +268,6 @@ impl App {
         self.loads.previews().filter(move |preview| !self.is_open(&preview.path))
     }
 
-    fn has_previews(&self) -> bool {
-        self.previews().next().is_some()
-    }
-
     /// Puts the open files together, and the finished parts of others.
     fn join(&mut self) {
         let all = self.files.iter().chain(self.previews()).cloned().collect();
@@ -269,14 +275,12 @@ impl App {
     }
 
     fn give_up(&mut self) {
-        let previews = self.has_previews();
+        let previews = self.previews().count();
         for path in self.loads.give_up() {
             self.unwatch(&path);
             self.ui.tell(format!("{}: given up", path.display()));
         }
-        if previews {
-            self.join();
-        }
+        self.join_without(previews);
     }
 
     /// Watches a file no more, unless it is open.
@@ -288,12 +292,17 @@ impl App {
         }
     }
 
-    /// A file is not read; where there were `previews`, its own go.
-    fn not_loaded(&mut self, path: &Path, why: String, previews: bool) {
+    /// A file cannot be read; there were so many previews before.
+    fn not_loaded(&mut self, path: &Path, why: String, previews: usize) {
         self.unwatch(path);
         tracing::error!("{why}");
         self.ui.tell(why);
-        if previews {
+        self.join_without(previews);
+    }
+
+    /// Puts the files together again where a preview has gone; there were so many before.
+    fn join_without(&mut self, previews: usize) {
+        if self.previews().count() < previews {
             self.join();
         }
     }
@@ -353,7 +362,7 @@ impl App {
 
     /// Carries out the commands of panels and keys.
     pub fn obey(&mut self, now: Instant) {
-        let smooth = !self.settings.reduced_motion;
+        let smooth = !self.settings.reduced_motion && !self.less_motion;
         for command in std::mem::take(&mut self.ui.commands) {
             tracing::debug!("{command:?}");
             match command {
@@ -388,8 +397,14 @@ impl App {
                 }
                 Command::CopyText(text) => self.copy(text),
                 Command::WritePicture => self.write_picture(),
+                Command::CopyPicture => self.copy_picture(),
                 Command::Check => self.check(),
                 Command::Save => self.save(),
+                Command::Points => {
+                    self.ui.obey(Command::Points, &mut self.session);
+                    // the item under a resting cursor changes
+                    self.pick = self.over_view();
+                }
                 Command::Quit => self.ui.quit = true,
                 other => self.ui.obey(other, &mut self.session),
             }

@@ -55,7 +55,7 @@ impl App {
             Picked::Number { instance: None, id } => Some(Mark { instance: 0, face: id }),
             Picked::Number { instance: Some(instance), id } => Some(Mark { instance: number(instance)?, face: id }),
             // the panels draw these
-            Picked::Edge { .. } | Picked::Vertex { .. } => None,
+            Picked::Edge { .. } | Picked::Vertex { .. } | Picked::Point { .. } => None,
         };
         let dragging = self.view.is_dragging();
         let hovered = self.view.hover.as_ref().filter(|_| !dragging).and_then(|h| mark(h.hit.picked.as_ref()?));

@@ -6,6 +6,7 @@ use super::engine::Engine;
 use super::screen::Screen;
 use super::waiter::Waiter;
 use super::{Closed, ViewError, ViewOptions};
+use crate::desktop;
 use std::sync::Arc;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
@@ -26,6 +27,14 @@ impl App {
         let (waiter, engine, screen) = self.open_device(&window)?;
         tracing::info!("window on {} after {:.0?}", screen.context.name, self.begun.elapsed());
         self.opened = Some(Opened { window, input, waiter, engine, screen });
+        if let Some(folder) = self.options.desktop.take() {
+            let proxy = self.proxy.clone();
+            std::thread::spawn(move || {
+                if desktop::reduces_motion(&folder) {
+                    drop(proxy.send_event(Event::LessMotion));
+                }
+            });
+        }
         for file in std::mem::take(&mut self.options.files) {
             self.load(file);
         }

@@ -9,6 +9,7 @@
 
 use super::ViewError;
 use super::context::Context;
+use crate::pick::snap::SNAP_PX;
 use crate::pick::{Sample, Samples};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
@@ -173,8 +174,8 @@ pub struct Area {
     pub height: u32,
 }
 
-/// Pixels beside the cursor that are searched for edges.
-pub const REACH: u32 = 4;
+/// Pixels beside the cursor that are copied: points are found within a pixel less.
+const REACH: u32 = SNAP_PX as u32 + 1;
 const SIDE: u32 = 2 * REACH + 1;
 /// Of a pixel: depth, face, (u, v), normal, edge, part, instance.
 const BYTES: [u64; COUNT - 1] = [4, 4, 8, 16, 4, 4, 4];
@@ -344,9 +345,9 @@ mod tests {
     #[test]
     fn pixels_around_one_lie_in_the_picture() {
         let area = |x, y, width, height| Area { x, y, width, height };
-        assert_eq!(Area::around((50, 60), (100, 100)), area(46, 56, 9, 9));
-        assert_eq!(Area::around((0, 0), (100, 100)), area(0, 0, 5, 5));
-        assert_eq!(Area::around((99, 98), (100, 100)), area(95, 94, 5, 6));
+        assert_eq!(Area::around((50, 60), (100, 100)), area(42, 52, 17, 17));
+        assert_eq!(Area::around((0, 0), (100, 100)), area(0, 0, 9, 9));
+        assert_eq!(Area::around((99, 98), (100, 100)), area(91, 90, 9, 10));
         assert_eq!(Area::around((0, 0), (1, 1)), area(0, 0, 1, 1));
     }
 }

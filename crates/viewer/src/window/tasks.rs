@@ -1,4 +1,4 @@
-//! Work beside the frames: measuring and judging in threads, pictures to files.
+//! Work beside the frames: measuring and judging in threads, pictures to files and to the clipboard.
 
 use super::Failure;
 use super::app::{App, Event, Opened};
@@ -50,13 +50,33 @@ impl App {
         }
     }
 
-    /// Writes the picture of the dialog.
-    pub fn write_picture(&mut self) {
-        let Shot { path, size, transparent, .. } = self.ui.shot.clone();
+    /// The picture of the dialog.
+    fn shot(&mut self) -> Option<Photograph> {
+        let Shot { size, transparent, .. } = self.ui.shot;
         let usual = self.frame_settings();
         let background = if transparent { Some([0.0; 4]) } else { usual.background };
         let camera = Camera { size, ..*self.view.camera() };
-        let Some(photograph) = self.photograph(&camera, FrameSettings { background, ..usual }) else { return };
+        self.photograph(&camera, FrameSettings { background, ..usual })
+    }
+
+    /// Copies the picture of the dialog to the desktop's clipboard.
+    pub fn copy_picture(&mut self) {
+        let Some(photograph) = self.shot() else { return };
+        let (width, height) = photograph.size;
+        let copied = self.clipboard().and_then(|clipboard| clipboard.set_image(image(&photograph)));
+        let told = match copied {
+            Ok(()) => format!("Copied: a picture of {width} x {height}."),
+            Err(error) => format!("The picture is not copied: {error}"),
+        };
+        tracing::info!("{told}");
+        self.ui.tell(told);
+        self.ui.shot.open = false;
+    }
+
+    /// Writes the picture of the dialog.
+    pub fn write_picture(&mut self) {
+        let Some(photograph) = self.shot() else { return };
+        let (path, size) = (self.ui.shot.path.clone(), photograph.size);
         let told = match write(&path, &photograph) {
             Ok(()) => format!("{} is written, {} x {}.", path.display(), size.0, size.1),
             Err(error) => format!("{} is not written: {error}", path.display()),
@@ -126,6 +146,12 @@ fn save(path: &Path, model: &Model) -> Result<Vec<String>, Box<dyn Error>> {
     Ok(warnings)
 }
 
+/// The colours of a picture as the clipboard takes them: sRGB and opacity, not multiplied, row 0 on top.
+fn image(photograph: &Photograph) -> arboard::ImageData<'_> {
+    let (width, height) = (photograph.size.0 as usize, photograph.size.1 as usize);
+    arboard::ImageData { width, height, bytes: photograph.colour.as_flattened().into() }
+}
+
 /// Writes a PNG file. If writing fails, the old file is unchanged.
 fn write(path: &Path, photograph: &Photograph) -> Result<(), png::EncodingError> {
     let beside = path.with_extension("png.new");
@@ -137,4 +163,17 @@ fn write(path: &Path, photograph: &Photograph) -> Result<(), png::EncodingError>
     writer.write_image_data(photograph.colour.as_flattened())?;
     writer.finish()?;
     Ok(std::fs::rename(beside, path)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_copied_picture_keeps_its_rows_and_its_opacity() {
+        let colour = vec![[255, 0, 0, 0], [1, 2, 3, 128]];
+        let photograph = Photograph { size: (1, 2), colour, ..Photograph::default() };
+        let image = image(&photograph);
+        assert_eq!((image.width, image.height, &image.bytes[..]), (1, 2, &[255, 0, 0, 0, 1, 2, 3, 128][..]));
+    }
 }

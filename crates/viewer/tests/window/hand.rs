@@ -10,6 +10,8 @@ use std::time::{Duration, Instant};
 
 /// An act of the hand reaches the program before its log was silent so long.
 const STILL: Duration = Duration::from_millis(700);
+/// A frame that a move or a click of the mouse causes begins within so long.
+const MOMENT: Duration = Duration::from_millis(200);
 /// Moves of one drag.
 const STEPS: u32 = 6;
 /// Between two of them, as of a hand: longer than a frame without a new picture.
@@ -42,6 +44,11 @@ impl Display {
         let mut number = String::new();
         BufReader::new(server.stdout.take()?).read_line(&mut number).ok()?;
         Some(Self { server, name: format!(":{}", number.trim()), size, folder })
+    }
+
+    /// The server's name, for other clients.
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
     /// Moves mouse and keys by the words of xdotool's command line.
@@ -191,6 +198,12 @@ impl Program {
         while self.line(STILL).is_some() {}
     }
 
+    /// Waits until the program is silent for a moment: a menu that was opened has its place. A text field whose cursor
+    /// blinks never rests.
+    pub fn settle(&mut self) {
+        while self.line(MOMENT).is_some() {}
+    }
+
     /// Waits until the program says that it is idle, and nothing after that. Silence alone is not enough: a busy
     /// machine may be silent in the middle of an upload.
     pub fn rest(&mut self) {
@@ -239,12 +252,9 @@ impl Program {
         display.key("ctrl+shift+s");
         self.wait("is written");
         self.rest();
-        let file = std::fs::File::open(self.folder.join("view.png")).expect("the picture");
-        let mut reader = png::Decoder::new(BufReader::new(file)).read_info().expect("a picture");
-        let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
-        let info = reader.next_frame(&mut pixels).expect("pixels");
-        assert_eq!((info.width, info.height), PICTURE);
-        pixels.as_chunks::<4>().0.to_vec()
+        let (size, pixels) = read_png(&self.folder.join("view.png"));
+        assert_eq!(size, PICTURE);
+        pixels
     }
 
     /// A file of `/proc` on the process.
@@ -282,6 +292,15 @@ impl Drop for Program {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
+}
+
+/// Size and pixels of a PNG file, row 0 on top.
+pub fn read_png(path: &Path) -> ((u32, u32), Vec<[u8; 4]>) {
+    let file = std::fs::File::open(path).expect("the picture");
+    let mut reader = png::Decoder::new(BufReader::new(file)).read_info().expect("a picture");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+    let info = reader.next_frame(&mut pixels).expect("pixels");
+    ((info.width, info.height), pixels.as_chunks::<4>().0.to_vec())
 }
 
 /// The numbers of a line, after `from`.

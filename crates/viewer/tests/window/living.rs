@@ -3,13 +3,15 @@
 use super::hand::{Display, Program, numbers};
 use super::{Screen, opened};
 use glam::DVec2;
-use selvedge::model::SurfaceKind;
+use selvedge::model::{Face, SurfaceKind};
+use selvedge_check::Hit;
 use selvedge_viewer::measure::cut;
+use selvedge_viewer::pick::nearest_loop;
 use selvedge_viewer::session::{Picked, Session};
 use std::sync::Arc;
 
 /// The scene changed in place: nothing was uploaded, and no upload is on its way.
-fn is_in_place(said: &[String]) -> bool {
+pub fn is_in_place(said: &[String]) -> bool {
     let has = |what: &str| said.iter().any(|line| line.contains(what));
     has("changed in place") && !has("uploaded") && !has("an upload is needed")
 }
@@ -104,13 +106,25 @@ fn a_trim_follows_the_hand_without_an_upload() {
     let Some(screen) = Screen::open((900, 560)) else { return };
     let display = &screen.display;
     let (_folder, mut program, scene) = opened(display, "bracket.step");
-    let (at, hit) = scene.place(|_, face| face.kind == SurfaceKind::Plane && face.loops.len() > 1);
+    // beside a hole, whose loop is then the one to drag
+    let beside = |hit: &Hit, face: &Face| -> Option<usize> {
+        let nearest = |uv: DVec2| nearest_loop(&face.surface, &face.loops, uv);
+        let hole = nearest(hit.uv).filter(|nth| *nth > 0)?;
+        let (low, high) = face.loops[hole].bounds();
+        // also where the cursor is some pixels away
+        let around = [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y].map(|by| hit.uv + 0.1 * by * (high - low));
+        around.iter().all(|uv| nearest(*uv) == Some(hole)).then_some(hole)
+    };
+    let (at, hit) = scene.place(|hit, face| face.kind == SurfaceKind::Plane && beside(hit, face).is_some());
+    let hole = beside(&hit, &scene.faces()[hit.face_index]).expect("it was found");
     display.click(at);
     program.wait("selected ");
     program.rest();
     upload(&mut program, display, "t");
     let (face, placed) = (&scene.faces()[hit.face_index], &scene.world.model.instances[hit.instance]);
-    let points = face.loops[1..].iter().flat_map(|l| l.curves().collect::<Vec<_>>()).map(|curve| curve.points[0]);
+    let chosen = numbers(&program.last("trim loop "), "trim loop ");
+    assert_eq!(chosen, [(hole + 1) as f64, face.loops.len() as f64]);
+    let points = face.loops[hole].curves().map(|curve| curve.points[0]);
     let uvs = points.map(|p| p.truncate() / p.z);
     let places = uvs.map(|uv| placed.transform.transform_point3(face.surface.point(uv.x, uv.y)));
     let mut places = places.map(|p| scene.in_window(&scene.camera, p).round());

@@ -3,9 +3,13 @@
 //! The test starts itself again as the program with the window, and reads its log. It computes the places of faces and
 //! edges on the screen from the same camera in `f64`. The validation layer is on, and must stay silent.
 
+mod clipboard;
 mod gestures;
 mod hand;
 mod living;
+mod menus;
+mod panels;
+mod points;
 mod previews;
 mod scene;
 mod soak;
@@ -76,6 +80,7 @@ fn window(file: PathBuf) {
     let closed = run(ViewOptions {
         finder: slow.map(|slow| Finder(Arc::new(slow))),
         settings: file.parent().map(|folder| folder.join("settings.json")),
+        desktop: file.parent().map(Path::to_owned),
         files: vec![file],
         validation: true,
         size: width.parse().ok().zip(height.parse().ok()),
@@ -91,7 +96,13 @@ fn sample(name: &str) -> PathBuf {
 
 /// A copy of a sample in a folder of its own, opened.
 fn opened(display: &Display, name: &str) -> (tempfile::TempDir, Program, Scene) {
+    opened_with(display, name, |_| {})
+}
+
+/// The same, where something else is put into the folder before.
+fn opened_with(display: &Display, name: &str, put: impl FnOnce(&Path)) -> (tempfile::TempDir, Program, Scene) {
     let folder = tempfile::tempdir().expect("a folder");
+    put(folder.path());
     let file = folder.path().join(name);
     std::fs::copy(sample(name), &file).expect("copied");
     let program = Program::start(display, &file);
@@ -99,16 +110,23 @@ fn opened(display: &Display, name: &str) -> (tempfile::TempDir, Program, Scene) 
     (folder, program, scene)
 }
 
+/// The text of a file without spaces.
+fn text_of(file: &Path) -> String {
+    std::fs::read_to_string(file).expect("a sample").replace(['\n', '\r', ' '], "")
+}
+
+/// The entity of a number, in such a text.
+fn entity(text: &str, number: u32) -> &str {
+    let start = text.find(&format!("#{number}=")).expect("the entity");
+    text[start..].split(';').next().expect("its end")
+}
+
 /// The radius that the file states for the cylinder of a face.
 fn stated_radius(file: &Path, face: u32) -> f64 {
-    let text = std::fs::read_to_string(file).expect("a sample").replace(['\n', '\r', ' '], "");
-    let entity = |number: u32| {
-        let start = text.find(&format!("#{number}=")).expect("the entity");
-        text[start..].split(';').next().expect("its end").to_owned()
-    };
-    let of_face = entity(face);
+    let text = text_of(file);
+    let of_face = entity(&text, face);
     let surface = of_face.rsplit('#').next().and_then(|rest| rest.split(',').next()).expect("a surface");
-    let cylinder = entity(surface.parse().expect("a number"));
+    let cylinder = entity(&text, surface.parse().expect("a number"));
     assert!(cylinder.contains("CYLINDRICAL_SURFACE"), "{cylinder}");
     cylinder.rsplit(',').next().and_then(|r| r.trim_end_matches(')').parse().ok()).expect("a radius")
 }

@@ -13,7 +13,7 @@ const MEASURES: usize = 4;
 const MOST_KIB: u64 = 16384;
 /// States that are undone before a measure: a session keeps no more.
 const MOST_STATES: usize = 200;
-const KEYS: [&str; 24] = [
+const KEYS: [&str; 25] = [
     "1",
     "3",
     "7",
@@ -24,6 +24,7 @@ const KEYS: [&str; 24] = [
     "a",
     "x",
     "m",
+    "p",
     "t",
     "c",
     "f",

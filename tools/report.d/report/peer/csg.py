@@ -15,27 +15,21 @@ import numpy
 from PIL import Image
 
 from . import job, tell
-from .kernel import boundary, judged, unit
+from .kernel import View, boundary, judged
 
 # a pixel whose colour differs from the corner's by no more steps of 255 is background: pictures are not dithered
 ALIKE = 2
 
 
-class Rays:
+class Rays(View):
     """The camera's rays against a tree of primitives: 0 where they meet the solid, -1 where they do not."""
 
     def __init__(self, scene, camera):
-        self.width, self.height = camera["size"]
-        self.eye, target, up = (numpy.array(camera[name], float) for name in ("eye", "target", "up"))
-        self.forward = unit(target - self.eye)
-        self.right = unit(numpy.cross(self.forward, up))
-        self.up = numpy.cross(self.right, self.forward)
-        self.tan = math.tan(math.radians(camera["fovy"]) / 2)
+        super().__init__(camera)
         self.tree, self.parts = scene["tree"], scene["primitives"]
 
     def at(self, x, y):
-        ray = self.forward + self.right * ((2 * x / self.width - 1) * self.tan * self.width / self.height)
-        ray = unit(ray + self.up * ((1 - 2 * y / self.height) * self.tan))
+        ray = self.ray(x, y)
         within = {name: spans(part, self.eye, ray) for name, part in self.parts.items()}
         ends = sorted({t for of in within.values() for span in of for t in span if t > 0})
         for low, high in zip(ends, ends[1:]):
@@ -44,9 +38,6 @@ class Rays:
             if member(self.tree, inside):
                 return [0]
         return [-1]
-
-    def centre(self, pixel):
-        return self.at(pixel[0] + 0.5, pixel[1] + 0.5)
 
 
 def member(tree, inside):

@@ -47,16 +47,31 @@ def unit(v):
     return v / numpy.linalg.norm(v)
 
 
-class Rays:
-    """The camera's rays against faces, which stand in tiles of the picture."""
+class View:
+    """A camera. A subclass's `at` says what the ray through a point of the picture meets."""
 
-    def __init__(self, found, camera, tie):
+    def __init__(self, camera):
         self.width, self.height = camera["size"]
         self.eye, target, up = (numpy.array(camera[name], float) for name in ("eye", "target", "up"))
         self.forward = unit(target - self.eye)
         self.right = unit(numpy.cross(self.forward, up))
         self.up = numpy.cross(self.right, self.forward)
         self.tan = math.tan(math.radians(camera["fovy"]) / 2)
+
+    def ray(self, x, y):
+        """The direction from the eye through a point of the picture."""
+        ray = self.forward + self.right * ((2 * x / self.width - 1) * self.tan * self.width / self.height)
+        return unit(ray + self.up * ((1 - 2 * y / self.height) * self.tan))
+
+    def centre(self, pixel):
+        return self.at(pixel[0] + 0.5, pixel[1] + 0.5)
+
+
+class Rays(View):
+    """The camera's rays against faces, which stand in tiles of the picture."""
+
+    def __init__(self, found, camera, tie):
+        super().__init__(camera)
         self.tie, self.found, self.made = tie, found, {}
         self.tiles = {}
         for number, face in enumerate(found):
@@ -86,9 +101,7 @@ class Rays:
         faces = self.tiles.get((int(x) // TILE, int(y) // TILE), [])
         if not faces:
             return [-1]
-        ray = self.forward + self.right * ((2 * x / self.width - 1) * self.tan * self.width / self.height)
-        ray = unit(ray + self.up * ((1 - 2 * y / self.height) * self.tan))
-        line = gp_Lin(gp_Pnt(*map(float, self.eye)), gp_Dir(*map(float, ray)))
+        line = gp_Lin(gp_Pnt(*map(float, self.eye)), gp_Dir(*map(float, self.ray(x, y))))
         hits = []
         for number in faces:
             held = self.made.get(number)
@@ -107,9 +120,6 @@ class Rays:
         nearest = min(hits)[0]
         # the nearest first
         return [number for depth, number in sorted(hits) if depth <= nearest + self.tie]
-
-    def centre(self, pixel):
-        return self.at(pixel[0] + 0.5, pixel[1] + 0.5)
 
 
 def boundary(rays, seconds):

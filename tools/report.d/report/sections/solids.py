@@ -4,7 +4,7 @@ import statistics
 
 from .. import bumpy, floor, scenes, views
 from ..budget import cases
-from ..rows import Contest, Missing, Promise, Table
+from ..rows import Contest, Missing, Promise, Table, error_cells
 from ..turns import Late, Overdue, Unmeasurable, rounds
 
 WAYS = ["events", "cst", "blister"]
@@ -176,16 +176,7 @@ class Case:
                 first, turning = zip(*(one[setting] for one in found))
                 turning = Missing("it draws single pictures only") if turning[0] is None else statistics.median(turning)
                 error = errors.get(setting)
-                worst = (
-                    [
-                        f"> {error['worst_px'] / 2:g}" if error["beyond"] else error["worst_px"],
-                        error["p999_px"],
-                        error["off"],
-                    ]
-                    if error
-                    else [""] * 3
-                )
-                rows.append([setting, statistics.median(first), turning, *worst])
+                rows.append([setting, statistics.median(first), turning, *error_cells(error)])
         text = f"{judged:,} pixels at the outline are judged."
         section.tables.append(
             Table(

@@ -5,7 +5,7 @@ import statistics
 
 from .. import floor, noise, views
 from ..budget import cases
-from ..rows import Contest, Line, Missing, Plot, Promise, Table
+from ..rows import Contest, Line, Missing, Plot, Promise, Table, error_cells
 from ..turns import Late, Unmeasurable, rounds
 
 # what is claimed comes first
@@ -280,18 +280,9 @@ class Case:
                 timed = [one[setting] for one in found if setting in one]
                 times = [None if None in of else statistics.median(of) for of in zip(*timed)]
                 error = errors.get(f"{kind} {setting}")
-                worst = (
-                    [
-                        f"> {error['worst_px'] / 2:g}" if error["beyond"] else error["worst_px"],
-                        error["p999_px"],
-                        error["off"],
-                    ]
-                    if error
-                    else [""] * 3
-                )
                 unit = f"{setting:g} px" if kind == "ours" else f"{setting:g} of the diagonal"
                 times = ["" if time is None else time for time in times]
-                rows.append([name, unit, *times, len(timed), *worst])
+                rows.append([name, unit, *times, len(timed), *error_cells(error)])
             for (of, deflection), why in self.stopped.items():
                 if of == who and deflection not in self.settings(found):
                     rows.append([name, f"{deflection:g} of the diagonal", *[Missing(why)] * 3, *[""] * 4])

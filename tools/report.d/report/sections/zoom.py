@@ -3,7 +3,7 @@
 import statistics
 
 from .. import program, views
-from ..rows import Contest, Line, Missing, Plot, Promise, Table
+from ..rows import Contest, Line, Missing, Plot, Promise, Table, worst_cell
 from ..turns import Overdue, Unmeasurable, rounds
 
 FILE, SAMPLE = "nist_pmi_2.stp", "samples/bracket.step"
@@ -173,6 +173,4 @@ def error(of_view, kind):
     if isinstance(of_view, str):
         return Missing(of_view)
     found = of_view.get(kind)
-    if found is None:
-        return ""
-    return f"> {found['worst_px'] / 2:g}" if found["beyond"] else found["worst_px"]
+    return "" if found is None else worst_cell(found)

@@ -50,6 +50,18 @@ pub(super) struct Fan {
     pub closed: bool,
 }
 
+impl Fan {
+    /// Whether the vertex has as many faces as a regular one, inside or on a border; a corner has one.
+    pub fn is_regular(&self, sharp: bool, [inside, border]: [usize; 2]) -> bool {
+        let regular = match (self.closed, sharp) {
+            (true, _) => inside,
+            (false, false) => border,
+            (false, true) => 1,
+        };
+        self.out.len() == regular
+    }
+}
+
 impl Topology {
     /// Checks the mesh and cuts it at its creases; true when it has no border.
     pub fn new(mesh: &ControlMesh) -> Result<(Self, bool), ConstructError> {

@@ -29,6 +29,7 @@
 //! **Borders and creases.** A border becomes the uniform cubic B-spline of its vertices; a border's vertex with one
 //! face is a corner and stays. A crease is a border of both sides; three of them, or one at a border, make a corner.
 
+mod caps;
 mod limit;
 mod mesh;
 mod quads;
@@ -42,11 +43,6 @@ use super::ConstructError;
 use crate::model::{Bounds, Part, SurfaceKind};
 use mesh::Topology;
 
-/// Most rings around a vertex. A ring takes a cap's deviation by 0.61 at a vertex of 8 (by 1/2 at one of 4, by 0.65 at
-/// those of many): 32 of them reach some `1e-7` of the size.
-const MOST_RINGS: usize = 32;
-/// Levels after a cap's own that it is compared with.
-const JUDGED_LEVELS: usize = 40;
 /// Share of a cap's deviation below which the remainder near the vertex is not refined.
 const NEGLIGIBLE: f64 = 1e-3;
 

@@ -17,9 +17,10 @@
 //! A. Nasri, *Polyhedral subdivision methods for free-form surfaces*, 1987.
 
 use super::super::ConstructError;
+use super::caps::{Level, beside, capped};
 use super::limit::Limit;
 use super::mesh::{Fan, Topology};
-use super::{Bound, JUDGED_LEVELS, MOST_RINGS, NEGLIGIBLE, Scheme};
+use super::{Bound, NEGLIGIBLE, Scheme};
 use crate::spline::Surface;
 use glam::DVec3;
 use std::array::from_fn;
@@ -29,14 +30,8 @@ type Cubic = [[DVec3; 4]; 4];
 /// Points of a sector: `[p][q]`.
 type Sector = [[DVec3; 4]; 4];
 
-/// No wedge, and no corner of more or fewer faces than one.
-fn regular(fan: &Fan, sharp: bool) -> bool {
-    match (fan.closed, sharp) {
-        (true, _) => fan.out.len() == 4,
-        (false, false) => fan.out.len() == 2,
-        (false, true) => fan.out.len() == 1,
-    }
-}
+/// Faces of a regular vertex: inside, and on a border.
+const REGULAR: [usize; 2] = [4, 2];
 
 /// The surfaces of a mesh, and where its irregular vertices are.
 pub(super) fn surfaces(mut mesh: Topology, tolerance: f64) -> Result<(Vec<Surface>, Bound), ConstructError> {
@@ -44,7 +39,7 @@ pub(super) fn surfaces(mut mesh: Topology, tolerance: f64) -> Result<(Vec<Surfac
     let mut steps = 0;
     loop {
         irregular = (0..mesh.positions.len())
-            .map(|v| mesh.used(v) && !regular(&mesh.fan(v), mesh.sharp[v]))
+            .map(|v| mesh.used(v) && !mesh.fan(v).is_regular(mesh.sharp[v], REGULAR))
             .collect::<Vec<bool>>();
         let alone = |f: usize| {
             let corners = mesh.corners(f);
@@ -269,27 +264,15 @@ impl Umbrella {
         Self { sectors: fan.out.iter().map(sector).collect(), closed: fan.closed, sharp }
     }
 
-    /// The sector before or after one, if they meet.
-    fn beside(&self, i: usize, after: bool) -> Option<&Sector> {
-        let n = self.sectors.len();
-        match after {
-            true if i + 1 < n => Some(&self.sectors[i + 1]),
-            false if i > 0 => Some(&self.sectors[i - 1]),
-            true if self.closed => Some(&self.sectors[0]),
-            false if self.closed => Some(&self.sectors[n - 1]),
-            _ => None,
-        }
-    }
-
     /// A point of sector `i`; one step beyond a ray is the neighbour's, or mirrored.
     fn at(&self, i: usize, p: i32, q: i32) -> DVec3 {
         let s = &self.sectors[i];
         if q < 0 {
             let p = p as usize;
-            self.beside(i, false).map_or_else(|| s[p][0] * 2.0 - s[p][1], |o| o[1][p])
+            beside(&self.sectors, self.closed, i, false).map_or_else(|| s[p][0] * 2.0 - s[p][1], |o| o[1][p])
         } else if p < 0 {
             let q = q as usize;
-            self.beside(i, true).map_or_else(|| s[0][q] * 2.0 - s[1][q], |o| o[q][1])
+            beside(&self.sectors, self.closed, i, true).map_or_else(|| s[0][q] * 2.0 - s[1][q], |o| o[q][1])
         } else {
             s[p as usize][q as usize]
         }
@@ -314,7 +297,35 @@ impl Umbrella {
         (0..self.rays()).map(|r| self.ray(r)[1][1]).collect()
     }
 
-    /// The next level, points up to 3.
+    /// The patch over the cell from `(p, q)`.
+    fn patch(&self, i: usize, p: i32, q: i32) -> Cubic {
+        bezier(&from_fn(|y| from_fn(|x| self.at(i, p - 1 + x as i32, q - 1 + y as i32))))
+    }
+
+    /// Patches A, B, C of the figure: of a level that was refined.
+    fn ring(&self, i: usize) -> [Cubic; 3] {
+        [(1, 0), (1, 1), (0, 1)].map(|(p, q)| self.patch(i, p, q))
+    }
+
+    /// The sectors' surfaces: as many rings as the cap needs to be within the tolerance.
+    fn surfaces(
+        self,
+        mesh: &Topology,
+        fan: &Fan,
+        tolerance: f64,
+        bound: &mut Bound,
+    ) -> Result<Vec<Surface>, ConstructError> {
+        let limit = Limit::of(Scheme::CatmullClark, mesh, fan);
+        let count = self.sectors.len();
+        let (levels, caps) = capped(self, count, &limit, tolerance, bound)?;
+        fan.out.iter().zip(caps).enumerate().map(|(i, (h, cap))| sector(&levels, i, &cap, (mesh, *h))).collect()
+    }
+}
+
+impl Level for Umbrella {
+    type Patch = Cubic;
+
+    /// Points up to 3.
     fn refined(&self) -> Self {
         let along = |x: [DVec3; 3]| {
             let [a, b, c] = x;
@@ -347,17 +358,7 @@ impl Umbrella {
         Self { sectors: sectors.collect(), closed: self.closed, sharp: self.sharp }
     }
 
-    /// The patch over the cell from `(p, q)`.
-    fn patch(&self, i: usize, p: i32, q: i32) -> Cubic {
-        bezier(&from_fn(|y| from_fn(|x| self.at(i, p - 1 + x as i32, q - 1 + y as i32))))
-    }
-
-    /// Patches A, B, C of the figure: of a level that was refined.
-    fn ring(&self, i: usize) -> [Cubic; 3] {
-        [(1, 0), (1, 1), (0, 1)].map(|(p, q)| self.patch(i, p, q))
-    }
-
-    /// The patch over `[0, 1]²`, exact except at the vertex.
+    /// Over `[0, 1]²`.
     fn cap(&self, i: usize, limit: &Limit) -> Cubic {
         let mut g: Cubic =
             from_fn(|y| from_fn(|x| if x + y == 0 { DVec3::ZERO } else { self.at(i, x as i32 - 1, y as i32 - 1) }));
@@ -373,7 +374,6 @@ impl Umbrella {
         b
     }
 
-    /// Largest distance of a cap from the surface, from the levels after its own.
     fn deviation(cap: &Cubic, i: usize, finer: &[Self], limit: DVec3) -> f64 {
         let (mut rest, mut most) = (*cap, 0.0f64);
         let mut remainder = 0.0;
@@ -392,42 +392,6 @@ impl Umbrella {
             }
         }
         most.max(remainder)
-    }
-
-    /// The sectors' surfaces: as many rings as the cap needs to be within the tolerance.
-    fn surfaces(
-        self,
-        mesh: &Topology,
-        fan: &Fan,
-        tolerance: f64,
-        bound: &mut Bound,
-    ) -> Result<Vec<Surface>, ConstructError> {
-        let limit = Limit::of(Scheme::CatmullClark, mesh, fan);
-        let count = self.sectors.len();
-        let mut levels = vec![self];
-        let mut rings = 1;
-        let caps = loop {
-            while levels.len() <= rings + JUDGED_LEVELS {
-                levels.push(levels[levels.len() - 1].refined());
-            }
-            let caps: Vec<Cubic> = (0..count).map(|i| levels[rings].cap(i, &limit)).collect();
-            let off = caps.iter().enumerate().map(|(i, c)| Self::deviation(c, i, &levels[rings + 1..], limit.point));
-            let off = off.fold(0.0, f64::max);
-            if off <= tolerance {
-                bound.add(off, rings);
-                break caps;
-            }
-            if rings == MOST_RINGS {
-                return Err(ConstructError::Bound { asked: tolerance, reached: off, pieces: rings });
-            }
-            rings += 1;
-        };
-        fan.out
-            .iter()
-            .zip(caps)
-            .enumerate()
-            .map(|(i, (h, cap))| sector(&levels[..=rings], i, &cap, (mesh, *h)))
-            .collect()
     }
 }
 

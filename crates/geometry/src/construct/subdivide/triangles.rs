@@ -15,10 +15,11 @@
 //! 1992 (the Bézier points); borders from H. Hoppe et al., *Piecewise smooth surface reconstruction*, 1994.
 
 use super::super::ConstructError;
+use super::caps::{Level, beside, capped};
 use super::limit::{Limit, weight};
 use super::mesh::{Fan, Topology};
 use super::quartic::{Quartic, apart, children, far_side, halves, put_far_side, surface};
-use super::{Bound, JUDGED_LEVELS, MOST_RINGS, NEGLIGIBLE, Scheme};
+use super::{Bound, NEGLIGIBLE, Scheme};
 use crate::spline::Surface;
 use glam::DVec3;
 use std::array::from_fn;
@@ -26,13 +27,8 @@ use std::array::from_fn;
 /// Points of a sector: `[p][q]`, `p + q <= 3`.
 type Sector = [[DVec3; 4]; 4];
 
-fn regular(fan: &Fan, sharp: bool) -> bool {
-    match (fan.closed, sharp) {
-        (true, _) => fan.out.len() == 6,
-        (false, false) => fan.out.len() == 3,
-        (false, true) => fan.out.len() == 1,
-    }
-}
+/// Faces of a regular vertex: inside, and on a border.
+const REGULAR: [usize; 2] = [6, 3];
 
 /// The surfaces of a mesh of triangles.
 pub(super) fn surfaces(mut mesh: Topology, tolerance: f64) -> Result<(Vec<Surface>, Bound), ConstructError> {
@@ -40,7 +36,7 @@ pub(super) fn surfaces(mut mesh: Topology, tolerance: f64) -> Result<(Vec<Surfac
         return Err(ConstructError::Polygon { face, what: "is no triangle, which Loop's scheme needs" });
     }
     let irregular = |mesh: &Topology| -> Vec<bool> {
-        let odd = |v: usize| mesh.used(v) && !regular(&mesh.fan(v), mesh.sharp[v]);
+        let odd = |v: usize| mesh.used(v) && !mesh.fan(v).is_regular(mesh.sharp[v], REGULAR);
         (0..mesh.positions.len()).map(odd).collect()
     };
     let mut odd = irregular(&mesh);
@@ -241,26 +237,17 @@ impl Umbrella {
         Self { sectors: fan.out.iter().map(sector).collect(), closed: fan.closed, sharp }
     }
 
-    fn beside(&self, i: usize, after: bool) -> Option<&Sector> {
-        let n = self.sectors.len();
-        match after {
-            true if i + 1 < n => Some(&self.sectors[i + 1]),
-            false if i > 0 => Some(&self.sectors[i - 1]),
-            true if self.closed => Some(&self.sectors[0]),
-            false if self.closed => Some(&self.sectors[n - 1]),
-            _ => None,
-        }
-    }
-
     /// A point of sector `i`; one step beyond a ray (not beyond its vertex) is the neighbour's, or mirrored.
     fn at(&self, i: usize, p: i32, q: i32) -> DVec3 {
         let s = &self.sectors[i];
         if q < 0 {
             let p = p as usize;
-            self.beside(i, false).map_or_else(|| (s[p - 1][0] + s[p][0]) - s[p - 1][1], |o| o[1][p - 1])
+            beside(&self.sectors, self.closed, i, false)
+                .map_or_else(|| (s[p - 1][0] + s[p][0]) - s[p - 1][1], |o| o[1][p - 1])
         } else if p < 0 {
             let q = q as usize;
-            self.beside(i, true).map_or_else(|| (s[0][q - 1] + s[0][q]) - s[1][q - 1], |o| o[q - 1][1])
+            beside(&self.sectors, self.closed, i, true)
+                .map_or_else(|| (s[0][q - 1] + s[0][q]) - s[1][q - 1], |o| o[q - 1][1])
         } else {
             s[p as usize][q as usize]
         }
@@ -274,36 +261,6 @@ impl Umbrella {
     fn ray(&self, r: usize, p: i32, side: i32) -> DVec3 {
         let n = self.sectors.len();
         if r < n { self.at(r, p, side) } else { self.at(n - 1, -side, p + side) }
-    }
-
-    fn refined(&self) -> Self {
-        let rays: Vec<[DVec3; 3]> = (0..self.rays())
-            .map(|r| {
-                let at = |p: i32, side: i32| self.ray(r, p, side);
-                let (c, e, f) = (at(0, 0), at(1, 0), at(2, 0));
-                if !self.closed && (r == 0 || r + 1 == self.rays()) {
-                    return [(c + e) * 0.5, (e * 6.0 + (c + f)) * 0.125, (e + f) * 0.5];
-                }
-                let ring = symmetric([at(1, 1) + at(1, -1), at(0, 1) + at(2, -1), c + f]);
-                [edge_rule(c, e, at(0, 1), at(1, -1)), (e * 10.0 + ring) * 0.0625, edge_rule(e, f, at(1, 1), at(2, -1))]
-            })
-            .collect();
-        let first: Vec<DVec3> = (0..self.rays()).map(|r| self.ray(r, 1, 0)).collect();
-        let c = vertex_rule(self.sectors[0][0][0], &first, self.closed, self.sharp);
-        let sectors = self.sectors.iter().enumerate().map(|(i, s)| {
-            let mut new = [[DVec3::ZERO; 4]; 4];
-            new[0][0] = c;
-            let next = (i + 1) % rays.len();
-            for k in 0..3 {
-                new[k + 1][0] = rays[i][k];
-                new[0][k + 1] = rays[next][k];
-            }
-            new[1][1] = edge_rule(s[1][0], s[0][1], s[0][0], s[1][1]);
-            new[2][1] = edge_rule(s[1][0], s[1][1], s[2][0], s[0][1]);
-            new[1][2] = edge_rule(s[0][1], s[1][1], s[0][2], s[1][0]);
-            new
-        });
-        Self { sectors: sectors.collect(), closed: self.closed, sharp: self.sharp }
     }
 
     /// The net of the triangle at `(p, q)`, turned by half where `sign` is -1.
@@ -325,50 +282,6 @@ impl Umbrella {
         [((1, 0), 1), ((0, 1), 1), ((1, 1), -1)].map(|(at, sign)| bezier(&self.net(i, at, sign)))
     }
 
-    /// The patch over the triangle at the vertex, exact except at the vertex.
-    fn cap(&self, i: usize, limit: &Limit) -> Quartic {
-        let at = |p: i32, q: i32| self.at(i, p, q);
-        let c = at(0, 0);
-        let corners = [c, at(1, 0), at(0, 1)];
-        let rings = [
-            // across the vertex any value will do: the points that depend on it are replaced below
-            [at(1, 0), at(0, 1), at(-1, 1), c, c, at(1, -1)],
-            [at(0, 1), c, at(1, -1), at(2, -1), at(2, 0), at(1, 1)],
-            [c, at(1, 0), at(1, 1), at(0, 2), at(-1, 2), at(-1, 1)],
-        ];
-        let mut b = bezier(&Net { corners, rings });
-        b[0][0] = limit.point;
-        // the fourth difference vanishes, and the tangent is the limit's
-        let first = |third: DVec3, second: DVec3, last: DVec3| {
-            limit.tangent_plane((limit.point + second * 6.0 + last) * 0.25 - third)
-        };
-        b[0][1] = first(b[0][3], b[0][2], b[0][4]);
-        b[1][0] = first(b[3][0], b[2][0], b[4][0]);
-        let (by_row, by_column) = ((b[1][0] - b[1][3]) / 3.0 + b[1][2], (b[0][1] - b[3][1]) / 3.0 + b[2][1]);
-        b[1][1] = (by_row + by_column) * 0.5;
-        b
-    }
-
-    /// Largest distance of a cap from the surface, from the levels after its own.
-    fn deviation(cap: &Quartic, i: usize, finer: &[Self], limit: DVec3) -> f64 {
-        let (mut rest, mut most, mut remainder) = (*cap, 0.0f64, 0.0);
-        for level in finer {
-            let [low, right, up, middle] = children(&rest);
-            for (mine, exact) in [right, up, middle].iter().zip(level.ring(i)) {
-                most = most.max(apart(mine, &exact));
-            }
-            rest = low;
-            let far = |most: f64, p: DVec3| most.max(p.distance(limit));
-            let around = level.sectors.iter().flat_map(|s| [s[1][0], s[0][1], s[2][0], s[1][1], s[0][2]]);
-            let own = (0..5).flat_map(|k| (0..5 - k).map(move |i| (k, i))).map(|(k, i)| rest[k][i]);
-            remainder = around.fold(0.0, far) + own.fold(0.0, far);
-            if remainder <= NEGLIGIBLE * most {
-                break;
-            }
-        }
-        most.max(remainder)
-    }
-
     /// Of each sector: its cap, then its rings from the vertex outwards.
     fn surfaces(
         self,
@@ -379,24 +292,7 @@ impl Umbrella {
     ) -> Result<Vec<Vec<Surface>>, ConstructError> {
         let limit = Limit::of(Scheme::Loop, mesh, fan);
         let count = self.sectors.len();
-        let mut levels = vec![self];
-        let mut rings = 1;
-        let caps = loop {
-            while levels.len() <= rings + JUDGED_LEVELS {
-                levels.push(levels[levels.len() - 1].refined());
-            }
-            let caps: Vec<Quartic> = (0..count).map(|i| levels[rings].cap(i, &limit)).collect();
-            let off = caps.iter().enumerate().map(|(i, c)| Self::deviation(c, i, &levels[rings + 1..], limit.point));
-            let off = off.fold(0.0, f64::max);
-            if off <= tolerance {
-                bound.add(off, rings);
-                break caps;
-            }
-            if rings == MOST_RINGS {
-                return Err(ConstructError::Bound { asked: tolerance, reached: off, pieces: rings });
-            }
-            rings += 1;
-        };
+        let (levels, caps) = capped(self, count, &limit, tolerance, bound)?;
         let sector = |(i, (h, cap)): (usize, (&usize, Quartic))| {
             let whole = patch(mesh, *h);
             let mut outer = far_side(&whole);
@@ -404,7 +300,7 @@ impl Umbrella {
             let mut along = mesh.twin(*h).is_none().then_some(whole[0]);
             let mut up_along = mesh.twin(mesh.prev(*h)).is_none().then(|| from_fn(|k| whole[k][0]));
             let mut all = Vec::new();
-            for level in levels[1..=rings].iter().rev() {
+            for level in levels[1..].iter().rev() {
                 all.push(level.ring(i));
             }
             // from the outside: each ring ends in halves of the side before it
@@ -438,5 +334,81 @@ impl Umbrella {
             [&cap].into_iter().chain(rest).map(surface).collect::<Result<Vec<_>, _>>()
         };
         fan.out.iter().zip(caps).enumerate().map(sector).collect()
+    }
+}
+
+impl Level for Umbrella {
+    type Patch = Quartic;
+
+    fn refined(&self) -> Self {
+        let rays: Vec<[DVec3; 3]> = (0..self.rays())
+            .map(|r| {
+                let at = |p: i32, side: i32| self.ray(r, p, side);
+                let (c, e, f) = (at(0, 0), at(1, 0), at(2, 0));
+                if !self.closed && (r == 0 || r + 1 == self.rays()) {
+                    return [(c + e) * 0.5, (e * 6.0 + (c + f)) * 0.125, (e + f) * 0.5];
+                }
+                let ring = symmetric([at(1, 1) + at(1, -1), at(0, 1) + at(2, -1), c + f]);
+                [edge_rule(c, e, at(0, 1), at(1, -1)), (e * 10.0 + ring) * 0.0625, edge_rule(e, f, at(1, 1), at(2, -1))]
+            })
+            .collect();
+        let first: Vec<DVec3> = (0..self.rays()).map(|r| self.ray(r, 1, 0)).collect();
+        let c = vertex_rule(self.sectors[0][0][0], &first, self.closed, self.sharp);
+        let sectors = self.sectors.iter().enumerate().map(|(i, s)| {
+            let mut new = [[DVec3::ZERO; 4]; 4];
+            new[0][0] = c;
+            let next = (i + 1) % rays.len();
+            for k in 0..3 {
+                new[k + 1][0] = rays[i][k];
+                new[0][k + 1] = rays[next][k];
+            }
+            new[1][1] = edge_rule(s[1][0], s[0][1], s[0][0], s[1][1]);
+            new[2][1] = edge_rule(s[1][0], s[1][1], s[2][0], s[0][1]);
+            new[1][2] = edge_rule(s[0][1], s[1][1], s[0][2], s[1][0]);
+            new
+        });
+        Self { sectors: sectors.collect(), closed: self.closed, sharp: self.sharp }
+    }
+
+    fn cap(&self, i: usize, limit: &Limit) -> Quartic {
+        let at = |p: i32, q: i32| self.at(i, p, q);
+        let c = at(0, 0);
+        let corners = [c, at(1, 0), at(0, 1)];
+        let rings = [
+            // across the vertex any value will do: the points that depend on it are replaced below
+            [at(1, 0), at(0, 1), at(-1, 1), c, c, at(1, -1)],
+            [at(0, 1), c, at(1, -1), at(2, -1), at(2, 0), at(1, 1)],
+            [c, at(1, 0), at(1, 1), at(0, 2), at(-1, 2), at(-1, 1)],
+        ];
+        let mut b = bezier(&Net { corners, rings });
+        b[0][0] = limit.point;
+        // the fourth difference vanishes, and the tangent is the limit's
+        let first = |third: DVec3, second: DVec3, last: DVec3| {
+            limit.tangent_plane((limit.point + second * 6.0 + last) * 0.25 - third)
+        };
+        b[0][1] = first(b[0][3], b[0][2], b[0][4]);
+        b[1][0] = first(b[3][0], b[2][0], b[4][0]);
+        let (by_row, by_column) = ((b[1][0] - b[1][3]) / 3.0 + b[1][2], (b[0][1] - b[3][1]) / 3.0 + b[2][1]);
+        b[1][1] = (by_row + by_column) * 0.5;
+        b
+    }
+
+    fn deviation(cap: &Quartic, i: usize, finer: &[Self], limit: DVec3) -> f64 {
+        let (mut rest, mut most, mut remainder) = (*cap, 0.0f64, 0.0);
+        for level in finer {
+            let [low, right, up, middle] = children(&rest);
+            for (mine, exact) in [right, up, middle].iter().zip(level.ring(i)) {
+                most = most.max(apart(mine, &exact));
+            }
+            rest = low;
+            let far = |most: f64, p: DVec3| most.max(p.distance(limit));
+            let around = level.sectors.iter().flat_map(|s| [s[1][0], s[0][1], s[2][0], s[1][1], s[0][2]]);
+            let own = (0..5).flat_map(|k| (0..5 - k).map(move |i| (k, i))).map(|(k, i)| rest[k][i]);
+            remainder = around.fold(0.0, far) + own.fold(0.0, far);
+            if remainder <= NEGLIGIBLE * most {
+                break;
+            }
+        }
+        most.max(remainder)
     }
 }

@@ -19,10 +19,6 @@ use super::{Primitive, Solid};
 use crate::csg::Node;
 use crate::csg::Op::{Difference, Intersection, SymmetricDifference, Union};
 use crate::model::Bounds;
-use glam::DVec3;
-
-/// All of space.
-const ALL: Bounds = Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
 
 /// Boxes around a node and around its complement; and one that is within the node, or empty.
 #[derive(Clone, Copy)]
@@ -40,7 +36,7 @@ impl Boxes {
 
     /// The boxes of a set within a box, about which no more is known.
     pub fn around(of: Bounds) -> Self {
-        Self { of, not: ALL, within: Bounds::EMPTY }
+        Self { of, not: Bounds::ALL, within: Bounds::EMPTY }
     }
 }
 
@@ -51,8 +47,8 @@ pub(super) fn boxes(solid: &Solid, primitive: impl Fn(&Primitive) -> Boxes) -> V
         let at = |i: u32| boxes[i as usize];
         let none = Bounds::EMPTY;
         let (of, not, within) = match *node {
-            Node::Constant(true) => (ALL, none, ALL),
-            Node::Constant(false) => (none, ALL, none),
+            Node::Constant(true) => (Bounds::ALL, none, Bounds::ALL),
+            Node::Constant(false) => (none, Bounds::ALL, none),
             Node::Leaf(p) => {
                 let Boxes { of, not, within } = primitive(&solid.primitives[p as usize]);
                 (of, not, within)
@@ -78,7 +74,7 @@ pub(super) fn boxes(solid: &Solid, primitive: impl Fn(&Primitive) -> Boxes) -> V
 /// See [`Solid::reaches`].
 pub(super) fn reaches(solid: &Solid) -> Vec<Bounds> {
     let boxes = boxes(solid, Boxes::of);
-    let mut of_nodes = vec![ALL; boxes.len()];
+    let mut of_nodes = vec![Bounds::ALL; boxes.len()];
     let mut of_primitives = vec![Bounds::EMPTY; solid.primitives.len()];
     for (i, node) in solid.tree.nodes().iter().enumerate().rev() {
         let asked = of_nodes[i];
@@ -96,7 +92,7 @@ pub(super) fn reaches(solid: &Solid) -> Vec<Bounds> {
                     Union => (at(a).not, at(b).not),
                     Intersection => (at(a).of, at(b).of),
                     Difference => (at(a).of, at(b).not),
-                    SymmetricDifference => (ALL, ALL),
+                    SymmetricDifference => (Bounds::ALL, Bounds::ALL),
                 };
                 of_nodes[a as usize] = meet(asked, by_b);
                 of_nodes[b as usize] = meet(asked, by_a);

@@ -41,7 +41,7 @@ mod height;
 mod search;
 mod solid;
 
-use crate::model::{Bounds, Face, Instance, Model, Part, SurfaceKind, meet};
+use crate::model::{Bounds, Face, Instance, Model, Part, meet};
 use glam::{DAffine3, DVec3};
 use search::{Body, Search, Tolerance};
 use std::ops::Range;
@@ -161,10 +161,4 @@ fn between([x, y, z, below_x, below_y, below_z]: [f64; 6]) -> Bounds {
     // no -0
     let all = Bounds { min: 0.0 - DVec3::new(below_x, below_y, below_z), max: DVec3::new(x, y, z) };
     if all.is_empty() { Bounds::EMPTY } else { all }
-}
-
-/// Whether a surface was given by an equation of its own.
-fn is_analytic(kind: SurfaceKind) -> bool {
-    use SurfaceKind::{Cone, Cylinder, Plane, Sphere, Torus};
-    matches!(kind, Plane | Cylinder | Cone | Sphere | Torus)
 }

@@ -208,7 +208,7 @@ impl<'s, 'a> Search<'s, 'a> {
             | What::Area(Area { face, .. }) => *face,
         };
         let (face, ..) = self.bodies[self.placed[of.placed].1].faces[face];
-        if super::is_analytic(face.kind) { tolerance.analytic } else { tolerance.other }
+        if face.kind.is_elementary() { tolerance.analytic } else { tolerance.other }
     }
 
     fn push(&mut self, placed: usize, upper: f64, what: What) {

@@ -19,9 +19,6 @@ const PARALLEL: f64 = 8.0 * f64::EPSILON;
 /// Ellipsoids that are longer beside their width count as unbounded.
 const LONGEST: f64 = 1e5;
 
-/// All of space.
-const ALL: Bounds = Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
-
 pub(super) fn bounds(solid: &Solid) -> Bounds {
     solid.bounds_over(boxes)
 }
@@ -52,7 +49,7 @@ fn boxes(primitive: &Primitive) -> Boxes {
         Shape::HalfSpace { normal, offset } => {
             let of = placed(primitive, |d| half_space(*normal, *offset, d));
             let not = placed(primitive, |d| half_space(-*normal, -*offset, d));
-            Boxes { of, not, within: if of == ALL { Bounds::EMPTY } else { of } }
+            Boxes { of, not, within: if of == Bounds::ALL { Bounds::EMPTY } else { of } }
         }
         Shape::Block { .. } => {
             let of = placed(primitive, |d| support(&primitive.shape, d));

@@ -25,24 +25,12 @@ mod tree;
 mod tube;
 mod words;
 
+use super::solid::Fault;
 use super::{Import, ImportError, ImportReport, Warnings};
 use crate::model::Model;
 use expand::Expansion;
 use object::{Database, Object};
 use std::collections::{BTreeMap, HashSet};
-
-/// Why the text is not read, and where.
-#[derive(Clone, Debug)]
-pub(super) struct Fault {
-    line: usize,
-    message: String,
-}
-
-impl Fault {
-    fn new(line: usize, message: impl Into<String>) -> Self {
-        Self { line, message: message.into() }
-    }
-}
 
 /// Whether a line of the text's beginning is one that such files have.
 pub(super) fn recognise(text: &str) -> bool {
@@ -55,7 +43,7 @@ pub(super) fn recognise(text: &str) -> bool {
 
 /// Reads the text; `name` is the file's name in messages.
 pub(super) fn read(text: &str, name: &str) -> Result<Import, ImportError> {
-    let failed = |fault: Fault| ImportError::Solid { file: name.to_owned(), line: fault.line, message: fault.message };
+    let failed = |fault: Fault| fault.of_file(name);
     let mut report = ImportReport { format: "BRL-CAD asc".to_owned(), ..ImportReport::default() };
     let mut warnings = Warnings::new(name);
     let database = if old::recognise(text) {

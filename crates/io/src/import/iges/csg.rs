@@ -19,6 +19,7 @@ use super::geometry::Geometry;
 use super::solid::Shells;
 use crate::brep::Frame;
 use crate::csg::{Builder, Op, Tree};
+use crate::import::guard::Endless;
 use crate::model::{Colour, GREY, Part, Primitive, Shape, Solid};
 use glam::{DAffine3, DMat3, DVec3};
 use std::collections::BTreeMap;
@@ -74,7 +75,7 @@ impl<'a> Geometry<'a> {
     pub fn expression(&self, id: u32, outer: &DAffine3) -> Result<Expression, Fault> {
         let mut walk = Walk { nodes: Builder::new(), leaves: Vec::new(), shells: Vec::new(), kinds: BTreeMap::new() };
         let root = self.operand(id, outer, None, &mut walk)?;
-        let tree = walk.nodes.finish(root).map_err(|_| Fault::Exhausted(id))?;
+        let tree = walk.nodes.finish(root).map_err(|_| Fault::Endless(Endless::Exhausted(id)))?;
         Ok(Expression { id, tree, leaves: walk.leaves, shells: walk.shells, kinds: walk.kinds })
     }
 

@@ -4,6 +4,8 @@ use super::directory::Entry;
 use super::file::File;
 use super::value::Value;
 use crate::import::Place;
+use crate::import::guard::Endless;
+use crate::import::names::short;
 use crate::spline::SplineError;
 
 /// Why an entity cannot be used.
@@ -17,16 +19,12 @@ pub(super) enum Fault {
     Parameter { id: u32, index: usize, wanted: &'static str },
     #[error("#{id}: {what}")]
     Value { id: u32, what: &'static str },
-    #[error("#{0} refers to itself")]
-    Cycle(u32),
-    #[error("#{0} is nested deeper than {1} levels")]
-    Depth(u32, usize),
     #[error("#{id}: {source}")]
     Spline { id: u32, source: SplineError },
     #[error("type {kind} form {form} is not supported (#{id})")]
     Unsupported { id: u32, kind: u16, form: i32 },
-    #[error("#{0}: entities are shared so often that the file would not end")]
-    Exhausted(u32),
+    #[error(transparent)]
+    Endless(Endless),
 }
 
 /// An entity of a file.
@@ -182,16 +180,4 @@ impl<'a> Entity<'a> {
         });
         named.filter(|n| !n.is_empty()).unwrap_or_else(|| self.entry.label.clone())
     }
-}
-
-/// Longest name kept, in bytes: names are copied to every instance and into messages.
-const MAX_NAME: usize = 200;
-
-fn short(mut name: String) -> String {
-    if name.len() > MAX_NAME {
-        let end = (0..=MAX_NAME).rev().find(|&i| name.is_char_boundary(i)).unwrap_or(0);
-        name.truncate(end);
-        name.push('…');
-    }
-    name
 }

@@ -5,35 +5,28 @@
 //!   124    x' = R x + T, itself with a matrix; rotations, reflections, uniform scales
 //! ```
 //!
-//! Every mapping function takes the affine map from the owner's space to millimetres. Entities form a
-//! graph that a hostile file can close or share at will: a trail finds cycles, the depth is bounded, and
-//! work comes from a budget that is a multiple of the parameters in the file.
+//! Every mapping function takes the affine map from the owner's space to millimetres. All mapping of a file shares the
+//! guards that keep it finite: see `import::guard`.
 
 use super::entity::{Entity, Fault};
 use super::file::File;
 pub(super) use crate::import::FACE_LOST;
 
 use crate::brep::Frame;
+use crate::import::guard::Guard;
 use crate::import::{Place, Reasons, Warnings};
 use glam::{DAffine3, DMat3, DVec3};
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 
 /// Deepest chain of entities that define one another.
 const MAX_DEPTH: usize = 32;
-
-/// Uses of an average parameter.
-const SHARING: u64 = 64;
-
-/// Work that even the smallest file may do.
-const FREE_WORK: u64 = 1 << 20;
 
 /// A file, the work that it may still cause, and the warnings so far.
 #[derive(Debug)]
 pub(super) struct Geometry<'a> {
     /// The file.
     pub file: &'a File,
-    work: Cell<u64>,
-    trail: RefCell<Vec<u32>>,
+    guard: Guard,
     warnings: RefCell<Warnings>,
     dropped: RefCell<Reasons>,
 }
@@ -51,9 +44,8 @@ pub(super) struct Placed {
 impl<'a> Geometry<'a> {
     /// A fresh budget; `warnings` are those of the cards.
     pub fn new(file: &'a File, warnings: Warnings) -> Self {
-        let work = Cell::new(FREE_WORK + SHARING * file.value_count() as u64);
-        let (trail, warnings, dropped) = (RefCell::default(), RefCell::new(warnings), RefCell::default());
-        Self { file, work, trail, warnings, dropped }
+        let guard = Guard::new(file.value_count(), MAX_DEPTH);
+        Self { file, guard, warnings: RefCell::new(warnings), dropped: RefCell::default() }
     }
 
     /// The warnings, and the faces left out by reason.
@@ -63,9 +55,7 @@ impl<'a> Geometry<'a> {
 
     /// Takes `amount` of work for `#id` from the budget.
     pub fn spend(&self, id: u32, amount: usize) -> Result<(), Fault> {
-        let left = self.work.get().checked_sub(amount as u64).ok_or(Fault::Exhausted(id))?;
-        self.work.set(left);
-        Ok(())
+        self.guard.spend(id, amount).map_err(Fault::Endless)
     }
 
     /// Warns about `#id`.
@@ -81,19 +71,7 @@ impl<'a> Geometry<'a> {
     /// Runs `f` with `#id` on the trail; its parameters count as work.
     pub fn nested<T>(&self, id: u32, f: impl FnOnce(Entity<'a>) -> Result<T, Fault>) -> Result<T, Fault> {
         let entity = Entity::find(self.file, id)?;
-        {
-            let mut trail = self.trail.borrow_mut();
-            if trail.contains(&id) {
-                return Err(Fault::Cycle(id));
-            }
-            if trail.len() >= MAX_DEPTH {
-                return Err(Fault::Depth(id, MAX_DEPTH));
-            }
-            trail.push(id);
-        }
-        let result = self.spend(id, 1 + entity.len()).and_then(|()| f(entity));
-        self.trail.borrow_mut().pop();
-        result
+        self.guard.nested(id, 1 + entity.len(), Fault::Endless, || f(entity))
     }
 
     /// The entity's own space to millimetres, `outer` being its owner's.

@@ -40,7 +40,7 @@ mod trim;
 mod value;
 
 use super::{
-    FaceCount, FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Options, Place, Warnings, preview, text,
+    FaceCount, FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Options, Place, Warnings, preview, stem, text,
 };
 use crate::brep::{build_face, settle};
 use crate::model::{Instance, Model, Part};
@@ -219,11 +219,7 @@ fn pcurves(body: &Body) -> usize {
 
 /// The product's name, else the file's.
 fn model_name(product: &str, file: &str) -> String {
-    if !product.is_empty() {
-        return product.to_owned();
-    }
-    let stem = std::path::Path::new(file).file_stem();
-    stem.map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
+    if product.is_empty() { stem(file) } else { product.to_owned() }
 }
 
 #[cfg(test)]

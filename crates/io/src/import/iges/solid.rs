@@ -18,6 +18,7 @@ use super::entity::{Entity, Fault};
 use super::geometry::{FACE_LOST, Geometry, finite};
 use super::surface::SURFACES;
 use crate::brep::{Boundary, CurveGeometry, Edge, FaceGeometry};
+use crate::import::guard::Endless;
 use crate::model::{Colour, EdgeSource};
 use glam::{DAffine3, DVec3};
 use std::collections::HashMap;
@@ -116,7 +117,7 @@ impl<'a> Geometry<'a> {
     ) -> Result<(), Fault> {
         match face {
             Ok(face) => shells.faces.push(face),
-            Err(fault @ Fault::Exhausted(_)) => return Err(fault),
+            Err(fault @ Fault::Endless(Endless::Exhausted(_))) => return Err(fault),
             Err(fault) => {
                 self.note(FACE_LOST, id, fault.to_string());
                 shells.lost.push((id, fault.to_string()));

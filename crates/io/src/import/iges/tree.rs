@@ -18,6 +18,8 @@ use super::geometry::{FACE_LOST, Geometry};
 use super::solid::Shells;
 use super::surface::SURFACES;
 use super::trim::Sheet;
+use crate::import::guard::{Endless, MAX_INSTANCES};
+use crate::import::names;
 use crate::model::Colour;
 use glam::{DAffine3, DVec3};
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -48,9 +50,6 @@ pub(super) struct Placement {
     pub name: String,
 }
 
-/// Largest number of instances; a few kilobytes of text can ask for 2^60.
-const MAX_INSTANCES: usize = 1 << 20;
-
 /// Deepest subfigures in subfigures.
 const MAX_LEVELS: usize = 256;
 
@@ -59,9 +58,6 @@ const MAX_VISITS: usize = 1 << 20;
 
 /// Arrays and assemblies within each other at most.
 const MAX_NESTED: usize = 256;
-
-/// Bytes of a path of names after which deeper levels add no more to it.
-const MAX_NAME: usize = 512;
 
 /// The kind of warning that costs a Boolean solid.
 pub(super) const SOLID_LOST: &str = "Boolean solid left out";
@@ -224,11 +220,11 @@ impl<'g, 'a> Tree<'g, 'a> {
         let sound = transform.is_finite() && transform.matrix3.determinant() != 0.0;
         sound.then_some(()).ok_or(Fault::Value { id, what: "the placement cannot be inverted" })?;
         if self.trail.contains(&base) {
-            return Err(Fault::Cycle(base));
+            return Err(Fault::Endless(Endless::Cycle(base)));
         }
         let entity = Entity::find(self.geometry.file, base)?;
         if self.trail.len() >= MAX_NESTED {
-            return Err(Fault::Depth(base, MAX_NESTED));
+            return Err(Fault::Endless(Endless::Depth(base, MAX_NESTED)));
         }
         let members = match entity.kind() {
             308 => (4..4 + entity.count(3, 1)?).filter_map(|i| entity.optional(i).ok().flatten()).collect(),
@@ -245,10 +241,10 @@ impl<'g, 'a> Tree<'g, 'a> {
         let definition = Entity::find(self.geometry.file, entity.pointer(1)?)?;
         let definition = definition.of_kind(308, "308, a subfigure")?;
         if self.trail.contains(&definition.id()) {
-            return Err(Fault::Cycle(definition.id()));
+            return Err(Fault::Endless(Endless::Cycle(definition.id())));
         }
         if self.trail.len() > MAX_LEVELS {
-            return Err(Fault::Depth(id, MAX_LEVELS));
+            return Err(Fault::Endless(Endless::Depth(id, MAX_LEVELS)));
         }
         let unit = self.geometry.file.global.unit;
         let scale = if entity.real(5)? == 0.0 { 1.0 } else { entity.real(5)? };
@@ -261,12 +257,7 @@ impl<'g, 'a> Tree<'g, 'a> {
         let count = definition.count(3, 1)?;
         self.geometry.spend(id, 1 + count)?;
         let members: Vec<u32> = (4..4 + count).filter_map(|i| definition.optional(i).ok().flatten()).collect();
-        let own = definition.string(2);
-        let name = match name {
-            "" => own,
-            outer if own.is_empty() || outer.len() + own.len() > MAX_NAME => outer.to_owned(),
-            outer => format!("{outer}/{own}"),
-        };
+        let name = names::path(name, &definition.string(2));
         self.scope(definition.id(), &members, transform, &name);
         Ok(())
     }

@@ -18,7 +18,7 @@ mod face;
 mod refused;
 mod shape;
 
-use super::{FaceRecord, Import, ImportError, ImportReport, Place, Warnings, colour, facets};
+use super::{FaceRecord, Import, ImportError, ImportReport, Place, Warnings, colour, facets, stem};
 use crate::brep::BuiltFace;
 use crate::model::{Colour, Face, Instance, Mesh, Model, Part};
 use cadmpeg_codec_rhino::RhinoCodec;
@@ -59,7 +59,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     report.units = vec![unit(&attribute("millimeters_per_unit"))];
     let tolerance = attribute("absolute_tolerance_millimeters").parse().unwrap_or(face::MEET);
     let mut model = Model { unit: report.units.join(", "), ..Model::default() };
-    model.name = std::path::Path::new(name).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    model.name = stem(name);
     let part_of = parts(ir, tolerance, &mut model, &mut report, &mut warnings);
     place(ir, &part_of, &mut model, &mut warnings);
     let scale = attribute("millimeters_per_unit").parse().unwrap_or(1.0);

@@ -35,7 +35,7 @@ mod tests;
 mod twist;
 
 use super::colour::linear;
-use super::solid::{Assembly, Placed};
+use super::solid::{Assembly, Fault, Placed};
 use super::source::OtherFiles;
 use super::{Import, ImportError, ImportReport, Options, Place, Stage, Warnings};
 use crate::csg::Op;
@@ -56,19 +56,6 @@ pub enum Facets {
     Round,
     /// As many facets as OpenSCAD makes.
     AsWritten,
-}
-
-/// Why the text is not read, and where.
-#[derive(Debug)]
-pub(super) struct Fault {
-    line: usize,
-    message: String,
-}
-
-impl Fault {
-    fn new(line: usize, message: impl Into<String>) -> Self {
-        Self { line, message: message.into() }
-    }
 }
 
 /// Properties that nodes inherit from those around them.
@@ -136,7 +123,7 @@ pub(super) fn read(
         muted: 0,
         again: MOST_AGAIN,
     };
-    let failed = |fault: Fault| ImportError::Solid { file: name.to_owned(), line: fault.line, message: fault.message };
+    let failed = |fault: Fault| fault.of_file(name);
     let sum = reader.file().map_err(failed)?;
     let mut model = Model { name: super::stem(name), ..Model::default() };
     if let Some(root) = reader.root.or(sum) {

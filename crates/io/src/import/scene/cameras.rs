@@ -3,13 +3,9 @@
 use super::items::Scene;
 use super::text::{Outcome, Table, Value};
 use crate::import::camera::{Lens, NamedCamera, PictureSettings, Stance};
-use crate::model::Bounds;
+use crate::model::{Bounds, Camera};
 use glam::DVec3;
 
-/// Default direction from the model towards the eye: front, right, a little above.
-const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
-/// Default vertical field of view, degrees.
-const FOV: f64 = 35.0;
 /// Default room around a fitted box.
 const MARGIN: f64 = 1.08;
 /// Largest side of a picture.
@@ -47,7 +43,7 @@ pub(super) fn camera<'a>(
                 Ok(Some(boxes.into_iter().fold(Bounds::EMPTY, Bounds::union)))
             })?;
             let bounds = bounds.flatten();
-            let from = table.read("from", Value::direction)?.unwrap_or(FROM);
+            let from = table.read("from", Value::direction)?.unwrap_or(Camera::FROM);
             let margin = table.read("margin", Value::positive)?.unwrap_or(MARGIN);
             if let Some(value) = table.get("target") {
                 return Err(value.fault("a fitted camera looks at the middle of what it fits"));
@@ -74,7 +70,7 @@ pub(super) fn camera<'a>(
             Lens::Parallel { height }
         }
         (fov, None) => {
-            let degrees = fov.map_or(Ok(FOV), Value::number)?;
+            let degrees = fov.map_or(Ok(Camera::FOV_DEG), Value::number)?;
             if !(degrees > 0.0 && degrees < 180.0) {
                 return Err(table.need("fov")?.fault("an angle between 0 and 180 degrees is wanted"));
             }

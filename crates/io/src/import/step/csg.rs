@@ -25,6 +25,7 @@ use super::part21::Value;
 use super::primitive::PRIMITIVES;
 use super::swept::SWEPT;
 use crate::csg::{Builder, Node, Op, Tree};
+use crate::import::guard::Endless;
 use crate::model::{Colour, Shape};
 use glam::DAffine3;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -88,7 +89,7 @@ pub(super) fn read(
         });
     }
     geometry.ledger.spend(id, usize::try_from(sizes[root as usize]).unwrap_or(usize::MAX))?;
-    let tree = walk.nodes.finish(root).map_err(|_| Fault::Exhausted(id))?;
+    let tree = walk.nodes.finish(root).map_err(|_| Fault::Endless(Endless::Exhausted(id)))?;
     Ok(Expression { id, tree, leaves: walk.leaves, bodies: walk.bodies, kinds: walk.kinds })
 }
 
@@ -167,7 +168,7 @@ impl<'g, 'a> Walk<'g, 'a> {
 
     fn visit(&mut self, id: u32, scope: usize, outer: Option<Colour>, steps: &mut Vec<Step>) -> Result<(), Fault> {
         if self.open.contains(&id) {
-            return Err(Fault::Cycle(id));
+            return Err(Fault::Endless(Endless::Cycle(id)));
         }
         if self.known.contains_key(&(id, scope)) {
             return Ok(());

@@ -2,6 +2,8 @@
 
 use super::part21::{File, Record, Value, Values, decode};
 use crate::import::Place;
+use crate::import::guard::Endless;
+use crate::import::names::short;
 use crate::spline::SplineError;
 
 /// Why an entity cannot be used.
@@ -15,16 +17,12 @@ pub(super) enum Fault {
     Attribute { id: u32, index: usize, wanted: &'static str },
     #[error("#{id}: {what}")]
     Value { id: u32, what: &'static str },
-    #[error("#{0} refers to itself")]
-    Cycle(u32),
-    #[error("#{0} is nested deeper than {1} levels")]
-    Depth(u32, usize),
     #[error("#{id}: {source}")]
     Spline { id: u32, source: SplineError },
     #[error("{kind} is not supported (#{id})")]
     Unsupported { id: u32, kind: String },
-    #[error("#{0}: entities are shared so often that the file would not end")]
-    Exhausted(u32),
+    #[error(transparent)]
+    Endless(Endless),
 }
 
 /// A record of a file.
@@ -183,20 +181,8 @@ impl<'a> Fields<'a> {
         self.value(index).and_then(Value::flag).unwrap_or(true)
     }
 
-    /// A decoded name, at most [`MAX_NAME`] bytes; empty when there is none.
+    /// A decoded name, shortened; empty when there is none.
     pub fn text(self, index: usize) -> String {
         short(self.value(index).and_then(Value::text).unwrap_or_default())
     }
-}
-
-/// Longest name kept, in bytes: names are copied to every instance and into messages.
-const MAX_NAME: usize = 200;
-
-fn short(mut name: String) -> String {
-    if name.len() > MAX_NAME {
-        let end = (0..=MAX_NAME).rev().find(|&i| name.is_char_boundary(i)).unwrap_or(0);
-        name.truncate(end);
-        name.push('…');
-    }
-    name
 }

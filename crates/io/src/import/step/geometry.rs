@@ -1,8 +1,6 @@
 //! The state of converting geometry, and the small geometric entities: points, directions, placements.
 //!
-//! Entities form a graph that a hostile file can close or share at will. Three guards keep mapping
-//! finite: a trail of the entities being mapped (cycles), a largest depth, and a budget of work that
-//! is a multiple of the parameters in the file.
+//! All mapping of a file shares the guards that keep it finite: see `import::guard`.
 
 use super::entity::{Entity, Fault};
 use super::part21::File;
@@ -10,26 +8,20 @@ use super::units::Units;
 pub(super) use crate::import::FACE_LOST;
 
 use crate::brep::Frame;
+use crate::import::guard::Guard;
 use crate::import::{Place, Reasons, Warnings};
 use glam::{DAffine3, DMat3, DVec3};
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 /// Deepest chain of entities that define one another: trimmed of composite of trimmed …
 const MAX_DEPTH: usize = 24;
 
-/// Uses of an average parameter. Real files share surfaces among a few dozen faces at most.
-const SHARING: u64 = 64;
-
-/// Work that even the smallest file may do.
-const FREE_WORK: u64 = 1 << 20;
-
 /// The work that is left, and the notes; shared by all representations of a file.
 #[derive(Debug)]
 pub(super) struct Ledger<'a> {
     file: &'a File<'a>,
-    work: Cell<u64>,
-    trail: RefCell<Vec<u32>>,
+    guard: Guard,
     notes: RefCell<Notes>,
 }
 
@@ -68,9 +60,9 @@ pub(super) struct Geometry<'a> {
 impl<'a> Ledger<'a> {
     /// A fresh budget; `warnings` are those of the syntax.
     pub fn new(file: &'a File<'a>, warnings: Warnings) -> Self {
-        let work = Cell::new(FREE_WORK + SHARING * file.slot_count() as u64);
+        let guard = Guard::new(file.slot_count(), MAX_DEPTH);
         let notes = RefCell::new(Notes { warnings, dropped: Reasons::default(), ignored: BTreeMap::new() });
-        Self { file, work, trail: RefCell::default(), notes }
+        Self { file, guard, notes }
     }
 
     /// The warnings and counts.
@@ -90,9 +82,7 @@ impl<'a> Ledger<'a> {
 
     /// Takes `amount` of work for `#id` from the budget.
     pub fn spend(&self, id: u32, amount: usize) -> Result<(), Fault> {
-        let left = self.work.get().checked_sub(amount as u64).ok_or(Fault::Exhausted(id))?;
-        self.work.set(left);
-        Ok(())
+        self.guard.spend(id, amount).map_err(Fault::Endless)
     }
 
     /// Warns about `#id`.
@@ -103,19 +93,7 @@ impl<'a> Ledger<'a> {
 
     /// Runs `f` with `#id` on the trail.
     pub fn nested<T>(&self, id: u32, f: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
-        {
-            let mut trail = self.trail.borrow_mut();
-            if trail.contains(&id) {
-                return Err(Fault::Cycle(id));
-            }
-            if trail.len() >= MAX_DEPTH {
-                return Err(Fault::Depth(id, MAX_DEPTH));
-            }
-            trail.push(id);
-        }
-        let result = self.spend(id, 1).and_then(|()| f());
-        self.trail.borrow_mut().pop();
-        result
+        self.guard.nested(id, 1, Fault::Endless, f)
     }
 }
 

@@ -50,7 +50,7 @@ pub(super) use surface::{OTHER_SIDE, OTHER_SIDE_HOW, as_cylinder, offset};
 use super::external::{Mention, Read};
 use super::{
     FaceCount, FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Options, Place, Stage, Warnings, locate,
-    preview,
+    preview, stem,
 };
 use crate::brep::{BuildError, BuiltFace, FaceGeometry, build_face, settle};
 use crate::model::{Colour, Instance, Model, Part};
@@ -168,8 +168,8 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Re
 /// A part, its body and the tolerance of its representation.
 type PartBody = (usize, Body, f64);
 
-/// Builds all faces, in parallel; results are taken in file order. Previews of the first parts of those that the model
-/// will have are made in between. The input of a face is freed with it.
+/// Builds all faces, in parallel; results are taken in file order. Between groups of bodies, previews show the first of
+/// the `parts` that the model will have. The input of a face is freed with it.
 fn build(
     (bodies, parts): (Vec<(Body, f64)>, usize),
     (places, notes): (&Places<'_>, &mut Notes),
@@ -265,10 +265,7 @@ fn model_name(assembly: &Assembly, file: &str) -> String {
         .or(roots.others.first())
         .map(|r| assembly.groups[r].name.clone())
         .filter(|n| !n.is_empty());
-    product.unwrap_or_else(|| {
-        let stem = std::path::Path::new(file).file_stem();
-        stem.map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
-    })
+    product.unwrap_or_else(|| stem(file))
 }
 
 /// The product's name; with the body's own when the product has several.

@@ -24,6 +24,7 @@
 
 use super::entity::{Entity, Fault, Fields};
 use super::part21::{File, Value};
+use crate::import::guard::Endless;
 
 /// The units of a representation's numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -165,7 +166,7 @@ fn length(file: &File<'_>, unit: Entity<'_>) -> Result<(f64, String), Fault> {
 fn factor(file: &File<'_>, unit: Entity<'_>, depth: usize) -> Result<f64, Fault> {
     let id = unit.id();
     if depth > MAX_DEPTH {
-        return Err(Fault::Cycle(id));
+        return Err(Fault::Endless(Endless::Cycle(id)));
     }
     let value = if let Ok(si) = unit.fields("SI_UNIT", 1) {
         prefix(si.value(0)).ok_or(Fault::Attribute { id, index: 1, wanted: "an SI prefix" })?

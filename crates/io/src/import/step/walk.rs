@@ -6,6 +6,8 @@
 use super::assembly::Assembly;
 use super::body::Looks;
 use super::geometry::Ledger;
+use crate::import::guard::MAX_INSTANCES;
+use crate::import::names;
 use crate::model::Colour;
 use glam::DAffine3;
 use std::collections::HashSet;
@@ -23,17 +25,11 @@ pub(super) struct Placed {
     pub name: String,
 }
 
-/// Largest number of instances; a few kilobytes of text can ask for 2^60.
-const MAX_INSTANCES: usize = 1 << 20;
-
 /// Largest number of groups visited: levels without a body of their own cost time but no instance.
 const MAX_VISITS: usize = 8 * MAX_INSTANCES;
 
 /// Deepest assembly.
 const MAX_LEVELS: usize = 256;
-
-/// Bytes of a path of names after which deeper levels add no more to it.
-const MAX_NAME: usize = 512;
 
 impl Assembly {
     /// Every body once per path from a root, by the rule of `once`.
@@ -137,11 +133,7 @@ impl Walk<'_> {
             }
             let path_length = path.len();
             path.extend(&placement.ids);
-            let name = match (name, placement.name.as_str()) {
-                ("", own) => own.to_owned(),
-                (outer, own) if own.is_empty() || outer.len() + own.len() > MAX_NAME => outer.to_owned(),
-                (outer, own) => format!("{outer}/{own}"),
-            };
+            let name = names::path(name, &placement.name);
             self.visit(self.assembly.group(placement.child), transform * placement.transform, path, &name);
             path.truncate(path_length);
         }

@@ -7,10 +7,10 @@
 //!
 //! The caller passes times in; there is no window here.
 
-use crate::navigation::gesture::{Action, Held, Preset};
+use crate::navigation::gesture::{Action, Held, Preset, Scrolled};
 use crate::navigation::transition::{DURATION, Transition};
 use crate::navigation::{self, FOV, OrbitStyle};
-use crate::pacing::Pacing;
+use crate::pacing::{Pacing, Step};
 use crate::pick::Hit;
 use glam::{DVec2, DVec3};
 use selvedge::model::{Bounds, Camera, Projection};
@@ -22,12 +22,12 @@ pub const SETTLE: Duration = Duration::from_millis(80);
 const CLICK_PX: f64 = 4.0;
 /// One notch of the wheel.
 const NOTCH: f64 = 0.84;
+/// Least and most magnification of one step of a pinch, less 1: fingers move no faster.
+const PINCH: (f64, f64) = (-0.75, 3.0);
 /// A zoom drag over the height of the view.
 const ZOOM_DRAG: f64 = 12.0;
 /// Most views that "previous view" leads back to.
 const MOST_VIEWS: usize = 50;
-/// Where the first view looks from: as the pictures of `selvedge render`.
-const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
 
 /// A drag, from the press on.
 #[derive(Clone, Copy, Debug)]
@@ -64,7 +64,7 @@ pub struct View {
     moved: Option<Instant>,
     /// Nothing has moved it since [`View::reset`].
     untouched: bool,
-    /// Chooses the size of pictures of a moving view.
+    /// Chooses the size and the effects of pictures of a moving view.
     pub pacing: Pacing,
     /// The last result for the cursor.
     pub hover: Option<Hover>,
@@ -75,15 +75,15 @@ pub struct View {
 pub struct Due {
     /// Its size is the picture's.
     pub camera: Camera,
-    /// Pixels of it along a side for one of the view.
-    pub scale: f64,
+    /// Pixels of it along a side for one of the view, and effects that it leaves out.
+    pub step: Step,
 }
 
 impl Default for View {
     fn default() -> Self {
         let bounds = Bounds { min: DVec3::splat(-1.0), max: DVec3::ONE };
         Self {
-            camera: Camera::around(bounds, FROM, DVec3::Z, FOV, (1, 1)),
+            camera: Camera::around(bounds, Camera::FROM, DVec3::Z, FOV, (1, 1)),
             bounds,
             before: Vec::new(),
             drag: None,
@@ -168,7 +168,7 @@ impl View {
 
     /// The first view of a model: all of it, from a little above its front right.
     pub fn reset(&mut self, now: Instant) {
-        let to = Camera::around(self.bounds, FROM, DVec3::Z, FOV, self.camera.size);
+        let to = Camera::around(self.bounds, Camera::FROM, DVec3::Z, FOV, self.camera.size);
         let to = if self.is_parallel() { navigation::other_projection(&to) } else { to };
         self.set(navigation::fit(&to, &self.bounds.corners()), now);
         self.before.clear();
@@ -303,16 +303,67 @@ impl View {
 
     /// The wheel, by notches, upwards closer.
     pub fn wheel(&mut self, cursor: DVec2, notches: f64, now: Instant) {
+        self.closer(cursor, NOTCH.powf(notches.clamp(-8.0, 8.0)), now);
+    }
+
+    /// Two fingers are farther apart by a share of their distance, or closer together below 0. What is no number, as
+    /// systems may report it, is no pinch.
+    pub fn pinch(&mut self, cursor: DVec2, apart: f64, now: Instant) {
+        if apart.is_finite() {
+            self.closer(cursor, (1.0 + apart.clamp(PINCH.0, PINCH.1)).recip(), now);
+        }
+    }
+
+    /// A scroll of a wheel or of two fingers.
+    pub fn scroll(&mut self, cursor: DVec2, scrolled: Scrolled, style: OrbitStyle, now: Instant) {
+        let point = self.under(cursor);
+        let (camera, anchor) = match scrolled {
+            Scrolled::Zoom(notches) => return self.wheel(cursor, notches, now),
+            Scrolled::Orbit(by) => {
+                let turned = navigation::orbit(&self.camera, point, by, style);
+                (navigation::aimed(&turned, point), point)
+            }
+            Scrolled::Pan(by) => {
+                let Some((at, _)) = self.camera.project(point) else { return };
+                let moved = navigation::pan(&self.camera, point, at + by);
+                // the next step moves what is then under the cursor, as deep as this point
+                (moved, navigation::at_depth(&moved, cursor, navigation::depth(&moved, point)))
+            }
+        };
+        self.transition = None;
+        self.set(camera, now);
+        self.anchor = Some((cursor, anchor));
+    }
+
+    /// Two fingers turn by an angle, radians, counterclockwise, and the picture with them; with
+    /// [`OrbitStyle::Turntable`] verticals stay upright, and it does not turn.
+    pub fn twist(&mut self, cursor: DVec2, angle: f64, style: OrbitStyle, now: Instant) {
+        if style == OrbitStyle::Free && angle.is_finite() {
+            let point = self.under(cursor);
+            self.transition = None;
+            self.set(navigation::roll(&self.camera, point, angle), now);
+            self.anchor = Some((cursor, point));
+        }
+    }
+
+    /// The point under a cursor that rests: that of the last scroll, or what is seen there, or one as deep as the
+    /// target.
+    fn under(&self, cursor: DVec2) -> DVec3 {
         let known = self.anchor.filter(|(at, _)| at.distance(cursor) < 2.0).map(|(_, point)| point);
         let hovered = self.hover.filter(|h| h.cursor.distance(cursor) < 2.0).and_then(|h| h.hit.point);
         let behind = || {
             let depth = navigation::depth(&self.camera, self.camera.target);
             navigation::at_depth(&self.camera, cursor, depth)
         };
-        let point = known.or(hovered).unwrap_or_else(behind);
+        known.or(hovered).unwrap_or_else(behind)
+    }
+
+    /// Zooms to the point under the cursor, which stays there.
+    fn closer(&mut self, cursor: DVec2, factor: f64, now: Instant) {
+        let point = self.under(cursor);
         self.anchor = Some((cursor, point));
         self.transition = None;
-        let zoomed = navigation::zoom(&self.camera, point, NOTCH.powf(notches.clamp(-8.0, 8.0)));
+        let zoomed = navigation::zoom(&self.camera, point, factor);
         self.set(navigation::aimed(&zoomed, point), now);
     }
 
@@ -327,12 +378,12 @@ impl View {
         self.set(camera, now);
     }
 
-    /// The next picture of the current view: of fewer pixels while the view moves.
+    /// The next picture of the current view: of fewer pixels and effects while the view moves.
     pub fn due(&self, now: Instant) -> Due {
         let moves = self.moving(now);
-        let scale = if moves { self.pacing.scale() } else { 1.0 };
-        let size = Pacing::size(scale, self.camera.size);
-        Due { camera: Camera { size, ..self.camera }, scale }
+        let step = if moves { self.pacing.step() } else { Step::STILL };
+        let size = Pacing::size(step.scale, self.camera.size);
+        Due { camera: Camera { size, ..self.camera }, step }
     }
 
     /// The view moves, or did a moment ago.
@@ -351,150 +402,4 @@ impl View {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::navigation::gesture::Button;
-
-    const BOX: Bounds = Bounds { min: DVec3::ZERO, max: DVec3::new(40.0, 30.0, 20.0) };
-    const MODE: (Preset, OrbitStyle) = (Preset::Onshape, OrbitStyle::Turntable);
-
-    fn view(now: Instant) -> View {
-        let mut view = View::default();
-        view.resize((800, 600));
-        view.set_bounds(BOX);
-        view.reset(now);
-        view
-    }
-
-    fn held(button: Button) -> Held {
-        let mut held = Held::default();
-        held.button(button, true);
-        held
-    }
-
-    #[test]
-    fn a_moving_view_has_fewer_pixels_and_a_still_one_all() {
-        let start = Instant::now();
-        let mut view = view(start);
-        let later = start + Duration::from_secs(1);
-        assert_eq!((view.due(later).scale, view.wake(later)), (1.0, None));
-        view.wheel(DVec2::new(300.0, 200.0), 1.0, later);
-        assert!(view.due(later).scale < 1.0);
-        let wake = view.wake(later).expect("the still picture");
-        assert_eq!((view.due(wake).scale, view.due(wake).camera.size), (1.0, (800, 600)));
-        assert_eq!(view.wake(wake), None);
-    }
-
-    #[test]
-    fn a_move_touches_the_first_view_and_a_larger_model_does_not() {
-        let now = Instant::now();
-        for smooth in [false, true] {
-            let mut view = view(now);
-            view.set_bounds(Bounds { max: 2.0 * BOX.max, ..BOX });
-            assert!(view.is_untouched());
-            view.look_from(DVec3::Z, DVec3::Y, smooth, now);
-            assert!(!view.is_untouched());
-            view.reset(now);
-            assert!(view.is_untouched());
-        }
-    }
-
-    #[test]
-    fn a_drag_waits_for_its_point_and_holds_it() {
-        let now = Instant::now();
-        let mut view = view(now);
-        let (start, point) = (DVec2::new(420.0, 310.0), DVec3::new(40.0, 0.0, 20.0));
-        let start_pixel = view.camera.project(point).expect("in front").0;
-        view.press(start);
-        assert_eq!(view.wants_point(), Some(start));
-        view.moved(start + 50.0, held(Button::Right), MODE, now);
-        assert_eq!(view.camera.project(point).expect("in front").0, start_pixel, "nothing moves yet");
-        view.hold(Some(point));
-        view.moved(start + 50.0, held(Button::Right), MODE, now);
-        let at = view.camera.project(point).expect("in front").0;
-        assert!(at.distance(start_pixel) < 1e-6 && view.is_dragging());
-        assert!(view.due(now).scale < 1.0);
-        assert!(!view.release());
-        assert_eq!((view.due(now).scale, view.wake(now)), (1.0, None));
-        assert!(view.previous(false, now));
-    }
-
-    #[test]
-    fn a_press_in_one_place_is_a_click() {
-        let now = Instant::now();
-        let mut view = view(now);
-        view.press(DVec2::new(10.0, 10.0));
-        view.hold(None);
-        view.moved(DVec2::new(12.0, 11.0), held(Button::Left), MODE, now);
-        assert!(view.release() && !view.release());
-        assert!(!view.previous(false, now));
-    }
-
-    #[test]
-    fn the_wheel_keeps_its_anchor_while_the_cursor_rests() {
-        let now = Instant::now();
-        let mut view = view(now);
-        let point = DVec3::new(40.0, 30.0, 20.0);
-        let cursor = view.camera.project(point).expect("in front").0;
-        view.hover = Some(Hover { cursor, hit: Hit { picked: None, point: Some(point) } });
-        for _ in 0..40 {
-            view.wheel(cursor, 1.0, now);
-            assert!(view.camera.project(point).expect("in front").0.distance(cursor) < 1e-5);
-        }
-    }
-
-    #[test]
-    fn keys_move_and_zoom_and_lead_back() {
-        let now = Instant::now();
-        let mut view = view(now);
-        let (first, point) = (view.camera, view.camera.target);
-        let (start, _) = first.project(point).expect("in front");
-        view.shift(DVec2::new(50.0, -20.0), now);
-        let (at, depth) = view.camera.project(point).expect("in front");
-        assert!(at.distance(start + DVec2::new(50.0, -20.0)) < 1e-6, "{at}");
-        view.zoom(3.0, now);
-        let (_, closer) = view.camera.project(point).expect("in front");
-        assert!(closer < depth);
-        assert!(view.previous(false, now) && view.previous(false, now));
-        assert_eq!((view.camera.eye, view.camera.target), (first.eye, first.target));
-    }
-
-    #[test]
-    fn a_transition_ends_at_its_goal_and_leads_back() {
-        let start = Instant::now();
-        let mut view = view(start);
-        let first = view.camera;
-        view.look_from(DVec3::Z, DVec3::Y, true, start);
-        let goal = view.goal();
-        view.advance(start + DURATION / 2);
-        assert!(view.camera != goal && view.camera != first && view.wake(start + DURATION / 2).is_some());
-        view.advance(start + DURATION);
-        assert_eq!(view.camera, goal);
-        assert!(view.previous(false, start + DURATION));
-        assert_eq!(view.camera.eye, first.eye);
-    }
-
-    #[test]
-    fn a_key_in_the_middle_of_a_transition_starts_from_its_goal() {
-        let start = Instant::now();
-        let half = start + DURATION / 2;
-        let keys: [fn(&mut View, Instant); 3] = [
-            |view, now| view.zoom(2.0, now),
-            |view, now| view.shift(DVec2::new(50.0, -20.0), now),
-            |view, now| view.turn(DVec2::new(50.0, -20.0), OrbitStyle::Turntable, now),
-        ];
-        for key in keys {
-            let of = |smooth: bool| {
-                let mut view = view(start);
-                view.look_from(DVec3::Z, DVec3::Y, smooth, start);
-                view.advance(half);
-                let cursor = DVec2::new(400.0, 300.0);
-                view.hover = smooth.then_some(Hover { cursor, hit: Hit { picked: None, point: Some(BOX.max) } });
-                key(&mut view, half);
-                view.advance(start + DURATION);
-                view.camera
-            };
-            assert_eq!(of(true), of(false));
-        }
-    }
-}
+mod tests;

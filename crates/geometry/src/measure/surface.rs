@@ -9,9 +9,9 @@
 //! A shape counts when every sampled point is on it within [`SAME`] of its size, so a B-spline in the form of a
 //! cylinder counts as one. Radii are as exact as the surface's control points.
 
+use crate::edges::curve::{SAME, circle_through};
+use crate::model::Face;
 use glam::{DAffine3, DMat3, DVec3};
-use selvedge::model::Face;
-use selvedge_geometry::edges::curve::{SAME, circle_through};
 
 /// Points along each side of the face's part of the domain.
 const LOOKS: usize = 5;

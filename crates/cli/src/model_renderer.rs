@@ -1,130 +1,20 @@
-//! Reads a model and opens a renderer; progress and warnings go to standard error.
+//! A renderer with one model; progress and warnings go to standard error.
 
-use crate::args::{EdgeArgs, FrameArgs, LookArgs, ReadArgs, SubdivideArgs};
-use crate::progress::{advancing, during, importing};
-use crate::{camera, device, output, target};
+use crate::args::{EdgeArgs, FrameArgs, LookArgs, ReadArgs};
+use crate::progress::{advancing, during};
+use crate::reading::{failure, named};
+use crate::{camera, device, output};
 use anyhow::{Error, Result, bail};
 use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer, PictureView};
 use selvedge::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use selvedge::picture::{EdgeSettings, FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings, Style};
-use selvedge_io::import::{self, Facets, Folders, Import, ImportError, Options, Stage};
-use selvedge_session::{Ambient, Bound, Exceeded, Limits, SessionError, Step, Work, guarded};
+use selvedge_io::import::Import;
+use selvedge_session::{Ambient, Limits, Step, Work, guarded};
 use serde::Serialize;
-use std::io;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
-
-/// Reads a file with something to draw, its polygons as `subdivide` says, and prints its warnings.
-pub fn open(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs) -> Result<Import> {
-    open_within(path, read, subdivide, &read.limits(&named(path)))
-}
-
-/// The same as a part of the work on the file.
-pub fn open_within(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs, limits: &Limits) -> Result<Import> {
-    let import = described_within(path, read, subdivide, limits)?;
-    judge(path, &import, read)?;
-    Ok(import)
-}
-
-/// Reads a file, whether or not there is anything to draw in it.
-pub fn described(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs) -> Result<Import> {
-    described_within(path, read, subdivide, &read.limits(&named(path)))
-}
-
-fn described_within(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs, limits: &Limits) -> Result<Import> {
-    let start = Instant::now();
-    let name = named(path);
-    let step = limits.begin(Work::Reading);
-    let import = importing(&name, |tell| imported(path, &name, read, subdivide, (&step, tell)))?;
-    step.test().map_err(beyond)?;
-    tracing::info!("read {name} in {:.1?}", start.elapsed());
-    if subdivide.subdivide.is_some() {
-        let (faces, off) = (import.report.faces, import.report.made);
-        tracing::info!("{faces} faces within {off:.2e} mm of the limit surface");
-    }
-    output::warnings(&import);
-    Ok(import)
-}
-
-/// The file's name in messages.
-pub fn named(path: &Path) -> String {
-    if target::is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
-}
-
-fn imported(
-    path: &Path,
-    name: &str,
-    read: &ReadArgs,
-    subdivide: &SubdivideArgs,
-    (step, tell): (&Step, &(dyn Fn(Stage) + Sync)),
-) -> Result<Import> {
-    let folders = Folders::new(read.search.clone());
-    let tell = |stage| {
-        step.check_at(stage);
-        tell(stage);
-    };
-    let options = Options {
-        progress: Some(&tell),
-        most_bytes: Some(read.most_bytes()),
-        files: Some(&folders),
-        facets: if subdivide.as_openscad { Facets::AsWritten } else { Facets::Round },
-        run_openscad: true,
-        ..Options::default()
-    };
-    if subdivide.subdivide.is_some() && target::is_standard(path) {
-        bail!("--subdivide reads a file, not standard input");
-    }
-    let import = guarded(|| {
-        Ok(match subdivide.subdivide {
-            Some(smooth) => import::open_subdivided(path, smooth.scheme(), subdivide.within, &options),
-            None if target::is_standard(path) => import::read_from(&mut io::stdin().lock(), name, &options),
-            None => import::open_with(path, &options),
-        }?)
-    });
-    import.map_err(|error| failure(error, name))
-}
-
-/// Why the work on something failed. An error of the device keeps its type, which has an exit status of its own. A limit is
-/// named by its option.
-fn failure(error: SessionError, what: &str) -> Error {
-    match error {
-        SessionError::Device(error) | SessionError::Draw(error) => error.into(),
-        SessionError::Import(error @ (ImportError::TooLarge { .. } | ImportError::Expansion { .. })) => {
-            Error::from(error).context("more than --limit-mib allows")
-        }
-        SessionError::Import(error) => error.into(),
-        SessionError::Limit(exceeded) => beyond(exceeded),
-        error => Error::from(error).context(what.to_owned()),
-    }
-}
-
-/// The same of a limit.
-pub fn beyond(exceeded: Exceeded) -> Error {
-    let option = match exceeded.bound {
-        Bound::Time(_) => "--limit-s",
-        Bound::Memory { .. } => "--limit-mib",
-    };
-    Error::from(exceeded).context(format!("more than {option} allows"))
-}
-
-/// Refuses a file without anything to draw. `--strict` refuses a file that lost anything; without it, the losses are printed.
-pub fn judge(path: &Path, import: &Import, read: &ReadArgs) -> Result<()> {
-    let summary = import.summary();
-    let told = format!("{}: {summary}", named(path));
-    if summary.draws_nothing() {
-        bail!("{told}");
-    }
-    if summary.is_complete() {
-        return Ok(());
-    }
-    if read.strict {
-        bail!("--strict: {told}");
-    }
-    tracing::warn!("{told}");
-    Ok(())
-}
 
 /// The direction towards the sun, if there is a sun.
 pub fn sun(args: &FrameArgs, import: &Import) -> Option<DVec3> {
@@ -137,7 +27,7 @@ pub fn shows(picture: &Picture) -> bool {
 }
 
 /// A renderer that holds one model.
-pub struct Session {
+pub struct ModelRenderer {
     renderer: HeadlessRenderer,
     settings: FrameSettings,
     first_frame: Option<FirstFrame>,
@@ -153,7 +43,7 @@ pub struct FirstFrame {
     pub wall_ms: f64,
 }
 
-/// A frame's statistics, the cost of the session's first frame, and the objects of the scene.
+/// A frame's statistics, the cost of the renderer's first frame, and the objects of the scene.
 #[derive(Debug, Serialize)]
 pub struct Measured {
     #[serde(flatten)]
@@ -181,7 +71,7 @@ pub fn device(args: &FrameArgs, most_memory: Option<u64>) -> Result<HeadlessRend
     Ok(HeadlessRenderer::new(&HeadlessOptions { memory_budget: most_memory, ..options })?)
 }
 
-impl Session {
+impl ModelRenderer {
     /// Opens the device and uploads the model, with lines along edges if `lines` is set.
     pub fn with_lines(args: &FrameArgs, import: &Import, lines: Option<EdgeSettings>) -> Result<Self> {
         let scene = SceneSettings { edges: lines, ..SceneSettings::default() };
@@ -343,7 +233,7 @@ impl Session {
     }
 
     /// The device, for another model.
-    pub fn into_renderer(self) -> HeadlessRenderer {
+    pub fn into_headless(self) -> HeadlessRenderer {
         self.renderer
     }
 

@@ -1,9 +1,9 @@
 //! Against closed forms, on solids whose dimensions are known, placed askew.
 
 use super::*;
+use crate::construct::shapes;
+use crate::model::EdgeKind;
 use glam::DQuat;
-use selvedge::construct::shapes;
-use selvedge::model::{Instance, Part};
 use std::f64::consts::PI;
 
 /// Tolerance of numbers that are roundings of their true values: some hundred operations of 2⁻⁵² each.
@@ -18,16 +18,12 @@ fn askew() -> DAffine3 {
     )
 }
 
-fn placed(transform: DAffine3) -> Instance {
-    Instance { part: 0, transform, colour: None, name: String::new() }
-}
-
 fn close(found: f64, expected: f64, share: f64) {
     assert!((found - expected).abs() <= share * expected.abs(), "{found} instead of {expected}");
 }
 
 fn solid(part: &Part, area: f64, volume: f64, centre: DVec3) {
-    let mass = mass::mass(part, &placed(askew()));
+    let mass = mass::mass(part, askew());
     close(mass.area.area, area, INTEGRAL);
     close(mass.volume, volume, INTEGRAL);
     assert!(mass.centre.distance(askew().transform_point3(centre)) < 1e-9, "{}", mass.centre);
@@ -53,7 +49,7 @@ fn areas_and_volumes_are_those_of_the_formulas() {
 fn a_mirror_turns_nothing_inside_out() {
     let block = shapes::block(DVec3::ZERO, DVec3::new(2.0, 3.0, 5.0)).unwrap().part;
     let mirror = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
-    close(mass::mass(&block, &placed(mirror)).volume, 30.0, INTEGRAL);
+    close(mass::mass(&block, mirror).volume, 30.0, INTEGRAL);
 }
 
 #[test]
@@ -140,7 +136,7 @@ fn distances_end_at_borders() {
     let tube = shapes::tube(4.0, 1.25, 7.0).unwrap().part;
     let disc = shapes::cylinder(1.0, 1.0).unwrap().part;
     let flat = |part: &Part, z: f64| {
-        let at = |f: &selvedge::model::Face| f.bounds();
+        let at = |f: &crate::model::Face| f.bounds();
         part.faces
             .iter()
             .position(|f| (at(f).min.z - z).abs() < 1e-9 && (at(f).max.z - z).abs() < 1e-9)
@@ -154,21 +150,71 @@ fn distances_end_at_borders() {
 
 #[test]
 fn lines_and_points_have_nearest_points() {
-    let (p, q) = between(DVec3::ZERO, Some(DVec3::X), DVec3::new(5.0, 3.0, 2.0), Some(DVec3::Y)).expect("two lines");
+    let (p, q) = between(DVec3::ZERO, Some(DVec3::X), DVec3::new(5.0, 3.0, 2.0), Some(DVec3::Y));
     assert!(p.distance(DVec3::new(5.0, 0.0, 0.0)) < 1e-14 && q.distance(DVec3::new(5.0, 0.0, 2.0)) < 1e-14);
-    let (p, q) = between(DVec3::ZERO, Some(DVec3::X), DVec3::new(5.0, 3.0, 4.0), Some(DVec3::X)).expect("parallel");
+    let (p, q) = between(DVec3::ZERO, Some(DVec3::X), DVec3::new(5.0, 3.0, 4.0), Some(DVec3::X));
     close(p.distance(q), 5.0, 1e-14);
-    let (p, q) = between(DVec3::ONE, None, DVec3::new(9.0, 0.0, 0.0), Some(DVec3::X)).expect("a point and a line");
-    assert_eq!((p, q), (DVec3::ONE, DVec3::X));
+    assert_eq!(between(DVec3::ONE, None, DVec3::new(9.0, 0.0, 0.0), Some(DVec3::X)), (DVec3::ONE, DVec3::X));
+}
+
+fn number(measured: &Measured, what: &str) -> f64 {
+    measured.values.iter().find(|value| value.what == what).expect(what).value
+}
+
+/// A rim as it is, and in two pieces that do not follow each other, as the seam of another face may leave it.
+#[test]
+fn an_edge_in_pieces_is_one_edge() {
+    let part = shapes::cylinder(2.5, 7.0).unwrap().part;
+    let found = part.edges().expect("edges");
+    let rim = found.edges.iter().find(|edge| edge.kind == EdgeKind::Sharp).expect("a rim");
+    assert!(rim.curve.len() > 1, "a rim is no single piece");
+    let (head, tail) = rim.curve.split_at(1);
+    let [head, tail] = [head, tail].map(|curve| Edge { curve: curve.to_vec(), ..rim.clone() });
+    for edges in [vec![rim], vec![&tail, &head]] {
+        let measured = one(&Item::Edge(edges, askew())).expect("an edge");
+        close(number(&measured, "length"), 5.0 * PI, INTEGRAL);
+        close(number(&measured, "radius"), 2.5, INTEGRAL);
+    }
 }
 
 #[test]
-fn a_measurement_is_text_and_a_table() {
-    let mut all = Measurement { title: "edge \"1\"".to_owned(), ..Measurement::default() };
-    all.add("length", 1.0 / 3.0, 1e-16, "mm");
-    all.points.push(("centre", DVec3::new(1.0, 2.5, -3.0)));
-    assert_eq!(all.text(), "edge \"1\"\nlength: 0.333333333333 mm\ncentre: 1, 2.5, -3");
-    let rows = "\"edge \"\"1\"\"\",length,0.3333333333333333,0.0000000000000001,mm\n\"edge \"\"1\"\"\",centre x,1,0,mm\n\
-                \"edge \"\"1\"\"\",centre y,2.5,0,mm\n\"edge \"\"1\"\"\",centre z,-3,0,mm\n";
-    assert_eq!(all.csv(), rows);
+fn two_items_have_a_distance_and_a_part_has_none() {
+    let sphere = shapes::sphere(2.5).unwrap().part;
+    let (point, still) = (Item::Point(DVec3::new(2.0, 3.0, 6.0)), DAffine3::IDENTITY);
+    let measured = two(&point, &Item::Face(&sphere.faces[0], still)).expect("both have points");
+    close(number(&measured, "distance"), 4.5, 1e-12);
+    close(number(&measured, "between centres"), 7.0, 1e-12);
+    assert_eq!(two(&point, &Item::Part(&sphere, still)), None);
+}
+
+#[test]
+fn two_points_have_one_distance_and_its_parts() {
+    let measured = two(&Item::Point(DVec3::new(1.0, 2.0, 3.0)), &Item::Point(DVec3::new(3.0, 5.0, -3.0)));
+    let measured = measured.expect("points");
+    let all: Vec<(&str, f64)> = measured.values.iter().map(|v| (v.what, v.value)).collect();
+    assert_eq!(all, [("distance", 7.0), ("along x", 2.0), ("along y", 3.0), ("along z", -6.0)]);
+    assert_eq!(measured.dimensions.len(), 1, "a distance between centres would be the same line again");
+}
+
+#[test]
+fn planes_and_axes_have_angles() {
+    let (block, can) = (shapes::block(DVec3::ZERO, DVec3::ONE).unwrap().part, shapes::cylinder(1.0, 1.0).unwrap().part);
+    let still = DAffine3::IDENTITY;
+    let turn = DQuat::from_rotation_x(PI / 6.0);
+    let turned = DAffine3::from_rotation_translation(turn, DVec3::X * 10.0);
+    let is_round = |face: &&Face| matches!(surface::shape(face, still), SurfaceShape::Cylinder { .. });
+    let side = Item::Face(can.faces.iter().find(is_round).expect("a side"), turned);
+    let plane = |face: &Face| match surface::shape(face, still) {
+        SurfaceShape::Plane { normal, .. } => normal,
+        other => panic!("{other:?} is no plane"),
+    };
+    let first = &block.faces[0];
+    for face in &block.faces {
+        let angle = |other: &Item<'_>| number(&two(&Item::Face(face, still), other).expect("points"), "angle");
+        // the axis is a line, and a plane's angle to a line is no more than a right one
+        let expected = plane(face).dot(turn * DVec3::Z).abs().asin().to_degrees();
+        assert!((angle(&side) - expected).abs() < 1e-9, "{expected}");
+        let expected = if plane(face).dot(plane(first)).abs() > 0.5 { 0.0 } else { 90.0 };
+        assert!((angle(&Item::Face(first, still)) - expected).abs() < 1e-9, "{expected}");
+    }
 }

@@ -10,10 +10,10 @@
 //! within [`Distance::error`]. Samples decide that no other pair is nearer: pieces are skipped only where their
 //! samples, less the gaps between them, are farther apart than a distance already found.
 
+use crate::model::Face;
+use crate::spline::{Bezier, Surface};
+use crate::trim::LoopIndex;
 use glam::{DAffine3, DVec2, DVec3, DVec4};
-use selvedge::model::Face;
-use selvedge::spline::{Bezier, Surface};
-use selvedge::trim::LoopIndex;
 
 /// The nearest pair of points of two items.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -145,7 +145,7 @@ impl<'a> Sampled<'a> {
     }
 
     /// A placed edge.
-    pub fn edge(edge: &'a selvedge::model::Edge, transform: DAffine3) -> Vec<Self> {
+    pub fn edge(edge: &'a crate::model::Edge, transform: DAffine3) -> Vec<Self> {
         edge.curve.iter().map(|span| Self::new(Piece::Curve(transform, &span.piece))).collect()
     }
 

@@ -7,10 +7,10 @@
 //!
 //! Loops run counter-clockwise and holes clockwise, as the model promises, so their sums need no test for inside.
 
+use crate::math::gauss::{integrate, rule};
+use crate::model::{Face, Part, TrimLoop};
+use crate::spline::{Bezier, Surface};
 use glam::{DAffine3, DVec3};
-use selvedge::model::{Face, Instance, Part, TrimLoop};
-use selvedge::spline::{Bezier, Surface};
-use selvedge_geometry::math::gauss::{integrate, rule};
 
 /// Tolerance of the integrals along the loops.
 const TOLERANCE: f64 = 1e-12;
@@ -104,12 +104,12 @@ pub fn area(face: &Face, transform: DAffine3) -> Area {
 }
 
 /// Area, volume and centre of a placed part; the volume is meaningful where the part is closed.
-pub fn mass(part: &Part, placed: &Instance) -> Mass {
+pub fn mass(part: &Part, transform: DAffine3) -> Mass {
     let bounds = part.control_bounds();
-    let origin = placed.transform.transform_point3(if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() });
+    let origin = transform.transform_point3(if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() });
     let (mut total, mut error) = ([0.0; 5], [0.0; 5]);
     for face in &part.faces {
-        let (sum, off) = sums(face, placed.transform, origin);
+        let (sum, off) = sums(face, transform, origin);
         for i in 0..5 {
             total[i] += sum[i];
             error[i] += off[i];

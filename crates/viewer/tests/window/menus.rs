@@ -1,0 +1,154 @@
+//! What menus, lists and dialogs do: finding, checking, styles, sections, saving.
+
+use super::hand::{numbers, read_png};
+use super::living::is_in_place;
+use super::panels::Panels;
+use super::{Screen, opened, opened_with};
+use glam::{DVec2, DVec3};
+use selvedge::model::Bounds;
+use selvedge_io::{import, native};
+use selvedge_viewer::commands::Command;
+use selvedge_viewer::describe::extent;
+
+const WINDOW: (u32, u32) = (900, 560);
+/// Pixels of a view that are judged at least: those of a whole one are twenty thousand.
+const LEAST_JUDGED: f64 = 1000.0;
+/// How far boxes of one model may be apart, relative to its size: each side of each may be off by a hundred-thousandth.
+const BOXES: f64 = 4e-5;
+
+#[test]
+fn a_part_is_found_by_name_and_the_view_without_it_is_right() {
+    let Some(screen) = Screen::open(WINDOW) else { return };
+    let display = &screen.display;
+    let (_folder, mut program, scene) = opened(display, "assembly.step");
+    let mut panels = Panels::new(&scene, WINDOW);
+    let last = scene.world.model.instances.len() - 1;
+    let name = scene.world.instance_name(last);
+    let before = (0..last).filter(|i| scene.world.instance_name(*i) == name).count();
+    // the field beside its label
+    let field = panels.find("Find", 0) + DVec2::new(60.0, 0.0);
+    display.move_to(field);
+    program.settle();
+    display.click(field);
+    program.settle();
+    display.xdotool(&format!("type --delay 30 {name}"));
+    program.settle();
+    panels.ui.search.clone_from(&name);
+    // the field itself shows the name, too
+    panels.click(display, &mut program, &name, before + 1);
+    program.rest();
+    assert_eq!(panels.session.selected_instances(), [last], "the row of another part");
+    program.after(|| display.key("f"));
+    let target = scene.camera_of(&program.command(display)).target;
+    let centre = extent(&panels.session).into_iter().fold(Bounds::EMPTY, Bounds::with).centre();
+    let off = target.distance(centre) / scene.world.bounds.diagonal();
+    assert!(off < 1e-9, "{target} instead of {centre}");
+
+    assert!(is_in_place(&program.after(|| display.key("h"))));
+    program.after(|| display.key("Home"));
+    display.key("k");
+    let checked = numbers(&program.wait("checked "), "checked ");
+    assert!(checked[0] >= LEAST_JUDGED && checked[1] == 0.0, "{checked:?}: pixels, and wrong ones");
+    program.rest();
+    program.close(display);
+}
+
+#[test]
+fn menus_choose_styles_and_cut_three_times() {
+    let Some(screen) = Screen::open(WINDOW) else { return };
+    let display = &screen.display;
+    let (_folder, mut program, scene) = opened(display, "bracket.step");
+    let mut panels = Panels::new(&scene, WINDOW);
+    let mut pictures = vec![program.picture(display)];
+    // the second one needs an upload
+    for style in ["technical", "mean-curvature"] {
+        panels.click(display, &mut program, "Style", 0);
+        panels.click(display, &mut program, style, 0);
+        program.rest();
+        let picture = program.picture(display);
+        assert!(!pictures.contains(&picture), "{style} is not seen");
+        pictures.push(picture);
+    }
+
+    for across in ["Across x", "Across y", "Across z"] {
+        panels.click(display, &mut program, "Section", 0);
+        panels.click(display, &mut program, across, 0);
+    }
+    program.rest();
+    let line = program.command(display);
+    assert!(line.contains("--style=mean-curvature"), "{line}");
+    let planes = |line: &str| -> Vec<[f64; 4]> {
+        let words = line.split(' ').filter(|word| word.starts_with("--section="));
+        words.map(|word| numbers(word, "--section=").try_into().expect("a plane")).collect()
+    };
+    let middle = scene.world.bounds.centre();
+    let expected = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| [axis.x, axis.y, axis.z, axis.dot(middle)]);
+    assert_eq!(planes(&line), expected);
+    panels.click(display, &mut program, "Section", 0);
+    panels.click(display, &mut program, "Flip", 1);
+    program.rest();
+    let flipped = expected[1].map(|x| -x);
+    assert_eq!(planes(&program.command(display)), [expected[0], flipped, expected[2]]);
+    program.close(display);
+}
+
+#[test]
+fn two_fingers_move_the_view_and_dialogs_write_what_is_shown() {
+    let Some(screen) = Screen::open(WINDOW) else { return };
+    let display = &screen.display;
+    let (folder, mut program, scene) = opened_with(display, "bracket.step", |folder| {
+        std::fs::write(folder.join("settings.json"), r#"{"preset": "trackpad"}"#).expect("written");
+        std::fs::create_dir(folder.join("gtk-3.0")).expect("made");
+        let settings = "[Settings]\ngtk-enable-animations=0\n";
+        std::fs::write(folder.join("gtk-3.0/settings.ini"), settings).expect("written");
+    });
+    program.last("the desktop asks for less motion");
+    let mut panels = Panels::new(&scene, WINDOW);
+
+    // a line sideways is two fingers
+    let (at, _) = scene.cylinder();
+    let point = scene.hit(at).expect("it is seen").point;
+    program.after(|| display.move_to(at));
+    program.after(|| drop(display.xdotool("click 6")));
+    let moved = scene.camera_of(&program.command(display));
+    let off = scene.in_window(&moved, point).distance(at + DVec2::new(40.0, 0.0));
+    assert!(off < 0.01, "{off} pixels from where two fingers lead");
+
+    // the model as it is, in both forms
+    let model = &scene.world.model;
+    for name in ["copy.selvedge", "copy.step"] {
+        display.key("ctrl+e");
+        program.settle();
+        panels.obey(Command::SaveAs);
+        panels.write(display, &mut program, "edited.selvedge", name);
+        panels.click(display, &mut program, "Save", 0);
+        if !program.all.iter().any(|line| line.contains(&format!("{name} is saved"))) {
+            program.wait(&format!("{name} is saved"));
+        }
+        panels.ui.save = None;
+        let read = import::open(&folder.path().join(name)).expect("it is read").model;
+        assert_eq!(read.face_count(), model.face_count(), "{name}");
+        let (mine, its) = (model.bounds(), read.bounds());
+        let off = mine.min.distance(its.min).max(mine.max.distance(its.max)) / mine.diagonal();
+        assert!(off < BOXES, "{name}: {off}");
+        if name.ends_with(".selvedge") {
+            assert!(native::write(&read) == native::write(model), "{name} is not the same, bit for bit");
+        }
+    }
+
+    // a picture of another size without background
+    display.key("ctrl+s");
+    program.settle();
+    panels.obey(Command::Screenshot);
+    panels.write(display, &mut program, "view.png", "small.png");
+    panels.write(display, &mut program, "1280", "320");
+    panels.write(display, &mut program, "720", "200");
+    panels.click(display, &mut program, "transparent", 0);
+    panels.click(display, &mut program, "Write", 0);
+    program.rest();
+    let (size, pixels) = read_png(&folder.path().join("small.png"));
+    assert_eq!((size, pixels[0][3]), ((320, 200), 0));
+    let opaque = pixels.iter().filter(|pixel| pixel[3] == 255).count();
+    assert!(opaque > pixels.len() / 20, "{opaque} pixels show the model");
+    program.close(display);
+}
