@@ -32,7 +32,7 @@ class Scene:
         return parsed(self.expression)
 
     def data(self):
-        return {"primitives": self.primitives, "tree": self.tree()}
+        return {"primitives": self.primitives, "tree": chained(self.tree())}
 
 
 def primitive(shape, at=(0, 0, 0), turn=0, **keys):
@@ -207,6 +207,11 @@ def flat(tree):
         operands.append(tree[2])
         tree = tree[1]
     return [tree, *reversed(operands)]
+
+
+def chained(tree):
+    """The tree with a chain of one operator as one list, operator first: as deep as the parentheses of its expression."""
+    return tree if isinstance(tree, str) else [tree[0], *map(chained, flat(tree))]
 
 
 def block_corners(part):

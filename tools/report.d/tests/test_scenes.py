@@ -1,5 +1,6 @@
 """One description, four forms."""
 
+import json
 import unittest
 
 from report import scenes
@@ -14,6 +15,20 @@ class Expressions(unittest.TestCase):
         self.assertEqual(scenes.flat(scenes.parsed("A-B-C")), ["A", "B", "C"])
         self.assertEqual(scenes.flat(scenes.parsed("A*B-C")), [["*", "A", "B"], "C"])
         self.assertEqual(scenes.flat(scenes.parsed("A-(B-C)")), ["A", ["-", "B", "C"]])
+
+    def test_long_chains_are_written_as_one_list(self):
+        self.assertEqual(scenes.chained(scenes.parsed("A*B-C-(D+E+F)")), ["-", ["*", "A", "B"], "C", ["+", "D", "E", "F"]])
+        long = scenes.Scene("long", {}, "-".join(["A"] * 5000))
+        self.assertEqual(len(json.loads(json.dumps(long.data()))["tree"]), 5001)
+
+    def test_members_of_chains(self):
+        try:
+            from report.peer import csg
+        except ImportError as missing:
+            self.skipTest(str(missing))
+        members = [csg.member(scenes.chained(scenes.parsed(text)), {"A", "C"}) for text in ("A-B-C", "A-B-D", "B+D+C")]
+        self.assertEqual(members, [False, True, True])
+        self.assertEqual([csg.member(["*", "A", *more], {"A", "C"}) for more in ("C", "CB")], [True, False])
 
     def test_a_text_that_is_no_expression_is_refused(self):
         self.assertRaises(ValueError, scenes.parsed, "A^B")

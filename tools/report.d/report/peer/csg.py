@@ -43,10 +43,11 @@ class Rays(View):
 def member(tree, inside):
     if isinstance(tree, str):
         return tree in inside
-    left = member(tree[1], inside)
-    if tree[0] == "+":
-        return left or member(tree[2], inside)
-    return left and member(tree[2], inside) == (tree[0] == "*")
+    operator, first, *others = tree
+    if operator == "*":
+        return all(member(one, inside) for one in tree[1:])
+    found = any(member(one, inside) for one in others)
+    return member(first, inside) and not found if operator == "-" else member(first, inside) or found
 
 
 def spans(part, eye, ray):

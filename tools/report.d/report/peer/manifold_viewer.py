@@ -1,6 +1,6 @@
 """Manifold evaluates a Boolean solid as triangles, VTK draws them.
 
-    job      scene: {primitives, tree} (scenes.py), segments (lists of numbers around), camera, turn, folder
+    job      scene: {primitives, tree} (Scene.data of scenes.py), segments (lists of numbers around), camera, turn, folder
     results  {segments, evaluate_s, triangles, first_s, turning_ms, picture (an image of faces)}
 
 Run within an X server.
@@ -9,7 +9,7 @@ Run within an X server.
 import time
 
 import numpy
-from manifold3d import CrossSection, Manifold
+from manifold3d import CrossSection, Manifold, OpType
 
 from . import job, tell
 from .vtk_viewer import VtkViewer
@@ -31,8 +31,8 @@ def primitive(part, segments):
 def evaluated(tree, parts):
     if isinstance(tree, str):
         return parts[tree]
-    left, right = (evaluated(one, parts) for one in tree[1:])
-    return left + right if tree[0] == "+" else left ^ right if tree[0] == "*" else left - right
+    operator = {"+": OpType.Add, "*": OpType.Intersect, "-": OpType.Subtract}[tree[0]]
+    return Manifold.batch_boolean([evaluated(one, parts) for one in tree[1:]], operator)
 
 
 def main():
