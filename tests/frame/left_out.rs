@@ -5,7 +5,7 @@ use crate::layers::in_glass;
 use crate::shapes::solids::{block, folded};
 use crate::support::{assert_identical, assert_silent, perspective, watched_with};
 use selvedge::csg::Op;
-use selvedge::picture::{EdgeSettings, Effects, FrameSettings, Outputs, Picture, SceneSettings, Smooth};
+use selvedge::picture::{EdgeSettings, Effects, FrameSettings, Outputs, Picture, SceneSettings, Smooth, TrimWay};
 
 const SIZE: (u32, u32) = (160, 120);
 const OUTPUTS: Outputs = Outputs { edge: true, ..Outputs::ALL };
@@ -20,6 +20,8 @@ fn what_is_left_out_is_as_if_the_scene_had_it_not() {
     for (model, what) in [(crowd(), "parts"), (corner, "solids")] {
         let camera = perspective(&model, SIZE);
         let scene = SceneSettings {
+            // `Auto` depends on the borders
+            trim: TrimWay::Exact,
             smooth: Smooth::Borders,
             ambient: Some(0.1 * model.control_bounds().diagonal()),
             // of a height of 1080: a pixel here
