@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 /// Points of the rule.
 const POINTS: usize = 16;
 /// [`integrate`] halves a piece at most so often. If the answers still differ, the returned error shows it.
-const HALVINGS: u32 = 14;
+pub const HALVINGS: u32 = 14;
 
 /// Abscissae in `[-1, 1]` and weights, roots of the Legendre polynomial by Newton's method.
 ///

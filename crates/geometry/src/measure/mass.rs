@@ -7,12 +7,13 @@
 //!
 //! Loops run counter-clockwise and holes clockwise, as the model promises, so their sums need no test for inside.
 
-use crate::math::gauss::{integrate, rule};
+use crate::math::gauss::{HALVINGS, rule, within};
 use crate::model::{Face, Part, TrimLoop};
-use crate::spline::{Bezier, Surface};
+use crate::spline::{Bezier, Control, Surface};
 use glam::{DAffine3, DVec3};
 
-/// Tolerance of the integrals along the loops.
+/// Tolerance of the integrals along the loops, as a share of what they would be if no part of a sum cancelled another: of
+/// a moment that is 0 by symmetry only rounding is left, which no halving makes less.
 const TOLERANCE: f64 = 1e-12;
 
 /// An area with the estimate of its error.
@@ -80,6 +81,9 @@ fn sums(face: &Face, transform: DAffine3, origin: DVec3) -> (Sums, Sums) {
         }
         sum
     };
+    let points = surface.points().iter().map(|p| transform.transform_point3(p.point()) - origin);
+    let reach = points.fold(0.0f64, |most, p| most.max(p.length()));
+    let moment = 0.5 * reach * reach;
     let (mut total, mut error) = ([0.0; 5], [0.0; 5]);
     for curve in loops(face).iter().flatten() {
         let along = |t: f64| {
@@ -88,7 +92,9 @@ fn sums(face: &Face, transform: DAffine3, origin: DVec3) -> (Sums, Sums) {
             let speed = (d.y - at.y * d.z) / p.z;
             if speed == 0.0 { [0.0; 5] } else { below(at.x, at.y).map(|x| x * speed) }
         };
-        let (sum, off) = integrate(&along, (0.0, 1.0), TOLERANCE);
+        let [area] = rule(&|t| [along(t)[0].abs()], 0.0, 1.0);
+        let allowed = [1.0, reach / 3.0, moment, moment, moment].map(|most| TOLERANCE * area * most);
+        let (sum, off) = within(&along, (0.0, 1.0), allowed, HALVINGS);
         for i in 0..5 {
             total[i] += sum[i];
             error[i] += off[i];

@@ -73,8 +73,9 @@ fn menus_choose_styles_and_cut_three_times() {
     for across in ["Across x", "Across y", "Across z"] {
         panels.click(display, &mut program, "Section", 0);
         panels.click(display, &mut program, across, 0);
+        // the menu opens where the next picture has it
+        program.rest();
     }
-    program.rest();
     let line = program.command(display);
     assert!(line.contains("--style=mean-curvature"), "{line}");
     let planes = |line: &str| -> Vec<[f64; 4]> {
@@ -93,26 +94,16 @@ fn menus_choose_styles_and_cut_three_times() {
 }
 
 #[test]
-fn two_fingers_move_the_view_and_dialogs_write_what_is_shown() {
+fn less_motion_is_heard_of_and_dialogs_write_what_is_shown() {
     let Some(screen) = Screen::open(WINDOW) else { return };
     let display = &screen.display;
     let (folder, mut program, scene) = opened_with(display, "bracket.step", |folder| {
-        std::fs::write(folder.join("settings.json"), r#"{"preset": "trackpad"}"#).expect("written");
         std::fs::create_dir(folder.join("gtk-3.0")).expect("made");
         let settings = "[Settings]\ngtk-enable-animations=0\n";
         std::fs::write(folder.join("gtk-3.0/settings.ini"), settings).expect("written");
     });
     program.last("the desktop asks for less motion");
     let mut panels = Panels::new(&scene, WINDOW);
-
-    // a line sideways is two fingers
-    let (at, _) = scene.cylinder();
-    let point = scene.hit(at).expect("it is seen").point;
-    program.after(|| display.move_to(at));
-    program.after(|| drop(display.xdotool("click 6")));
-    let moved = scene.camera_of(&program.command(display));
-    let off = scene.in_window(&moved, point).distance(at + DVec2::new(40.0, 0.0));
-    assert!(off < 0.01, "{off} pixels from where two fingers lead");
 
     // the model as it is, in both forms
     let model = &scene.world.model;
