@@ -1,6 +1,6 @@
 //! What menus, lists and dialogs do: finding, checking, styles, sections, saving.
 
-use super::hand::{numbers, read_png};
+use super::hand::numbers;
 use super::living::is_in_place;
 use super::panels::Panels;
 use super::{Screen, opened, opened_with};
@@ -94,7 +94,7 @@ fn menus_choose_styles_and_cut_three_times() {
 }
 
 #[test]
-fn less_motion_is_heard_of_and_dialogs_write_what_is_shown() {
+fn less_motion_is_heard_of_and_both_forms_are_saved() {
     let Some(screen) = Screen::open(WINDOW) else { return };
     let display = &screen.display;
     let (folder, mut program, scene) = opened_with(display, "bracket.step", |folder| {
@@ -127,19 +127,5 @@ fn less_motion_is_heard_of_and_dialogs_write_what_is_shown() {
         }
     }
 
-    // a picture of another size without background
-    display.key("ctrl+s");
-    program.settle();
-    panels.obey(Command::Screenshot);
-    panels.write(display, &mut program, "view.png", "small.png");
-    panels.write(display, &mut program, "1280", "320");
-    panels.write(display, &mut program, "720", "200");
-    panels.click(display, &mut program, "transparent", 0);
-    panels.click(display, &mut program, "Write", 0);
-    program.rest();
-    let (size, pixels) = read_png(&folder.path().join("small.png"));
-    assert_eq!((size, pixels[0][3]), ((320, 200), 0));
-    let opaque = pixels.iter().filter(|pixel| pixel[3] == 255).count();
-    assert!(opaque > pixels.len() / 20, "{opaque} pixels show the model");
     program.close(display);
 }
