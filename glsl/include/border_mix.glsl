@@ -7,9 +7,9 @@
 //     │  ·     ╲  ·│
 //     └────────────┘    a sheet has the colour of the pixel that shows it
 //
-// A sheet is one side of a face as it is seen: a face that hides a part of itself has several. Its exact surface is
-// evaluated three times, near the pixel's centre and beside it; between the points its terms of second order are enough,
-// beside a fold, too:
+// A sheet is one side of a face as it is seen: a face that hides a part of itself has several. The pass
+// evaluates its exact surface three times, at the middle near the pixel's centre and beside it. The points are met by
+// Newton's method on its terms of second order, which also bend at a fold:
 //
 //     q(u, v) ≈ q + u qu + v qv + (u² quu + 2 u v quv + v² qvv) / 2      homogeneous pixels, from the middle on
 //

@@ -20,8 +20,8 @@ ivec2 pixel_of(BorderPixel border) { return ivec2(border.pixel & 0xffffu, border
 const float JUMP_PX = 2.0;
 const float JUMP_OF_CLIMB = 0.5;
 
-// Whether the depth jumps beside a pixel at depth `here`; `before` and `behind` are the differences to opposite
-// neighbours, of which there are up to four pairs.
+// Whether the depth jumps beside a pixel at depth `here`; `before` and `behind` have the differences to opposite
+// neighbours, up to four pairs.
 bvec4 jumps(vec4 before, vec4 behind, float here) {
     float px = (frame.perspective != 0u ? here : 1.0) / frame.focal;
     return greaterThan(abs(before + behind), JUMP_PX * px + JUMP_OF_CLIMB * abs(behind - before));

@@ -152,7 +152,11 @@ fn assert_the_balls_outline(model: &Model, camera: &Camera) {
 #[test]
 fn a_balls_outline_is_where_it_folds() {
     let model = shapes::sphere();
-    assert_the_balls_outline(&model, &perspective(&model, SIZE));
+    let camera = perspective(&model, SIZE);
+    assert_the_balls_outline(&model, &camera);
+    // from the side, where both poles are on the outline
+    let from = DVec3::new(0.8, -0.6, 0.0);
+    assert_the_balls_outline(&model, &Camera { eye: from * camera.eye.length(), target: DVec3::ZERO, ..camera });
 }
 
 /// A ring that is trimmed along its seams, in a view that shows neither them nor a patch that they cross: the trim

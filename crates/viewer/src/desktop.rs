@@ -24,7 +24,7 @@ pub fn reduces_motion(folder: &Path) -> bool {
 
 fn in_files(folder: &Path) -> bool {
     FILES.iter().any(|(file, group, key)| {
-        // without the file nothing is asked for
+        // a missing file has no setting
         let text = std::fs::read_to_string(folder.join(file)).unwrap_or_default();
         value(&text, group, key).is_some_and(is_off)
     })

@@ -20,14 +20,14 @@ use std::time::Duration;
 /// Between two reports of a program that runs.
 const BETWEEN: Duration = Duration::from_millis(10);
 
-/// A longer line of messages is cut.
+/// Bytes of a line of messages; the rest of a longer one counts as a line of its own.
 const MOST_LINE: u64 = 1000;
 
 /// The exit status of a shell whose command is not found.
 const NOT_FOUND: i32 = 127;
 
-/// The shell script that runs its arguments as a command. Its input is a pipe to which nobody writes: it ends when this
-/// process closes it or ends. The process in brackets waits for that, and then kills its group.
+/// The shell script that runs its arguments as a command. Its input is an empty pipe, which ends when this process
+/// closes it or ends. The process in brackets waits for that end, and then kills its group.
 #[cfg(unix)]
 const WATCHED: &str = r#"exec 3<&0; (read -r _ <&3; kill -s KILL 0) >/dev/null 2>&1 & exec 3<&-; "$@" </dev/null"#;
 

@@ -76,7 +76,7 @@ fn parts_of_step_come_one_after_another() {
     grow_to(&previews, &import.model);
 }
 
-/// The wish for a preview is asked for at places between parts, and nothing is copied where there is none.
+/// The importer tests between parts whether a preview is due, and copies nothing where none is.
 #[test]
 fn nothing_is_taken_that_is_not_due() {
     struct Never;

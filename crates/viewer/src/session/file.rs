@@ -137,7 +137,7 @@ impl Loader {
     }
 }
 
-/// A file of which the first parts are finished.
+/// A file that is being read: it hands out its finished parts.
 struct Begun<'a> {
     file: &'a Path,
     schedule: &'a Schedule,

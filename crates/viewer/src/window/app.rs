@@ -43,7 +43,7 @@ pub enum Event {
     Measured(Vec<Picked>, Option<Measurement>),
     /// The verdict on a picture, or why there is none.
     Judged(Result<Verdict, String>),
-    /// The desktop asks for less motion.
+    /// The desktop is set to less motion.
     LessMotion,
     /// The panels need to be drawn again.
     Repaint,
@@ -90,7 +90,7 @@ pub struct App {
     pub view: View,
     pub ui: Ui,
     pub settings: Settings,
-    /// The desktop asks for less motion.
+    /// The desktop is set to less motion.
     pub less_motion: bool,
     /// The settings in the file.
     kept: Settings,
