@@ -238,9 +238,11 @@ Span torus_span(vec3 o, vec3 d, float r) {
     float shift = -dot(o, f.d);
     f.o = o + shift * f.d;
     float k = dot(f.o, f.o);
-    float reach = (1.0 + r) * (1.0 + r) - k;
-    if (!(reach > 0.0)) return NOTHING;
-    reach = 1.0001 * sqrt(reach);
+    float around = (1.0 + r) * (1.0 + r);
+    if (!(around > k)) return NOTHING;
+    // A sphere of more than the torus's own size: at its own, a ray that meets the outer equator has a root where the
+    // search begins, and rounding decides whether the value changes its sign there.
+    float reach = sqrt(1.25 * around - k);
     f.e = k + (1.0 - r) * (1.0 + r);
     f.p = 2.0 * f.e - 4.0 * dot(f.d.xy, f.d.xy);
     f.q = -8.0 * dot(f.o.xy, f.d.xy);

@@ -3,13 +3,14 @@
 
 use crate::cages;
 use crate::shapes::operands;
-use crate::shapes::solids::{self, at, ball, block, moved, post, turned};
-use crate::solids::right_at;
+use crate::shapes::solids::{self, at, ball, block, moved, post, ring, turned};
+use crate::solids::{faults, right_at};
 use crate::support::{assert_silent, perspective, render, watched};
 use glam::DVec3;
 use selvedge::csg::{Builder, Op};
-use selvedge::model::{Mesh, Model, Primitive, Quadric, Shape, Solid};
+use selvedge::model::{Camera, Mesh, Model, Primitive, Projection, Quadric, Shape, Solid};
 use selvedge::picture::{SceneSettings, SolidWay};
+use selvedge_check::Tracer;
 use std::sync::Arc;
 
 const SIZE: (u32, u32) = (120, 80);
@@ -149,6 +150,29 @@ fn leaving_out_what_a_tile_does_not_see_changes_nothing() {
         let same = pruned.face == all.face && pruned.depth == all.depth && pruned.colour == all.colour;
         assert!(same, "by {}", way.name());
         assert_eq!((pruned.stats.clamps, all.stats.clamps), (0, 0), "by {}", way.name());
+    }
+    assert_silent(renderer);
+}
+
+/// A ray that meets the outer equator has a root of its quartic at the border of the sphere around the torus. From afar
+/// rounding decided whether it was found: dots along the equator showed what lies behind.
+#[test]
+fn outer_equators_from_afar() {
+    const TIMES: f64 = 100.0;
+    let mut renderer = watched(&Model::default());
+    for minor in [0.08, 0.3] {
+        let model = solids::solid("A", vec![moved(turned(0.4, 0.3, 0.0), ring(1.0, minor))]);
+        let near = perspective(&model, SIZE);
+        let eye = near.target + TIMES * (near.eye - near.target);
+        let away = eye.distance(near.target);
+        let afar = Camera {
+            eye,
+            projection: Projection::Perspective { fov_y: 35f64.to_radians() / TIMES },
+            depth_range: (away - 3.0, away + 3.0),
+            ..near
+        };
+        renderer.upload(&model).unwrap();
+        assert_eq!(faults(&mut renderer, &Tracer::new(&model), &afar, false), None, "{minor}");
     }
     assert_silent(renderer);
 }
