@@ -32,13 +32,13 @@ def text(report, plots):
 
 def heading(report):
     peers = ", ".join(f"{name} {value}" for name, value in report.peers.items() if not isinstance(value, Missing))
-    given = sum(section.given for section in report.sections)
+    took, given = (sum(getattr(section, of) for section in report.sections) for of in ("seconds", "given"))
     rows = [
         ("machine", f"{report.machine}; load {report.load}"),
         ("device", report.device),
         ("date, commit", f"{report.date}, {report.commit}"),
         ("peers", peers or "none"),
-        ("seconds", f"{sum(section.seconds for section in report.sections):,.0f} of {given:,.0f}"),
+        ("time", f"{took / 60:.0f} minutes; the sections are given {given / 60:.0f}"),
     ]
     count = lambda verdict: sum(c.verdict() == verdict for _, c in report.contests())
     ahead = count("ahead") + count("unreached")

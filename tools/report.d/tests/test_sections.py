@@ -85,6 +85,15 @@ class Surfaces(unittest.TestCase):
         other = self.contest(0.25, never, stopped={("F3D", 1e-6): f"{surfaces.PROCESS}not done in 30 s"})
         self.assertEqual(other.verdict(), "unreached")
 
+    def test_a_mesh_that_was_not_tried_is_no_win(self):
+        never = self.ERRORS | {"mesh 0.0001": 0.8}
+        with mock.patch.object(surfaces.Case, "finest", False):
+            found = self.contest(0.25, never)
+            self.assertEqual(found.verdict(), "not measured")
+            self.assertIn("finer meshes are drawn at 1920x1080 only", found.why)
+            limit = self.contest(0.25, never, stopped={("meshed", 1e-6): "the mesh before took 9 s"})
+            self.assertEqual(limit.verdict(), "unreached")
+
     def test_a_peer_without_a_verdict_is_not_behind(self):
         self.assertEqual(self.contest(0.5, {"ours 0.5": 0.2}).verdict(), "not measured")
 
@@ -103,6 +112,7 @@ class Surfaces(unittest.TestCase):
         case = object.__new__(surfaces.Case)
         case.begun, case.model, case.camera, case.context = set(), None, None, mock.MagicMock()
         case.tolerances, case.bench = [0.1, 0.5, 1.0, 4.0], lambda tolerance: {surfaces.WALL: 9.0}
+        case.benches = {}
         self.assertEqual(list(case.ours()), [0.1, 0.5, 1.0, 4.0])
         self.assertEqual(list(case.ours()), [0.5, 1.0])
 
@@ -223,6 +233,23 @@ class Zoom(unittest.TestCase):
 
 class Kernel(unittest.TestCase):
     """The judges' searches, if their packages are installed."""
+
+    def test_primitives_that_a_ray_does_not_meet_change_nothing(self):
+        try:
+            from report.peer import csg
+        except ImportError as missing:
+            self.skipTest(str(missing))
+        from report import scenes
+
+        for name in ("widget", "complex", "gear"):
+            scene = scenes.of_name(name)
+            camera = {"eye": [60, -90, 70], "target": [0, 0, 0], "up": [0, 0, 1], "fovy": 40.0, "size": [24, 24]}
+            quick, whole = (csg.Rays(scene.data(), camera) for _ in range(2))
+            whole.radii = whole.radii + 1e9
+            pixels = [(x, y) for y in range(0, 24, 2) for x in range(0, 24, 2)]
+            seen = [quick.centre(pixel) for pixel in pixels]
+            self.assertEqual(seen, [whole.centre(pixel) for pixel in pixels], name)
+            self.assertEqual({0, -1}, {face for (face,) in seen}, name)
 
     def test_an_edge_that_is_off_by_a_distance(self):
         try:
