@@ -11,11 +11,11 @@ from .turns import Late, Overdue
 
 # seconds of a quick run, and of a whole one
 SECONDS = {
-    "surfaces": (205, 1900),
+    "surfaces": (205, 1870),
     "zoom": (80, 270),
-    "trims": (75, 440),
+    "trims": (75, 430),
     "solids": (80, 430),
-    "scale": (20, 260),
+    "scale": (20, 300),
     "stability": (37, 170),
     "least": (4, 5),
     "first_use": (4, 780),

@@ -1,8 +1,10 @@
 """Sections with made-up measurements: no process runs."""
 
 import unittest
+from pathlib import Path
 from unittest import mock
 
+from report import moving
 from report.rows import Contest, Missing, Section
 from report.sections import packages, stability, surfaces, trims, zoom
 
@@ -204,6 +206,33 @@ class Packages(unittest.TestCase):
         times = {"first_s": 0.5, "next_s": 4.0, "peak_mib": 300.0}
         row = packages.row_of({"file": "part.step", "package": "selvedge", "judge": judge} | times)
         self.assertEqual(row[2:7], [0.5, 4.0, 300.0, "3 wrong", "2,000 judged"])
+
+
+class Moving(unittest.TestCase):
+    """A benchmark that prints what benches/moving.rs prints."""
+
+    def promise(self, move_ms, bench="moving"):
+        context, section = mock.Mock(), Section(5, "", "")
+        context.model = lambda name: Path(name)
+        head = "| file | instances | change, ms: median | worst | record, ms: median | worst |\n|---|---:|---:|\n"
+        context.peers.run = lambda command, limit_s: (
+            f"{head}| {command[1].name} | 9 | {move_ms} | 0.210 | 1.500 | 2.250 |\n",
+            "",
+            1.0,
+        )
+        with mock.patch.dict("os.environ", {"REPORT_MOVING": bench}):
+            moving.measure(context, section)
+        return section.promises[0], section.tables[0].rows[0]
+
+    def test_a_step_has_a_limit(self):
+        promise, row = self.promise(0.125)
+        self.assertEqual(row, ["assembly.step", 9, 0.125, 0.21, 1.5, 2.25])
+        self.assertEqual((promise.cases, promise.broken()), (1, False))
+        self.assertTrue(self.promise(1.0)[0].broken())
+
+    def test_a_benchmark_that_is_not_built_has_the_reason(self):
+        promise, row = self.promise(0.125, bench="")
+        self.assertEqual((row[1], promise.why), (Missing(moving.NOT_BUILT), moving.NOT_BUILT))
 
 
 class Stability(unittest.TestCase):

@@ -1,6 +1,6 @@
 """5. Scale: patches, instances and the leaves of solids, each over decades: time, bytes, exponents of growth."""
 
-from .. import noise, scenes
+from .. import moving, noise, scenes
 from ..rows import Line, Missing, Plot, Table
 from ..turns import Unmeasurable
 
@@ -50,6 +50,7 @@ def measure(context, section):
             ),
         ),
     ]
+    moving.measure(context, section)
     exponents = []
     for name, title, measured in series:
         context.say(name)

@@ -14,8 +14,8 @@ FILES = ["nist_pmi_2.stp", "framework_printable_case_full.stp", "impeller.igs", 
 SMALL, MIDDLE, LARGE = (960, 540), (1920, 1080), (3840, 2160)
 # shares of the time: what a case of this size costs beside one of the middle size, and a large file beside a small one
 WEIGHTS, LARGE_FILE = {SMALL: 0.5, MIDDLE: 1.0, LARGE: 1.1}, 1.5
-# tolerances, pixels, and deflections, shares of the diagonal: all at the middle size, and some at the others. Within the
-# angle of the mesher 1e-2 and 1e-3 give nearly the same mesh
+# tolerances, pixels, and deflections, shares of the diagonal: all at the middle size, and some at the others. The
+# mesher's angle makes the meshes of 1e-2 and 1e-3 nearly the same
 TOLERANCES_QUICK, TOLERANCES, TOLERANCES_OTHER = [0.5, 1.0], [0.1, 0.25, 0.5, 1.0, 4.0], [0.25, 0.5]
 DEFLECTIONS_QUICK, DEFLECTIONS = [1e-2, 1e-3, 1e-4, 1e-5], [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
 DEFLECTIONS_OTHER = {SMALL: [1e-3, 1e-4], LARGE: [1e-3, 1e-4, 1e-5]}
