@@ -89,6 +89,23 @@ class Written(unittest.TestCase):
         lost = contest(LOST.ours, LOST.theirs, cause="a process takes 0.4 s")
         self.assertRegex(markdown.losses(report(lost)), r"\*\*lost\*\*: .*Its cause: a process takes 0.4 s")
 
+    def test_a_loss_at_several_errors_is_one_line(self):
+        at = lambda error, theirs: Contest(f"frame, a.step, within {error} px", "Viewer", "ms", [9.0] * 3, [theirs] * 3)
+        text = markdown.losses(report(at(0.25, 3.0), at(0.5, 1.0), at(1, 4.5)))
+        self.assertEqual(text.count("* 1. frame"), 1)
+        self.assertIn("within 0.5 px: 9 times Viewer's 0.11 [0.11, 0.11]; also within 0.25 px, 1 px", text)
+
+    def test_losses_and_claims_are_counted(self):
+        even = contest(NOISY.ours, NOISY.theirs, "open")
+        absent = contest([], [], why="not installed")
+        text = markdown.text(report(WON, LOST, even, absent), {})
+        lose, claim = text.split("## What we claim")
+        row = "| 1. first picture | 1 | {} | 1 | 1 | 0.33 [0.32, 0.39], Viewer |"
+        self.assertIn(row.format(1), lose)
+        self.assertIn(row.format(0), claim)
+        nothing = markdown.text(report(contest(WON.ours, WON.theirs, "open")), {})
+        self.assertIn("## What we claim\n\nNothing in this run.", nothing)
+
     def test_each_section_has_its_time(self):
         whole = report(WON)
         whole.sections[0].seconds, whole.sections[0].given = 61.0, 80.0
