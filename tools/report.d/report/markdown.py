@@ -87,7 +87,7 @@ def losses(report):
     if unexplained:
         parts += ["No measurement of this run explains these:", "\n".join(unexplained)]
     for cause, rows in grouped.items():
-        parts += [f"{cause[0].upper()}{cause[1:]}:", "\n".join(rows)]
+        parts += [f"Cause: {cause}.", "\n".join(rows)]
     return "\n\n".join(part for part in parts if part) or "Nowhere in this run."
 
 
@@ -118,8 +118,9 @@ def claims(report):
 
 
 def loss(section, contest):
-    times = 1 / contest.ratio().median
-    return f"{section.number}. {contest.what}: {times:.2g} times {contest.peer}'s {interval(contest)}"
+    ours, theirs = (number(float(median(figures))) for figures in (contest.ours, contest.theirs))
+    beside = f"{ours} {contest.unit} beside {theirs} {contest.unit} of {contest.peer}"
+    return f"{section.number}. {contest.what}: {beside}, ratio {interval(contest)}"
 
 
 def absences(report):

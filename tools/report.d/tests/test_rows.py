@@ -81,7 +81,7 @@ class Written(unittest.TestCase):
     def test_a_loss_stands_under_the_measurement_that_explains_it(self):
         caused = contest(LOST.ours, LOST.theirs, "open", cause="a process takes 0.4 s")
         text = markdown.losses(report(contest(LOST.ours, LOST.theirs, "open"), caused))
-        unexplained, explained = text.split("A process takes 0.4 s:")
+        unexplained, explained = text.split("Cause: a process takes 0.4 s.")
         self.assertIn("No measurement of this run explains these:\n\n* 1. first picture", unexplained)
         self.assertIn("* 1. first picture", explained)
 
@@ -93,7 +93,7 @@ class Written(unittest.TestCase):
         at = lambda error, theirs: Contest(f"frame, a.step, within {error} px", "Viewer", "ms", [9.0] * 3, [theirs] * 3)
         text = markdown.losses(report(at(0.25, 3.0), at(0.5, 1.0), at(1, 4.5)))
         self.assertEqual(text.count("* 1. frame"), 1)
-        self.assertIn("within 0.5 px: 9 times Viewer's 0.11 [0.11, 0.11]; also within 0.25 px, 1 px", text)
+        self.assertIn("within 0.5 px: 9.00 ms beside 1.00 ms of Viewer, ratio 0.11 [0.11, 0.11]; also within 0.25 px, 1 px", text)
 
     def test_losses_and_claims_are_counted(self):
         even = contest(NOISY.ours, NOISY.theirs, "open")

@@ -298,7 +298,7 @@ class Case:
                 if of == who and deflection not in self.settings(found):
                     rows.append([name, f"{deflection:g} of the diagonal", *[Missing(why)] * 3, *[""] * 4])
         text = (
-            f"{head['boundary']:,} pixels at changes of face are judged. {head['alone']} are left out: there our "
+            f"Judged are {head['boundary']:,} pixels at changes of face. Left out are {head['alone']:,}, at which our "
             "finest picture and the finest mesh both differ from the rays."
         )
         columns = [
