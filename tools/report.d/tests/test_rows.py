@@ -3,7 +3,7 @@
 import json
 import unittest
 
-from report import markdown
+from report import markdown, plots
 from report.rows import Contest, Missing, Promise, Report, Section, Table
 
 
@@ -69,6 +69,12 @@ class Verdicts(unittest.TestCase):
         self.assertRaises(ValueError, contest, [], [], unreached=True)
         self.assertEqual(contest([], [], why="not installed").verdict(), "not measured")
         self.assertEqual(contest([], [], unreached=True, why="not within 5 s").verdict(), "unreached")
+
+
+class Plots(unittest.TestCase):
+    def test_ticks_are_plain_numbers(self):
+        told = [plots.plain(value) for value in (1e-6, 0.05, 1.5, 20, 10_000, 1e6)]
+        self.assertEqual(told, ["1e-6", "0.05", "1.5", "20", "10,000", "1e6"])
 
 
 class Written(unittest.TestCase):
