@@ -108,7 +108,8 @@ def tally(contests):
         measured = [contest for contest in of if contest.ratio()]
         least = min(measured, key=lambda contest: contest.ratio().median, default=None)
         body.append([f"{number}. {quantity}", *counts, f"{interval(least)}, {least.peer}" if least else ""])
-    return table(["section and quantity", "ahead", "even", "behind", "not measured", "least ratio"], body) if body else ""
+    head = ["section and quantity", "ahead", "even", "behind", "not measured", "least ratio"]
+    return table(head, body) if body else ""
 
 
 def claims(report):
