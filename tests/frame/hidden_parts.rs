@@ -226,6 +226,26 @@ fn curved_parts_behind_a_mesh_are_hidden() {
     assert!(hidden[1] > 150 && hidden[4] + 50 < hidden[1], "{hidden:?} parts are hidden");
 }
 
+/// Four sheets above one another, and one apart from them: two groups of faces.
+fn sheets() -> Model {
+    let heights = [-1.0, -0.5, 0.0, 0.5, 2.5];
+    let faces = (1..).zip(heights).map(|(id, z)| shapes::sheet(id, DVec3::new(-1.5, -1.5, z), 3.0, 8));
+    shapes::one("sheets", false, faces.collect())
+}
+
+/// Of parts with several groups of faces, each group is hidden by itself, and appears by itself.
+#[test]
+fn groups_of_faces_are_hidden() {
+    let block = place_of_block() * DAffine3::from_scale(DVec3::splat(BLOCK_HALF / shapes::CUBE_HALF));
+    let model = hall_of([sheets(), shapes::cube()], (shapes::cube(), block));
+    let steps = [0.0, 1.0, 90.0, 93.0].map(|x| before_the_block(DVec3::X * x));
+    let views: Vec<Camera> = steps.into_iter().chain([behind_the_hall(), steps[0]]).collect();
+    let pictures = same_as_alone(&model, editable(), &views);
+    let hidden: Vec<u64> = pictures.iter().map(|[_, second]| second.stats.hidden_parts).collect();
+    // more than there are placed parts
+    assert!(hidden[1] > 250 && hidden[4] + 50 < hidden[1], "{hidden:?} groups are hidden");
+}
+
 /// A large plate stands before the hall. Its hole moves, and shows other parts in the frame of the edit.
 #[test]
 fn an_edit_shows_the_parts_that_lay_behind() {
