@@ -175,7 +175,7 @@ fn what_moves_is_where_it_is() {
 }
 
 /// The time of a picture of the colour alone.
-fn time_of(renderer: &mut HeadlessRenderer, camera: &Camera) -> Duration {
+pub fn time_of(renderer: &mut HeadlessRenderer, camera: &Camera) -> Duration {
     let start = Instant::now();
     renderer.render(camera, &FrameSettings::default(), Outputs::default()).unwrap();
     start.elapsed()
