@@ -17,7 +17,7 @@
 //! part is one group.
 //!
 //! Cost: a product of matrices for each placed part, and some sums for it and for each group of a part that is partly
-//! in sight, in double precision; on all cores if there are many.
+//! in sight, in double precision; on all cores if there are many parts.
 
 use super::data::SceneData;
 use super::view::view;
@@ -345,7 +345,7 @@ impl SceneData {
         let all = 0..groups.len();
         match view.sight(&placed.patches) {
             Sight::Out => {}
-            Sight::Partly if all.len() >= CHUNK => seen.par_extend(all.into_par_iter().filter(is_seen).map(in_sight)),
+            // the box of a part of one group is that of the group
             Sight::Partly if all.len() > 1 => seen.extend(all.filter(is_seen).map(in_sight)),
             Sight::Partly | Sight::Whole => seen.extend(all.map(in_sight)),
         }
