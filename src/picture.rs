@@ -405,11 +405,12 @@ pub struct FrameStats {
     /// Patches that were not drawn because other surfaces hide them; 0 in the first frames of a scene, before any
     /// occlusion test. Patches of [`hidden_parts`](Self::hidden_parts) are not among them.
     pub hidden_patches: u64,
-    /// Placed parts in the picture that other surfaces hide as a whole, so that no pass looked at their patches. 0 in
-    /// the first frames of a scene, and in scenes of few placed parts, with few patches a part, with several samples a
-    /// pixel, or with spline operands.
+    /// Placed parts in the picture that other surfaces hide as a whole, so that no pass looked at their patches. Of a
+    /// part of many patches, each group of faces counts as a part. 0 in the first frames of a scene, and in scenes of few
+    /// placed parts, with few patches a part, with several samples a pixel, or with spline operands.
     pub hidden_parts: u64,
-    /// Patches that passes looked at: those of placed parts in the picture, without `hidden_parts`.
+    /// Patches that passes looked at: those of placed parts, and of groups of faces, in the picture, without
+    /// `hidden_parts`.
     pub listed_patches: u64,
     /// Crossings of rays with operands of Boolean solids that are meshes or spline parts.
     pub fragments: u64,

@@ -1,4 +1,5 @@
-// The placed parts in sight, and the lists of parts whose patches a frame looks at. Structs: src/abi/parts.rs; twin:
+// The placed parts in sight, and the lists of those whose patches a frame looks at. A part of many patches is several
+// of them: groups of its faces. Structs: src/abi/parts.rs; twin:
 // src/twin/parts.rs.
 //
 //   hidden before   hidden now     LIST_FIRST is made before this frame's test, from the last result. The other two are
@@ -9,9 +10,9 @@
 #ifndef PARTS_GLSL
 #define PARTS_GLSL
 
-// A placed part in sight.
+// A placed part in sight, or a group of its faces.
 struct PartInSight {
-    uint instance;
+    uint group; // its number among the groups of all placed parts
     uint first_patch_instance;
     uint patch_instances; // their number, above 0
     float depth;          // reversed depth that nothing drawn of it exceeds; 1 if it is never hidden

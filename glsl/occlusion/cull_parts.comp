@@ -23,5 +23,5 @@ void main() {
     if (n >= push.parts_in_sight) return;
     PartInSight part = parts[n];
     bool is_hidden = all_pixels_nearer(pixel_of(part.low), pixel_of(part.high), part.depth);
-    hidden_now[part.instance] = is_hidden ? 1u : 0u;
+    hidden_now[part.group] = is_hidden ? 1u : 0u;
 }

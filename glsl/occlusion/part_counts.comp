@@ -17,9 +17,9 @@ layout(scalar, binding = 3) writeonly buffer PartCounts { uint part_counts[]; };
 layout(scalar, binding = 4) buffer CountersBuffer { Counters counters; };
 
 // For LIST_FIRST `hidden_before` is not read: this pass writes it then.
-bool is_listed(uint instance) {
-    bool now = hidden_now[instance] != 0u;
-    bool before = push.list == LIST_FIRST || hidden_before[instance] != 0u;
+bool is_listed(uint group) {
+    bool now = hidden_now[group] != 0u;
+    bool before = push.list == LIST_FIRST || hidden_before[group] != 0u;
     return push.list == LIST_ALL ? !(before && now) : before && !now;
 }
 
@@ -27,13 +27,13 @@ void main() {
     uint n = thread_number();
     if (n >= push.parts) return;
     PartInSight part = parts[n];
-    bool listed = is_listed(part.instance);
-    if (push.list == LIST_FIRST) hidden_before[part.instance] = hidden_now[part.instance];
+    bool listed = is_listed(part.group);
+    if (push.list == LIST_FIRST) hidden_before[part.group] = hidden_now[part.group];
     bool follows = false;
     if (n > 0u) {
         PartInSight last = parts[n - 1u];
         follows = last.first_patch_instance + last.patch_instances == part.first_patch_instance &&
-                  is_listed(last.instance);
+                  is_listed(last.group);
     }
     part_counts[n] = listed ? part.patch_instances : 0u;
     part_counts[push.parts + n] = listed && !follows ? 1u : 0u;

@@ -3,11 +3,11 @@
 pub use crate::abi::constants::parts::{LIST_ALL, LIST_APPEARING, LIST_FIRST};
 use bytemuck::{Pod, Zeroable};
 
-/// A placed part in sight.
+/// A placed part in sight, or a group of its faces.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
 pub struct PartInSight {
-    pub instance: u32,
+    pub group: u32,
     pub first_patch_instance: u32,
     pub patch_instances: u32,
     pub depth: f32,

@@ -12,7 +12,8 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Counts {
     pub patch_instances: u32,
-    pub placed_parts: u32,
+    /// Groups of faces of placed parts.
+    pub placed_groups: u32,
     pub cells: u32,
     pub bins: u32,
     /// v-strips with several bins.
@@ -23,7 +24,7 @@ pub(crate) struct Counts {
     pub views_all: bool,
     /// The scene has occlusion culling.
     pub hides: bool,
-    /// The same of placed parts as wholes.
+    /// The same of groups of faces of placed parts.
     pub hides_parts: bool,
     /// Patches or meshes are drawn as surfaces of their own.
     pub has_surfaces: bool,
@@ -71,7 +72,7 @@ impl Counts {
         let by_view = !matches!(data.trim_way(), None | Some(TakenWay::Exact)) || data.has_lines();
         Self {
             patch_instances: data.patch_instances.len() as u32,
-            placed_parts: count(data.instances.len()),
+            placed_groups: data.placed_groups(),
             cells: data.cell_instances.len() as u32,
             bins: data.bin_count,
             wide_strips: count(data.wide_strips.len()),
@@ -108,7 +109,7 @@ impl Counts {
     fn sizes(&mut self) -> [&mut u32; 9] {
         let Self {
             patch_instances,
-            placed_parts,
+            placed_groups,
             cells,
             bins,
             wide_strips,
@@ -118,7 +119,7 @@ impl Counts {
             mesh_instances,
             ..
         } = self;
-        [patch_instances, placed_parts, cells, bins, wide_strips, curves, face_instances, triangles, mesh_instances]
+        [patch_instances, placed_groups, cells, bins, wide_strips, curves, face_instances, triangles, mesh_instances]
     }
 
     /// With those of a model that joins the scene: parts, and nothing that the scene has none of.

@@ -27,14 +27,14 @@ struct Parts {
 fn parts(random: &mut Random, placed: u32) -> Parts {
     let mut first_patch_instance = 0;
     let mut in_sight = Vec::new();
-    for instance in 0..placed {
+    for group in 0..placed {
         let patch_instances = random.integer(1, 9);
         if random.integer(0, 9) > 0 {
             let first = SIZE.map(|size| random.integer(0, size - 1));
             let last: [u32; 2] = std::array::from_fn(|axis| random.integer(first[axis], SIZE[axis] - 1));
             let [low, high] = [first, last].map(|[x, y]| x | y << 16);
             let depth = random.range(0.0, 1.0) as f32;
-            in_sight.push(PartInSight { instance, first_patch_instance, patch_instances, depth, low, high });
+            in_sight.push(PartInSight { group, first_patch_instance, patch_instances, depth, low, high });
         }
         first_patch_instance += patch_instances;
     }
@@ -121,10 +121,10 @@ fn a_difference_of_lists_is_seen() {
     let gpu = Gpu::new();
     let parts = parts(&mut Random::new(5), 300);
     let mut other = parts.clone();
-    other.now[parts.in_sight[100].instance as usize] ^= 1;
+    other.now[parts.in_sight[100].group as usize] ^= 1;
     assert_eq!(compare(&gpu, LIST_FIRST, &other, &parts).unwrap_err().buffer, "counts");
     let mut other = parts.clone();
-    let begins = parts.in_sight.iter().position(|part| parts.now[part.instance as usize] == 0).unwrap();
+    let begins = parts.in_sight.iter().position(|part| parts.now[part.group as usize] == 0).unwrap();
     other.in_sight[begins].first_patch_instance += 1 << 20;
     assert!(["counts", "runs"].contains(&compare(&gpu, LIST_FIRST, &other, &parts).unwrap_err().buffer));
     gpu.finish();
@@ -166,10 +166,10 @@ fn compare_cull(gpu: &Gpu, parts: &Parts, given: &Farthest, expected: &Farthest)
     gpu.run(|cmd| pass.record(cmd, &bindings, parts.in_sight.len() as u32));
     let mut twin = parts.now.clone();
     for part in &parts.in_sight {
-        twin[part.instance as usize] = u32::from(twin::parts::cull_part(part, expected));
+        twin[part.group as usize] = u32::from(twin::parts::cull_part(part, expected));
     }
     same("hidden now", &gpu.read(&now, twin.len()), &twin)?;
-    Ok(parts.in_sight.iter().filter(|part| twin[part.instance as usize] != 0).count())
+    Ok(parts.in_sight.iter().filter(|part| twin[part.group as usize] != 0).count())
 }
 
 /// Depths of a picture that shows a wall with a hole.

@@ -156,8 +156,8 @@ impl Slot {
         Ok(())
     }
 
-    /// Writes the placed parts in sight, for occlusion culling of whole parts. A frame that reuses its view does not
-    /// read them, and only a frame that tests for occlusion reads where they may be drawn.
+    /// Writes the placed parts in sight, as groups of faces, for occlusion culling of whole groups. A frame that reuses its
+    /// view does not read them, and only a frame that tests for occlusion reads where they may be drawn.
     fn write_parts(
         &mut self,
         device: &Device,
@@ -173,7 +173,7 @@ impl Slot {
             return Ok(());
         }
         let tested = history.occlusion.tests().then_some(camera);
-        let parts = loaded.data.parts_in_sight(tested, &in_sight.parts);
+        let parts = loaded.data.parts_in_sight(tested, &in_sight.groups);
         let bytes = size_of_val(parts.as_slice()) as u64;
         if self.parts_in_sight.as_ref().is_none_or(|b| b.bytes() < bytes) {
             let made = upload_buffer(device, "parts in sight", bytes.next_power_of_two())?;

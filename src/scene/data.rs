@@ -6,7 +6,7 @@ use super::edges::EdgeData;
 use super::edit::EditScene;
 use super::exact::ExactData;
 use super::face::{Body, Cuts, FaceData, Trimming, pack_colour};
-use super::in_sight::{PlacedBox, boxes};
+use super::in_sight::PartBoxes;
 use super::instance::{LivePart, Shown, placed_part, stretch};
 use super::link::link;
 use super::mesh::Meshes;
@@ -95,8 +95,8 @@ pub(crate) struct SceneData {
     pub ambient: Option<f64>,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
-    /// The box of each placement's patches.
-    pub(super) boxes: Vec<PlacedBox>,
+    /// The boxes of each placement's patches.
+    pub(super) boxes: PartBoxes,
     /// Whether each placement is hidden; empty if none is.
     pub(super) hidden: Vec<bool>,
     /// Each instance of the model that is drawn as faces alone; empty in a cut of a model.
@@ -338,7 +338,7 @@ impl SceneData {
         }
         data.sources.resize(data.instances.len(), [0; 2]);
         data.trimmed = Trimmed::by_table(&data);
-        data.boxes = boxes(&data);
+        data.boxes = PartBoxes::of(&data);
         Ok(data)
     }
 

@@ -226,7 +226,7 @@ impl SceneData {
         let numbers = first.instance..first.instance + new.live.len();
         self.live.resize(self.live.len().max(numbers.end), None);
         self.live[numbers].iter_mut().zip(behind).for_each(|(live, new)| *live = Some(new));
-        self.boxes.extend(new.boxes.iter().map(|of_part| of_part.behind(at.patch_instances)));
+        self.boxes.join(std::mem::take(&mut new.boxes), (at.patches, at.patch_instances));
         if let Some(trimmed) = &mut self.trimmed {
             trimmed.join(new.trimmed.take(), new.placements.len());
         }

@@ -26,7 +26,7 @@ pub fn part_counts(
 ) -> Vec<u32> {
     let listed: Vec<bool> = parts
         .iter()
-        .map(|part| is_listed(list, before[part.instance as usize] != 0, now[part.instance as usize] != 0))
+        .map(|part| is_listed(list, before[part.group as usize] != 0, now[part.group as usize] != 0))
         .collect();
     let begins = |n: usize| {
         let follows = n > 0 && {
@@ -36,7 +36,7 @@ pub fn part_counts(
         u32::from(listed[n] && !follows)
     };
     if list == LIST_FIRST {
-        parts.iter().for_each(|part| before[part.instance as usize] = now[part.instance as usize]);
+        parts.iter().for_each(|part| before[part.group as usize] = now[part.group as usize]);
         counters.hidden_parts += listed.iter().filter(|listed| !**listed).count() as u32;
     }
     if list == LIST_APPEARING {

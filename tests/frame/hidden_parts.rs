@@ -1,13 +1,15 @@
 //! Placed parts that other surfaces hide as wholes are left out before their patches, which changes no picture: after
 //! any earlier view, every image is the same, bit for bit, as in a first frame, which draws everything.
 
+use crate::in_sight::time_of;
 use crate::shapes;
 use crate::support::{assert_identical, assert_silent, render, watched_with};
-use glam::{DAffine3, DVec2, DVec3};
+use glam::{DAffine3, DQuat, DVec2, DVec3};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Instance, LoopAt, Model, Part, Projection};
 use selvedge::picture::{EdgeSettings, Picture, SceneSettings, Smooth, TrimWay};
 use std::f64::consts::FRAC_PI_2;
+use std::time::Duration;
 
 const SIZE: (u32, u32) = (200, 150);
 /// Parts along each side of the hall.
@@ -226,6 +228,26 @@ fn curved_parts_behind_a_mesh_are_hidden() {
     assert!(hidden[1] > 150 && hidden[4] + 50 < hidden[1], "{hidden:?} parts are hidden");
 }
 
+/// Four sheets above one another, and one apart from them: two groups of faces.
+fn sheets() -> Model {
+    let heights = [-1.0, -0.5, 0.0, 0.5, 2.5];
+    let faces = (1..).zip(heights).map(|(id, z)| shapes::sheet(id, DVec3::new(-1.5, -1.5, z), 3.0, 8));
+    shapes::one("sheets", false, faces.collect())
+}
+
+/// Of parts with several groups of faces, each group is hidden by itself, and appears by itself.
+#[test]
+fn groups_of_faces_are_hidden() {
+    let block = place_of_block() * DAffine3::from_scale(DVec3::splat(BLOCK_HALF / shapes::CUBE_HALF));
+    let model = hall_of([sheets(), shapes::cube()], (shapes::cube(), block));
+    let steps = [0.0, 1.0, 90.0, 93.0].map(|x| before_the_block(DVec3::X * x));
+    let views: Vec<Camera> = steps.into_iter().chain([behind_the_hall(), steps[0]]).collect();
+    let pictures = same_as_alone(&model, editable(), &views);
+    let hidden: Vec<u64> = pictures.iter().map(|[_, second]| second.stats.hidden_parts).collect();
+    // more than there are placed parts
+    assert!(hidden[1] > 250 && hidden[4] + 50 < hidden[1], "{hidden:?} groups are hidden");
+}
+
 /// A large plate stands before the hall. Its hole moves, and shows other parts in the frame of the edit.
 #[test]
 fn an_edit_shows_the_parts_that_lay_behind() {
@@ -280,4 +302,44 @@ fn after_a_close_view_parts_are_hidden_again() {
     }
     assert_silent(renderer);
     assert_silent(other);
+}
+
+/// A wall before a block of cubes, 40 along each side. Frames of a moving view from before the wall, where nearly all
+/// cubes are hidden, take less than half the time of those from behind the block.
+#[test]
+#[ignore = "minutes, and times"]
+fn a_wall_before_sixty_thousand_parts() {
+    const SIDE: i32 = 40;
+    let half = 0.5 * APART * f64::from(SIDE) + 10.0;
+    let middle = DVec3::splat(0.5 * APART * f64::from(SIDE - 1));
+    let wall = DAffine3::from_scale_rotation_translation(
+        DVec3::new(half, 1.0, half) / shapes::CUBE_HALF,
+        DQuat::IDENTITY,
+        middle - DVec3::Y * (half + 5.0),
+    );
+    let mut model = shapes::cube();
+    model.instances = vec![shapes::placed(wall, None)];
+    for nth in 0..SIDE * SIDE * SIDE {
+        let place = APART * DVec3::new((nth % SIDE).into(), (nth / SIDE % SIDE).into(), (nth / SIDE / SIDE).into());
+        model.instances.push(shapes::placed(DAffine3::from_translation(place), None));
+    }
+    let at = |eye: DVec3| Camera { target: middle, depth_range: (1.0, 2000.0), size: (800, 600), ..from(middle + eye) };
+    let mut renderer = watched_with(&model, SceneSettings::default());
+    let mut least = [Duration::MAX; 2];
+    let mut hidden = [0; 2];
+    for (nth, along) in [-4.0 * half, 4.0 * half].into_iter().enumerate() {
+        // the first frames of a view test for occlusion; the least time of each is that without other programs
+        for k in 0..10 {
+            let camera = at(DVec3::new(0.1 * f64::from(k), along, 0.0));
+            let time = time_of(&mut renderer, &camera);
+            if k > 2 {
+                least[nth] = least[nth].min(time);
+            }
+        }
+        hidden[nth] = render(&mut renderer, &at(DVec3::new(1.0, along, 0.0))).stats.hidden_parts;
+    }
+    println!("behind the wall {:?}, hidden {}; in sight {:?}, hidden {}", least[0], hidden[0], least[1], hidden[1]);
+    assert!(hidden[0] > 60_000, "{hidden:?}");
+    assert!(2 * least[0] < least[1], "{least:?}");
+    assert_silent(renderer);
 }

@@ -1,10 +1,11 @@
-//! Assemblies most of whose parts are out of sight: the picture equals that of the visible parts alone, bit for bit.
+//! Assemblies most of whose parts are out of sight, and parts most of whose faces are: the picture equals that of the
+//! visible parts or faces alone, bit for bit.
 
 use crate::shapes;
 use crate::support::{assert_identical, assert_silent, watched_with};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 use selvedge::headless::HeadlessRenderer;
-use selvedge::model::{Camera, Model};
+use selvedge::model::{Camera, Face, Model, Projection};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, TrimWay};
 use std::time::{Duration, Instant};
 
@@ -109,6 +110,50 @@ fn with_smooth_borders() {
     check(SceneSettings { smooth: Smooth::Borders, ..exact() });
 }
 
+/// One part of those of 64 sheets, eight in a row, whose numbers `has` names. Every other one has a loop.
+fn sheets(has: impl Fn(i32) -> bool) -> Model {
+    let face = |n: i32| {
+        let corner = 12.0 * DVec3::new((n % 8).into(), (n / 8).into(), 0.0);
+        let sheet = shapes::sheet(n as u32 + 1, corner, 10.0, 8);
+        let middle = shapes::rectangle(DVec2::splat(1.0), DVec2::splat(7.0));
+        let loops = if (n % 8 + n / 8) % 2 == 0 { vec![] } else { vec![middle] };
+        Face { loops, ..sheet }
+    };
+    shapes::one("sheets", false, (0..64).filter(|n| has(*n)).map(face).collect())
+}
+
+/// A view of two neighbours among the sheets of one part, in pictures one after another.
+#[test]
+fn faces_out_of_sight_are_left_out() {
+    // the two, and two at corners of the part, which has the same centre so
+    let (model, near) = (sheets(|_| true), sheets(|n| [0, 9, 10, 63].contains(&n)));
+    let target = DVec3::new(23.0, 17.0, 0.0);
+    let camera = Camera {
+        eye: target + DVec3::new(0.0, -7.0, 26.0),
+        target,
+        up: DVec3::Y,
+        projection: Projection::Perspective { fov_y: 0.3 },
+        depth_range: (1.0, 100.0),
+        size: SIZE,
+    };
+    let aside = Camera { eye: camera.eye + 0.5 * DVec3::X, target: target + 0.5 * DVec3::X, ..camera };
+    let samples = SceneSettings { samples: Samples::Four, ..exact() };
+    let smooth = SceneSettings { smooth: Smooth::Borders, ..exact() };
+    for (way, settings) in [("one sample", exact()), ("four samples", samples), ("smooth borders", smooth)] {
+        let (mut renderer, mut alone) = (watched_with(&model, settings), watched_with(&near, settings));
+        for (nth, camera) in [camera, camera, aside, aside, camera].iter().enumerate() {
+            let (all, expected) = (draw(&mut renderer, camera), draw(&mut alone, camera));
+            assert!([10, 11].iter().all(|face| all.face.contains(face)), "{way}, {nth}: a sheet is not seen");
+            assert_identical(&all, &expected, &format!("{way}, {nth}"));
+            let listed = |picture: &Picture| (picture.stats.listed_patches, picture.stats.patches);
+            let (of_all, of_near) = (listed(&all), listed(&expected));
+            assert!(0 < of_all.0 && 8 * of_all.0 <= of_all.1, "{way}, {nth}: {of_all:?} patches");
+            assert_eq!(of_near.0, of_near.1, "{way}, {nth}: four faces are one group");
+        }
+        [renderer, alone].into_iter().for_each(assert_silent);
+    }
+}
+
 /// An instance is moved out of sight and back, then hidden and shown.
 #[test]
 fn what_moves_is_where_it_is() {
@@ -130,7 +175,7 @@ fn what_moves_is_where_it_is() {
 }
 
 /// The time of a picture of the colour alone.
-fn time_of(renderer: &mut HeadlessRenderer, camera: &Camera) -> Duration {
+pub fn time_of(renderer: &mut HeadlessRenderer, camera: &Camera) -> Duration {
     let start = Instant::now();
     renderer.render(camera, &FrameSettings::default(), Outputs::default()).unwrap();
     start.elapsed()

@@ -164,6 +164,19 @@ fn height_field((n, m): (usize, usize), height: fn(usize, usize) -> f64) -> Surf
     Surface::new((n, m), knots(n), knots(m), net.collect()).expect("a polynomial patch")
 }
 
+/// A face without loops: a bicubic sheet of `n` by `n` patches with hills, over a square from `corner` on.
+pub fn sheet(id: u32, corner: DVec3, side: f64, n: usize) -> Face {
+    let knots = || [vec![0.0; 4], (1..n).map(|k| k as f64).collect(), vec![n as f64; 4]].concat();
+    let at = |k: usize| side * k as f64 / (n + 2) as f64;
+    let points = (0..(n + 3) * (n + 3)).map(|k| {
+        let (i, j) = (k % (n + 3), k / (n + 3));
+        let height = 0.05 * ((7 * i + 3 * j) % 5) as f64;
+        (corner + DVec3::new(at(i), at(j), height)).extend(1.0)
+    });
+    let surface = Surface::new((3, 3), knots(), knots(), points.collect()).expect("a sheet");
+    face(id, SurfaceKind::BSpline, surface)
+}
+
 /// The plate twice: lying, and standing above it in another colour.
 pub fn pair() -> Model {
     let upright = DAffine3::from_mat3_translation(DMat3::from_rotation_x(FRAC_PI_2), DVec3::new(0.0, 0.0, 3.5));

@@ -114,6 +114,8 @@ fn measure(args: &BenchArgs, model: &Path, outputs: &[Target]) -> Result<(Report
     let camera = |index| match args.motion {
         Motion::Path => path::camera(bounds, size, index, args.frames),
         Motion::Turn => path::turned(bounds, size, index),
+        Motion::Corner => path::around_a_corner(bounds, size, index),
+        Motion::Within => path::from_within(bounds, size, index),
         Motion::Still => path::turned(bounds, size, 0),
     };
     let mut renderer =

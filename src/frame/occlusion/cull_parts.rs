@@ -18,7 +18,7 @@ pub(crate) struct Bindings<'a> {
     pub parts_in_sight: &'a Buffer,
     /// Farthest depths of squares, then of tiles, then of blocks.
     pub farthest: &'a Buffer,
-    /// Whether each placed part is hidden; those out of sight keep their result.
+    /// Whether each group of faces of the placed parts is hidden; those out of sight keep their result.
     pub hidden_now: &'a Buffer,
 }
 

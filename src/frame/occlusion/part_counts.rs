@@ -23,7 +23,7 @@ pub(crate) struct PartCounts {
 pub(crate) struct Bindings<'a> {
     /// [`PartInSight`](crate::abi::PartInSight)s.
     pub parts_in_sight: &'a Buffer,
-    /// Whether each placed part was hidden in the previous frame that had it in sight.
+    /// Whether each group of faces of the placed parts was hidden in the previous frame that had it in sight.
     pub hidden_before: &'a Buffer,
     /// The same now: the last result of pass `cull_parts`.
     pub hidden_now: &'a Buffer,

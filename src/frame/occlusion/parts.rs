@@ -1,4 +1,5 @@
-//! Placed parts that other surfaces hide as a whole: no pass looks at their patches.
+//! Placed parts that other surfaces hide as a whole: no pass looks at their patches. A part of many patches is several
+//! groups of faces (`scene/in_sight.rs`), each of which counts as a part here.
 //!
 //! ```text
 //!   parts in sight ─▶ part_counts ──(scan)──▶ part_runs: runs of patch instances, dispatches      a list of parts
@@ -59,10 +60,11 @@ impl Passes {
 /// Their buffers.
 pub(crate) struct Parts {
     passes: Arc<Passes>,
-    /// One word a placed part: whether it was hidden in the previous frame that had it in sight, and whether it is now.
+    /// One word a group of faces of a placed part: whether it was hidden in the previous frame that had it in sight, and
+    /// whether it is now.
     hidden_before: Buffer,
     hidden_now: Buffer,
-    /// Two words a part in sight, and their prefix sums.
+    /// Two words a group in sight, and their prefix sums.
     counts: Buffer,
     starts: Buffer,
     runs: Buffer,
@@ -71,7 +73,7 @@ pub(crate) struct Parts {
 
 impl Parts {
     pub(super) fn new(room: &Room<'_>, passes: &Arc<Passes>) -> Result<Self, GpuError> {
-        let n = room.counts.placed_parts;
+        let n = room.counts.placed_groups;
         Ok(Self {
             passes: Arc::clone(passes),
             hidden_before: room.words("parts hidden before", n)?,

@@ -1,4 +1,4 @@
-//! Divides each patch of the placed parts in sight, without those that are hidden as a whole, and makes the sub-patches
+//! Divides each patch of the faces in sight, without those of parts that are hidden as a whole, and makes the sub-patches
 //! and draws.
 //!
 //! ```text

@@ -1,4 +1,4 @@
-//! Where a placed part may be drawn: a rectangle of pixels and a depth, for occlusion culling of whole parts.
+//! Where a group of faces of a placed part may be drawn: a rectangle of pixels and a depth, for occlusion culling.
 //!
 //! ```text
 //!        eye                       a trimmed patch has skirts: vertices on the surface continued beyond its borders,
@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Every vertex of a triangle lies on the surface, on such a continuation, or on the side of a neighbour of the same
-//! part to which its own side is linked (`link.glsl`). So every triangle lies in the box, its pixels within those of
+//! group to which its own side is linked (`link.glsl`). So every triangle lies in the box, its pixels within those of
 //! the corners, and its depths behind the nearest.
 //!
 //! **Rounding.** The continued surface is evaluated in single precision, where the terms of a sum are larger than the
@@ -22,7 +22,7 @@
 //! Source of the continuation: G. Farin, *Curves and Surfaces for CAGD*, 2002, section 5.4 (extrapolation by
 //! subdivision).
 
-use super::{CHUNK, Extent, PlacedBox, PlacedFaces, SINGLE_ROUNDING, SceneData, placed_faces};
+use super::{CHUNK, Extent, FaceGroup, GroupInSight, SINGLE_ROUNDING, SceneData, bounds_of};
 use crate::abi::constants::behind::DEPTH_ROUNDING;
 use crate::abi::constants::push::MAX_PUSH;
 use crate::abi::{self, BORDER_U0, BORDER_U1, BORDER_V0, BORDER_V1, PartInSight, Side};
@@ -30,7 +30,6 @@ use crate::model::{Bounds, Camera};
 use crate::spline::Patch;
 use glam::{DAffine3, DMat4, DVec3, DVec4};
 use rayon::prelude::*;
-use std::collections::HashMap;
 
 /// Scenes of fewer placed parts have no occlusion culling of whole parts: it costs more than it saves.
 const FEWEST_PARTS: usize = 128;
@@ -50,23 +49,21 @@ impl SceneData {
         self.hides_with(patch_instances) && all >= FEWEST_PARTS && enough
     }
 
-    /// Finds the boxes around all that is drawn of each placed part. Needs the arrays that the GPU gets.
+    /// Finds the boxes around all that is drawn of each group of faces. Needs the arrays that the GPU gets.
     pub(in crate::scene) fn find_drawn_boxes(&mut self) {
-        let mut boxes = std::mem::take(&mut self.boxes);
-        // copies of a part share their patches
-        let mut known: HashMap<(u32, usize), Option<Extent>> = HashMap::new();
-        for PlacedFaces { first, part, patches } in placed_faces(self) {
-            let of_part = *known.entry(part).or_insert_with(|| self.drawn_box(patches));
-            boxes[first.instance as usize].drawn = of_part;
-        }
-        self.boxes = boxes;
+        let of = |group: &FaceGroup| {
+            let first = group.first_patch as usize;
+            self.drawn_box(&self.patches[first..first + group.count as usize])
+        };
+        let drawn: Vec<Option<Extent>> = self.boxes.groups.par_iter().map(of).collect();
+        self.boxes.groups.iter_mut().zip(drawn).for_each(|(group, drawn)| group.drawn = drawn);
     }
 
     /// The box around all that may be drawn of these patches.
     fn drawn_box(&self, patches: &[abi::Patch]) -> Option<Extent> {
         let of_patches = patches.par_iter().map(|patch| self.drawn_bounds(patch));
         let bounds = of_patches.try_reduce(|| Bounds::EMPTY, |a, b| Some(a.union(b)))?;
-        (!bounds.is_empty()).then(|| Extent::between(bounds.min, bounds.max))
+        (!bounds.is_empty()).then(|| Extent::of(bounds))
     }
 
     /// The same of one patch: empty if it is never drawn.
@@ -76,8 +73,7 @@ impl SceneData {
         if patch.side() == Side::Outside && !is_editable {
             return Some(Bounds::EMPTY);
         }
-        let [min, max] = [patch.box_min, patch.box_max].map(|p| DVec3::from(p.map(f64::from)));
-        let own = Bounds { min, max };
+        let own = bounds_of(patch);
         let borders = if is_editable || patch.side() == Side::Boundary { patch.borders() } else { 0 };
         if borders == 0 {
             return Some(own);
@@ -98,25 +94,25 @@ impl SceneData {
         })
     }
 
-    /// The placed parts of these numbers, in their order, and where a camera may draw them. Without a camera, none is
+    /// These groups of placed parts, in their order, and where a camera may draw them. Without a camera, none is
     /// hidden.
-    pub(crate) fn parts_in_sight(&self, camera: Option<&Camera>, parts: &[u32]) -> Vec<PartInSight> {
+    pub(crate) fn parts_in_sight(&self, camera: Option<&Camera>, groups: &[GroupInSight]) -> Vec<PartInSight> {
         let view = camera.map(|camera| (camera.pixel_matrix(), camera));
-        let of = |&n: &u32| {
-            let placed = &self.boxes[n as usize];
-            let drawn =
-                view.and_then(|(pixels, camera)| placed.in_picture(pixels, self.placements[n as usize], camera));
+        let of = |&at: &GroupInSight| {
+            let (placed, group) = self.boxes.at(at);
+            let placement = self.placements[at.part as usize];
+            let drawn = view.and_then(|(pixels, camera)| group.in_picture(pixels, placement, camera));
             let (depth, [low, high]) = drawn.unwrap_or((NEVER_HIDDEN, [0; 2]));
             PartInSight {
-                instance: n,
-                first_patch_instance: placed.first,
-                patch_instances: placed.count,
+                group: placed.groups_before + at.group,
+                first_patch_instance: placed.first + group.before,
+                patch_instances: group.count,
                 depth,
                 low,
                 high,
             }
         };
-        if parts.len() < CHUNK { parts.iter().map(of).collect() } else { parts.par_iter().map(of).collect() }
+        if groups.len() < CHUNK { groups.iter().map(of).collect() } else { groups.par_iter().map(of).collect() }
     }
 }
 
@@ -154,9 +150,9 @@ pub(super) fn rounding_beyond(patch: &Patch, borders: u32) -> DVec4 {
     0.5 * f64::from(f32::EPSILON) * roundings * growth * magnitudes
 }
 
-impl PlacedBox {
-    /// A reversed depth that nothing drawn of the part exceeds, and the first and last pixel of a rectangle with all
-    /// that is drawn, column and row in 16 bits each. `None` if the part reaches the near plane or is beside the
+impl FaceGroup {
+    /// A reversed depth that nothing drawn of the group exceeds, and the first and last pixel of a rectangle with all
+    /// that is drawn, column and row in 16 bits each. `None` if the group reaches the near plane or is beside the
     /// picture, if its box is not known, or if 16 bits do not number the picture's pixels.
     fn in_picture(&self, pixels: DMat4, placement: DAffine3, camera: &Camera) -> Option<(f32, [u32; 2])> {
         let drawn = self.drawn?;

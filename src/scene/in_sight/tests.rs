@@ -1,5 +1,5 @@
-//! Culled parts are nowhere in the picture, and visible parts are not culled: compared with pass `bound`, patch by
-//! patch.
+//! Culled parts and faces are nowhere in the picture, and visible ones are not culled: compared with pass `bound`, patch
+//! by patch.
 
 use super::drawn::rounding_beyond;
 use super::*;
@@ -9,7 +9,7 @@ use crate::model::{Face, Instance, Model, Projection, TrimLoop};
 use crate::parity::{placed, untrimmed};
 use crate::spline::{Bezier, Patch, Surface};
 use crate::twin;
-use glam::DVec2;
+use glam::{DAffine3, DVec2};
 
 /// A hill over the square `[-1, 1] x [-1, 1]`, of four patches.
 fn hill() -> Model {
@@ -72,29 +72,94 @@ fn cameras() -> [Camera; 3] {
     ]
 }
 
+/// What is in sight, and the twin's segments of each patch instance: those with segments are in sight, each once.
+fn nothing_is_lost(case: &Case, camera: &Camera) -> (InSight, Vec<u32>) {
+    let beside_px = f64::from(case.frame.gap_radius_px) + 1.0;
+    let reach = Reach { beside_px, beyond_px: case.frame.deviation_px.into() };
+    let in_sight = case.data.in_sight(camera, reach);
+    let taus = twin::bound::bound(&case.frame, &case.scene(), &mut Counters::default());
+    let mut told = vec![false; taus.len()];
+    for place in 0..in_sight.patch_instances {
+        told[twin::in_sight::patch_instance_at(&in_sight.runs, place) as usize] = true;
+    }
+    let count = told.iter().filter(|told| **told).count();
+    assert_eq!(count, in_sight.patch_instances as usize, "each patch instance once");
+    let lost = taus.iter().zip(&told).filter(|(tau, told)| **tau != 0 && !**told).count();
+    assert_eq!(lost, 0, "of {} in sight", in_sight.patch_instances);
+    (in_sight, taus)
+}
+
+/// Five by five flat faces of 64 patches each, without loops. Their first corners are `apart` from each other, and each
+/// has a side of 1.
+fn sheets(apart: f64) -> Model {
+    let knots = || [0].into_iter().chain(0..=8).chain([8]).map(f64::from).collect::<Vec<_>>();
+    let face = |n: i32| {
+        let corner = apart * DVec2::new((n % 5).into(), (n / 5).into());
+        let points = (0..81_i32).map(|k| {
+            let at = corner + DVec2::new((k % 9).into(), (k / 9).into()) / 8.0;
+            DVec4::new(at.x, at.y, 0.0, 1.0)
+        });
+        untrimmed(Surface::new((1, 1), knots(), knots(), points.collect()).unwrap())
+    };
+    placed((0..25).map(face).collect(), DAffine3::IDENTITY)
+}
+
+/// Of parts that are partly in sight, whole groups of faces are left out.
+#[test]
+fn faces_that_are_left_out_pass_bound_would_leave_out() {
+    let mut of_hills = hills(&mut Random::new(23));
+    of_hills.instances.truncate(120);
+    let model = Model { parts: sheets(1.5).parts, ..of_hills };
+    for camera in cameras() {
+        let case = Case::new(&model, &camera, 0.5);
+        let (in_sight, _) = nothing_is_lost(&case, &camera);
+        let of_parts: u32 = in_sight.parts.iter().map(|&n| case.data.boxes.placed[n as usize].count).sum();
+        assert_eq!(in_sight.parts.len() * 1600, of_parts as usize);
+        assert!(in_sight.patch_instances < of_parts / 4 * 3, "{} of {of_parts}", in_sight.patch_instances);
+    }
+}
+
+/// Groups have whole faces and 256 patches or more, but for the last one. Where faces share sides, all are one group.
+#[test]
+fn a_part_is_divided_between_faces_that_share_no_side() {
+    let counts = |model: &Model| {
+        let data = Case::new(model, &cameras()[0], 0.5).data;
+        let groups = data.boxes.groups_of(&data.boxes.placed[0]);
+        (groups.iter().map(|group| (group.before, group.count)).collect::<Vec<_>>(), data.links.is_empty())
+    };
+    let apart = [(0, 256), (256, 256), (512, 256), (768, 256), (1024, 256), (1280, 256), (1536, 64)];
+    assert_eq!(counts(&sheets(1.5)), (apart.to_vec(), true));
+    assert_eq!(counts(&sheets(1.0)), (vec![(0, 1600)], false));
+}
+
+/// Copies of a part share its groups, and each has numbers of its own.
+#[test]
+fn groups_of_copies_have_numbers_of_their_own() {
+    let mut model = sheets(1.5);
+    model.instances.push(model.instances[0].clone());
+    let camera =
+        Camera { eye: DVec3::new(3.5, 3.5, 40.0), target: DVec3::new(3.5, 3.5, 0.0), up: DVec3::Y, ..cameras()[0] };
+    let data = Case::new(&model, &camera, 0.5).data;
+    assert_eq!((data.boxes.groups.len(), data.placed_groups()), (7, 14));
+    let in_sight = data.in_sight(&camera, Reach { beside_px: 1.0, beyond_px: 1.0 });
+    assert_eq!((in_sight.parts, in_sight.patch_instances), (vec![0, 1], 3200));
+    assert_eq!(in_sight.runs, [PatchRun { place: 0, patch_instance: 0 }]);
+    let parts = data.parts_in_sight(None, &in_sight.groups);
+    let numbers = |of: fn(&abi::PartInSight) -> u32| parts.iter().map(of).collect::<Vec<_>>();
+    assert_eq!(numbers(|part| part.group), (0..14).collect::<Vec<_>>());
+    let firsts: Vec<u32> = (0..14).map(|n| n / 7 * 1600 + n % 7 * 256).collect();
+    assert_eq!(numbers(|part| part.first_patch_instance), firsts);
+}
+
 #[test]
 fn what_is_left_out_pass_bound_would_leave_out() {
     let model = hills(&mut Random::new(11));
     for camera in cameras() {
         let case = Case::new(&model, &camera, 0.5);
-        let beside_px = f64::from(case.frame.gap_radius_px) + 1.0;
-        let reach = Reach { beside_px, beyond_px: case.frame.deviation_px.into() };
-        let in_sight = case.data.in_sight(&camera, reach);
-        let taus = twin::bound::bound(&case.frame, &case.scene(), &mut Counters::default());
-        let mut told = vec![false; taus.len()];
-        for place in 0..in_sight.patch_instances {
-            told[twin::in_sight::patch_instance_at(&in_sight.runs, place) as usize] = true;
-        }
-        assert_eq!(
-            told.iter().filter(|told| **told).count(),
-            in_sight.patch_instances as usize,
-            "each patch instance once"
-        );
-        let lost = taus.iter().zip(&told).filter(|(tau, told)| **tau != 0 && !**told).count();
-        assert_eq!(lost, 0, "of {} in sight", in_sight.patch_instances);
+        let (in_sight, taus) = nothing_is_lost(&case, &camera);
         // the margins are thin: a hill that does not surround the eye is seldom in sight without a patch in sight; a
         // hill around the eye may be
-        let of_part = case.data.boxes[0].count as usize;
+        let of_part = case.data.boxes.placed[0].count as usize;
         let is_small = |n: usize| case.data.placements[n].matrix3.determinant().abs() < 1000.0;
         let seen = |of_part: &[u32]| of_part.iter().any(|tau| *tau != 0);
         let parts = taus.chunks(of_part).enumerate().filter(|(n, part)| is_small(*n) && seen(part)).count();
@@ -118,7 +183,7 @@ fn what_is_hidden_is_out_of_sight_and_what_moves_is_where_it_is() {
     let mut data = Case::new(&model, &camera, 0.5).data;
     let in_sight = |data: &SceneData| data.in_sight(&camera, Reach { beside_px: 1.0, beyond_px: 1.0 });
     assert_eq!(in_sight(&data).parts, [0, 2]);
-    let n = data.boxes[0].count;
+    let n = data.boxes.placed[0].count;
     let run = |place, patch_instance| PatchRun { place, patch_instance };
     assert_eq!((in_sight(&data).runs, in_sight(&data).patch_instances), (vec![run(0, 0), run(n, 2 * n)], 2 * n));
     data.hidden = vec![true, false, false];
@@ -142,11 +207,11 @@ fn nothing_is_drawn_beside_the_rectangle_or_before_the_depth() {
         let drawn: Vec<_> = data.patches.iter().filter(|patch| patch.side() != Side::Outside).collect();
         assert!(drawn.iter().any(|patch| has_skirts(patch)), "no patch has skirts");
         let in_sight = data.in_sight(&camera, Reach { beside_px: 1.0, beyond_px: 1.0 });
-        let parts = data.parts_in_sight(Some(&camera), &in_sight.parts);
-        for part in parts.iter().filter(|part| part.depth < 1.0) {
+        let parts = data.parts_in_sight(Some(&camera), &in_sight.groups);
+        for (part, at) in parts.iter().zip(&in_sight.groups).filter(|(part, _)| part.depth < 1.0) {
             checked += 1;
-            let own = data.boxes[part.instance as usize].patches;
-            let rows = camera.pixel_matrix() * DMat4::from(data.placements[part.instance as usize]);
+            let own = data.boxes.placed[at.part as usize].patches;
+            let rows = camera.pixel_matrix() * DMat4::from(data.placements[at.part as usize]);
             let [left, top, right, bottom] =
                 [part.low & 0xffff, part.low >> 16, part.high & 0xffff, part.high >> 16].map(f64::from);
             for point in drawn.iter().flat_map(|patch| continued(&data, patch)) {

@@ -1,4 +1,4 @@
-"""The report as Markdown: losses first, then missing measurements, then the sections."""
+"""The report as Markdown: losses first, then claims, then missing measurements, then the sections."""
 
 from .noise import median
 from .rows import Missing
@@ -10,6 +10,8 @@ VERDICT_WORDS = {
     "unreached": "ahead",
     "not measured": "not measured",
 }
+# between the name of a contest and its bound on the error
+WITHIN = ", within "
 
 
 def text(report, plots):
@@ -21,6 +23,8 @@ def text(report, plots):
         heading(report),
         "## Where we lose",
         losses(report),
+        "## What we claim",
+        claims(report),
         "## What was not measured",
         absences(report),
     ]
@@ -32,13 +36,13 @@ def text(report, plots):
 
 def heading(report):
     peers = ", ".join(f"{name} {value}" for name, value in report.peers.items() if not isinstance(value, Missing))
-    given = sum(section.given for section in report.sections)
+    took, given = (sum(getattr(section, of) for section in report.sections) for of in ("seconds", "given"))
     rows = [
         ("machine", f"{report.machine}; load {report.load}"),
         ("device", report.device),
         ("date, commit", f"{report.date}, {report.commit}"),
         ("peers", peers or "none"),
-        ("seconds", f"{sum(section.seconds for section in report.sections):,.0f} of {given:,.0f}"),
+        ("time", f"{took / 60:.0f} minutes; the sections are given {given / 60:.0f}"),
     ]
     count = lambda verdict: sum(c.verdict() == verdict for _, c in report.contests())
     ahead = count("ahead") + count("unreached")
@@ -57,6 +61,8 @@ def heading(report):
 
 def losses(report):
     """What is broken, failed or lost; then what we are behind in, under the measurements that explain it."""
+    behind_in = {tallied(s, c) for s, c in report.contests() if c.verdict() == "behind"}
+    short = tally((s, c) for s, c in report.contests() if tallied(s, c) in behind_in)
     told = lambda s, p: f"{s.number}. {p.what}: {p.violations:,} of {p.cases:,}"
     lines = [f"* **broken**: {told(s, p)}" for s, p in report.broken()]
     lines += [f"* **failed**: {s.number}. {s.title}: {s.failure}" for s in report.sections if s.failure]
@@ -65,22 +71,57 @@ def losses(report):
     cause = lambda c: f". Its cause: {c.cause}" if c.cause else ""
     lines += [f"* **lost**: {loss(s, c)}{cause(c)}" for s, c in behind if c.lost()]
     lines += [f"* known: {told(s, p)}; {p.known}" for s, p in report.promises() if p.excepted()]
-    parts = ["\n".join(lines)]
-    grouped = {}
+    parts = [short, "\n".join(lines)]
+    grouped, bounds = {}, {}
     for section, contest in behind:
         if not contest.lost():
-            grouped.setdefault(contest.cause, []).append(f"* {loss(section, contest)}")
+            what, _, bound = contest.what.partition(WITHIN)
+            others = bounds.setdefault((section.number, what, contest.peer, contest.cause), [])
+            if not others:
+                grouped.setdefault(contest.cause, []).append((section, contest, others))
+            others.append(bound)
+    for cause, rows in grouped.items():
+        also = lambda others: f"; also{WITHIN.strip(',')}{', '.join(others[1:])}" if others[1:] else ""
+        grouped[cause] = [f"* {loss(section, contest)}{also(others)}" for section, contest, others in rows]
     unexplained = grouped.pop("", [])
     if unexplained:
         parts += ["No measurement of this run explains these:", "\n".join(unexplained)]
     for cause, rows in grouped.items():
-        parts += [f"{cause[0].upper()}{cause[1:]}:", "\n".join(rows)]
+        parts += [f"Cause: {cause}.", "\n".join(rows)]
     return "\n\n".join(part for part in parts if part) or "Nowhere in this run."
 
 
+def tallied(section, contest):
+    """A contest's row of a tally: its section, and its quantity."""
+    return section.number, contest.what.split(",")[0]
+
+
+def tally(contests):
+    """Verdicts counted by quantity, with the least ratio; empty without contests."""
+    rows = {}
+    for section, contest in contests:
+        rows.setdefault(tallied(section, contest), []).append(contest)
+    body = []
+    for (number, quantity), of in rows.items():
+        count = lambda *verdicts, of=of: sum(contest.verdict() in verdicts for contest in of)
+        counts = [count("ahead", "unreached"), count("even"), count("behind"), count("not measured")]
+        measured = [contest for contest in of if contest.ratio()]
+        least = min(measured, key=lambda contest: contest.ratio().median, default=None)
+        body.append([f"{number}. {quantity}", *counts, f"{interval(least)}, {least.peer}" if least else ""])
+    head = ["section and quantity", "ahead", "even", "behind", "not measured", "least ratio"]
+    return table(head, body) if body else ""
+
+
+def claims(report):
+    """The claims by quantity; in the sections' tables each is marked."""
+    short = tally((s, c) for s, c in report.contests() if c.claim == "ahead")
+    return short or "Nothing in this run."
+
+
 def loss(section, contest):
-    times = 1 / contest.ratio().median
-    return f"{section.number}. {contest.what}: {times:.2g} times {contest.peer}'s {interval(contest)}"
+    ours, theirs = (number(float(median(figures))) for figures in (contest.ours, contest.theirs))
+    beside = f"{ours} {contest.unit} beside {theirs} {contest.unit} of {contest.peer}"
+    return f"{section.number}. {contest.what}: {beside}, ratio {interval(contest)}"
 
 
 def absences(report):

@@ -210,7 +210,7 @@ def flat(tree):
 
 
 def chained(tree):
-    """The tree with a chain of one operator as one list, operator first: as deep as the parentheses of its expression."""
+    """The tree with a chain of one operator as one list, operator first: as deep as its parentheses."""
     return tree if isinstance(tree, str) else [tree[0], *map(chained, flat(tree))]
 
 

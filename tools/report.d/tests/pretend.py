@@ -106,7 +106,7 @@ class Program:
         return [dict.fromkeys(keys, str(copies))]
 
     def trims(self, *words):
-        ways = ["table", "exact", "bisect", "bisect-tuned", "texture", "pretessellated"]
+        ways = option(words, "--ways", "table,exact,bisect,bisect-tuned,texture,pretessellated").split(",")
         size, frames = option(words, "--size"), int(option(words, "--frames"))
         zooms = [(zoom, size) for zoom in option(words, "--zooms").split(",")]
         views = zooms + [("1", of) for of in option(words, "--sizes").split(",")]

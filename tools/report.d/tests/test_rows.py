@@ -3,7 +3,7 @@
 import json
 import unittest
 
-from report import markdown
+from report import markdown, plots
 from report.rows import Contest, Missing, Promise, Report, Section, Table
 
 
@@ -71,6 +71,12 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(contest([], [], unreached=True, why="not within 5 s").verdict(), "unreached")
 
 
+class Plots(unittest.TestCase):
+    def test_ticks_are_plain_numbers(self):
+        told = [plots.plain(value) for value in (1e-6, 0.05, 1.5, 20, 10_000, 1e6)]
+        self.assertEqual(told, ["1e-6", "0.05", "1.5", "20", "10,000", "1e6"])
+
+
 class Written(unittest.TestCase):
     def test_losses_come_first(self):
         text = markdown.text(report(WON, LOST), {})
@@ -81,13 +87,31 @@ class Written(unittest.TestCase):
     def test_a_loss_stands_under_the_measurement_that_explains_it(self):
         caused = contest(LOST.ours, LOST.theirs, "open", cause="a process takes 0.4 s")
         text = markdown.losses(report(contest(LOST.ours, LOST.theirs, "open"), caused))
-        unexplained, explained = text.split("A process takes 0.4 s:")
+        unexplained, explained = text.split("Cause: a process takes 0.4 s.")
         self.assertIn("No measurement of this run explains these:\n\n* 1. first picture", unexplained)
         self.assertIn("* 1. first picture", explained)
 
     def test_a_lost_claim_has_its_cause(self):
         lost = contest(LOST.ours, LOST.theirs, cause="a process takes 0.4 s")
         self.assertRegex(markdown.losses(report(lost)), r"\*\*lost\*\*: .*Its cause: a process takes 0.4 s")
+
+    def test_a_loss_at_several_errors_is_one_line(self):
+        at = lambda error, theirs: Contest(f"frame, a.step, within {error} px", "Viewer", "ms", [9.0] * 3, [theirs] * 3)
+        text = markdown.losses(report(at(0.25, 3.0), at(0.5, 1.0), at(1, 4.5)))
+        self.assertEqual(text.count("* 1. frame"), 1)
+        figures = "within 0.5 px: 9.00 ms beside 1.00 ms of Viewer, ratio 0.11 [0.11, 0.11]"
+        self.assertIn(f"{figures}; also within 0.25 px, 1 px", text)
+
+    def test_losses_and_claims_are_counted(self):
+        even = contest(NOISY.ours, NOISY.theirs, "open")
+        absent = contest([], [], why="not installed")
+        text = markdown.text(report(WON, LOST, even, absent), {})
+        lose, claim = text.split("## What we claim")
+        row = "| 1. first picture | 1 | {} | 1 | 1 | 0.33 [0.32, 0.39], Viewer |"
+        self.assertIn(row.format(1), lose)
+        self.assertIn(row.format(0), claim)
+        nothing = markdown.text(report(contest(WON.ours, WON.theirs, "open")), {})
+        self.assertIn("## What we claim\n\nNothing in this run.", nothing)
 
     def test_each_section_has_its_time(self):
         whole = report(WON)

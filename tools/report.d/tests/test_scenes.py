@@ -17,7 +17,8 @@ class Expressions(unittest.TestCase):
         self.assertEqual(scenes.flat(scenes.parsed("A-(B-C)")), ["A", ["-", "B", "C"]])
 
     def test_long_chains_are_written_as_one_list(self):
-        self.assertEqual(scenes.chained(scenes.parsed("A*B-C-(D+E+F)")), ["-", ["*", "A", "B"], "C", ["+", "D", "E", "F"]])
+        found = scenes.chained(scenes.parsed("A*B-C-(D+E+F)"))
+        self.assertEqual(found, ["-", ["*", "A", "B"], "C", ["+", "D", "E", "F"]])
         long = scenes.Scene("long", {}, "-".join(["A"] * 5000))
         self.assertEqual(len(json.loads(json.dumps(long.data()))["tree"]), 5001)
 

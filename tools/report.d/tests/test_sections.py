@@ -1,8 +1,10 @@
 """Sections with made-up measurements: no process runs."""
 
 import unittest
+from pathlib import Path
 from unittest import mock
 
+from report import moving
 from report.rows import Contest, Missing, Section
 from report.sections import packages, stability, surfaces, trims, zoom
 
@@ -85,6 +87,15 @@ class Surfaces(unittest.TestCase):
         other = self.contest(0.25, never, stopped={("F3D", 1e-6): f"{surfaces.PROCESS}not done in 30 s"})
         self.assertEqual(other.verdict(), "unreached")
 
+    def test_a_mesh_that_was_not_tried_is_no_win(self):
+        never = self.ERRORS | {"mesh 0.0001": 0.8}
+        with mock.patch.object(surfaces.Case, "finest", False):
+            found = self.contest(0.25, never)
+            self.assertEqual(found.verdict(), "not measured")
+            self.assertIn("finer meshes are drawn at 1920x1080 only", found.why)
+            limit = self.contest(0.25, never, stopped={("meshed", 1e-6): "the mesh before took 9 s"})
+            self.assertEqual(limit.verdict(), "unreached")
+
     def test_a_peer_without_a_verdict_is_not_behind(self):
         self.assertEqual(self.contest(0.5, {"ours 0.5": 0.2}).verdict(), "not measured")
 
@@ -103,6 +114,7 @@ class Surfaces(unittest.TestCase):
         case = object.__new__(surfaces.Case)
         case.begun, case.model, case.camera, case.context = set(), None, None, mock.MagicMock()
         case.tolerances, case.bench = [0.1, 0.5, 1.0, 4.0], lambda tolerance: {surfaces.WALL: 9.0}
+        case.benches = {}
         self.assertEqual(list(case.ours()), [0.1, 0.5, 1.0, 4.0])
         self.assertEqual(list(case.ours()), [0.5, 1.0])
 
@@ -196,6 +208,33 @@ class Packages(unittest.TestCase):
         self.assertEqual(row[2:7], [0.5, 4.0, 300.0, "3 wrong", "2,000 judged"])
 
 
+class Moving(unittest.TestCase):
+    """A benchmark that prints what benches/moving.rs prints."""
+
+    def promise(self, move_ms, bench="moving"):
+        context, section = mock.Mock(), Section(5, "", "")
+        context.model = lambda name: Path(name)
+        head = "| file | instances | change, ms: median | worst | record, ms: median | worst |\n|---|---:|---:|\n"
+        context.peers.run = lambda command, limit_s: (
+            f"{head}| {command[1].name} | 9 | {move_ms} | 0.210 | 1.500 | 2.250 |\n",
+            "",
+            1.0,
+        )
+        with mock.patch.dict("os.environ", {"REPORT_MOVING": bench}):
+            moving.measure(context, section)
+        return section.promises[0], section.tables[0].rows[0]
+
+    def test_a_step_has_a_limit(self):
+        promise, row = self.promise(0.125)
+        self.assertEqual(row, ["assembly.step", 9, 0.125, 0.21, 1.5, 2.25])
+        self.assertEqual((promise.cases, promise.broken()), (1, False))
+        self.assertTrue(self.promise(1.0)[0].broken())
+
+    def test_a_benchmark_that_is_not_built_has_the_reason(self):
+        promise, row = self.promise(0.125, bench="")
+        self.assertEqual((row[1], promise.why), (Missing(moving.NOT_BUILT), moving.NOT_BUILT))
+
+
 class Stability(unittest.TestCase):
     def test_a_wrong_sheet_of_the_right_face_is_wrong(self):
         folds = {"beyond": 2, "wrong_depth": 3, "worst_shift_px": 1.5}
@@ -223,6 +262,23 @@ class Zoom(unittest.TestCase):
 
 class Kernel(unittest.TestCase):
     """The judges' searches, if their packages are installed."""
+
+    def test_primitives_that_a_ray_does_not_meet_change_nothing(self):
+        try:
+            from report.peer import csg
+        except ImportError as missing:
+            self.skipTest(str(missing))
+        from report import scenes
+
+        for name in ("widget", "complex", "gear"):
+            scene = scenes.of_name(name)
+            camera = {"eye": [60, -90, 70], "target": [0, 0, 0], "up": [0, 0, 1], "fovy": 40.0, "size": [24, 24]}
+            quick, whole = (csg.Rays(scene.data(), camera) for _ in range(2))
+            whole.radii = whole.radii + 1e9
+            pixels = [(x, y) for y in range(0, 24, 2) for x in range(0, 24, 2)]
+            seen = [quick.centre(pixel) for pixel in pixels]
+            self.assertEqual(seen, [whole.centre(pixel) for pixel in pixels], name)
+            self.assertEqual({0, -1}, {face for (face,) in seen}, name)
 
     def test_an_edge_that_is_off_by_a_distance(self):
         try:

@@ -51,6 +51,10 @@ pub enum Motion {
     Path,
     /// By three degrees a frame, all of the model in view
     Turn,
+    /// By three degrees a frame around a corner of the model's bounding box, a quarter of each side in view
+    Corner,
+    /// By three degrees a frame in the middle of the model, with nearly all of it beside the picture
+    Within,
     /// Not at all. Each frame twice: with every pass recorded, and as a viewer draws it, which reuses the visible
     /// surface of each pixel
     Still,

@@ -27,10 +27,15 @@ class Rays(View):
     def __init__(self, scene, camera):
         super().__init__(camera)
         self.tree, self.parts = scene["tree"], scene["primitives"]
+        self.names = list(self.parts)
+        centres, self.radii = zip(*(sphere(part) for part in self.parts.values()))
+        self.centres, self.radii = numpy.array(centres) - self.eye, numpy.array(self.radii)
 
     def at(self, x, y):
         ray = self.ray(x, y)
-        within = {name: spans(part, self.eye, ray) for name, part in self.parts.items()}
+        near = numpy.linalg.norm(self.centres - numpy.outer(self.centres @ ray, ray), axis=1) <= self.radii
+        met = (self.names[k] for k in numpy.flatnonzero(near))
+        within = {name: spans(self.parts[name], self.eye, ray) for name in met}
         ends = sorted({t for of in within.values() for span in of for t in span if t > 0})
         for low, high in zip(ends, ends[1:]):
             middle = (low + high) / 2
@@ -48,6 +53,23 @@ def member(tree, inside):
         return all(member(one, inside) for one in tree[1:])
     found = any(member(one, inside) for one in others)
     return member(first, inside) and not found if operator == "-" else member(first, inside) or found
+
+
+def sphere(part):
+    """Centre and radius of a sphere around a primitive, a millionth larger than the least one."""
+    middle, shape = [0.0, 0.0, 0.0], part["shape"]
+    if shape == "sphere":
+        radius = part["radius"]
+    elif shape == "cylinder":
+        middle, radius = [0.0, 0.0, part["height"] / 2], math.hypot(part["radius"], part["height"] / 2)
+    elif shape == "torus":
+        radius = part["major"] + part["minor"]
+    else:
+        middle = [0.0 if part["centred"] else s / 2 for s in part["size"]]
+        radius = math.hypot(*part["size"]) / 2
+    cos, sin = math.cos(math.radians(part["turn"])), math.sin(math.radians(part["turn"]))
+    x, y, z = middle
+    return numpy.array(part["at"], float) + [x, cos * y - sin * z, sin * y + cos * z], radius * (1 + 1e-6)
 
 
 def spans(part, eye, ray):

@@ -1,6 +1,6 @@
 """Manifold evaluates a Boolean solid as triangles, VTK draws them.
 
-    job      scene: {primitives, tree} (Scene.data of scenes.py), segments (lists of numbers around), camera, turn, folder
+    job      scene: {primitives, tree} (Scene.data of scenes.py), segments (numbers around), camera, turn, folder
     results  {segments, evaluate_s, triangles, first_s, turning_ms, picture (an image of faces)}
 
 Run within an X server.

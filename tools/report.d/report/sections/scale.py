@@ -1,11 +1,11 @@
 """5. Scale: patches, instances and the leaves of solids, each over decades: time, bytes, exponents of growth."""
 
-from .. import noise, scenes
+from .. import moving, noise, scenes
 from ..rows import Line, Missing, Plot, Table
 from ..turns import Unmeasurable
 
-# beyond so many copies or holes one frame is measured: it is long, and its noise small
-ONE_FRAME = 1000
+# from so many copies or holes on one frame is measured: it is long, and its noise small
+ONE_FRAME = 500
 # patches that the engine stores of a sheet
 STORED = 4096
 # seconds of one number
@@ -14,15 +14,15 @@ TITLE = "Scale"
 TEXT = """\
 Patches are those of wavy bicubic sheets of 32 x 32 spans, each sheet with a net of its own; the table counts the
 patches that the engine stores. Instances are copies of `bracket.step`. Leaves are the primitives of a plate with a grid
-of holes. All are seen whole, and every pass is recorded: the median of the frames. From a thousand copies or holes on,
-one frame is measured. An exponent of 1 is growth in proportion, a smaller one slower growth; *last* is the exponent
+of holes. All are seen whole, and every pass is recorded: the median of the frames. From 500 copies or holes on, one
+frame is measured. An exponent of 1 is growth in proportion, a smaller one slower growth; *last* is the exponent
 between the two largest."""
 
 
 def measure(context, section):
     size = context.pick("480x270", "640x360")
     frames = lambda number: context.pick(2, 5) if number < ONE_FRAME else 1
-    copies = context.pick("1,10,100", "1,10,100,1000,2442")
+    copies = context.pick("1,10,100", "1,10,100,500,2442")
     words = ["--size", size]
     # the quickest first, so that the largest numbers come last within the section's time
     series = [
@@ -43,13 +43,14 @@ def measure(context, section):
                 context,
                 section,
                 [context.model("samples/bracket.step")],
-                context.pick("1,10,100,1000", "1,10,100,1000,10000,100000"),
+                context.pick("1,10,100,1000", "1,10,100,1000,10000,30000,100000"),
                 size,
                 frames,
                 "copies",
             ),
         ),
     ]
+    moving.measure(context, section)
     exponents = []
     for name, title, measured in series:
         context.say(name)

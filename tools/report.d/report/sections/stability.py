@@ -43,7 +43,7 @@ def measure(context, section):
             else:
                 figures = [found.judged, found.wrong, found.worst, found.clamps, found.doubt]
                 rows.append([case.name, case.danger, on, *figures])
-                pixels, clamps = whole.setdefault(case.known, promises(case.known))
+                pixels, clamps = whole.setdefault(case.known, promises(case.known, case.name))
                 pixels.violations, pixels.cases = pixels.violations + found.wrong, pixels.cases + found.judged
                 clamps.violations, clamps.cases = clamps.violations + found.clamps, clamps.cases + found.views
     head = ["case", "what could go wrong", "device", "pixels judged", "wrong", "worst, px", "clamps", "in doubt"]
@@ -54,13 +54,13 @@ def measure(context, section):
     section.commands.append(context.shown("check", "CASE.toml", "--views", "all", *judge.options))
 
 
-def promises(known):
-    """The promises for hard cases, with the documents' exceptions."""
+def promises(known, case):
+    """The promises for hard cases; where the documents except some, such as this one, these have their own."""
     pixels, clamps = f"{PIXEL} in hard cases", "no clamp in a view of a hard case"
     if known is None:
         return Promise(pixels), Promise(clamps)
-    reason = f"docs/accuracy.md: {known.reason}"
-    return Promise(pixels, known=reason, most=known.pixels), Promise(clamps, known=reason, most=known.clamps)
+    reason, of = f"docs/accuracy.md: {known.reason}", f", such as {case}"
+    return Promise(pixels + of, known=reason, most=known.pixels), Promise(clamps + of, known=reason, most=known.clamps)
 
 
 class Found:

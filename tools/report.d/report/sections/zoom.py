@@ -101,7 +101,7 @@ def kernel_errors(context, model, cameras, meshed):
             if (kind, name) in meshed[0]:
                 pictures[kind] = {"path": meshed[0][kind, name]["ids"], "own": False}
         wanted[name] = {"camera": camera, "pictures": pictures}
-    seconds = context.pick(3, 6)
+    seconds = context.pick(3, 4)
     job = {"model": str(model), "views": wanted, "seconds": seconds}
     try:
         found = context.peers.results("kernel", job, limit_s=60 + 4 * seconds * len(wanted))
