@@ -185,7 +185,7 @@ const _: () = assert!(core::mem::offset_of!(crate::abi::OperandMesh, first_plane
 const _: () = assert!(core::mem::offset_of!(crate::abi::OperandMesh, mirrored) == 16);
 const _: () = assert!(core::mem::offset_of!(crate::abi::OperandMesh, leaf) == 20);
 const _: () = assert!(core::mem::size_of::<crate::abi::OperandMesh>() == 24);
-const _: () = assert!(core::mem::offset_of!(crate::abi::PartInSight, instance) == 0);
+const _: () = assert!(core::mem::offset_of!(crate::abi::PartInSight, group) == 0);
 const _: () = assert!(core::mem::offset_of!(crate::abi::PartInSight, first_patch_instance) == 4);
 const _: () = assert!(core::mem::offset_of!(crate::abi::PartInSight, patch_instances) == 8);
 const _: () = assert!(core::mem::offset_of!(crate::abi::PartInSight, depth) == 12);
