@@ -211,7 +211,7 @@ impl PartBoxes {
 /// A linear function over a box: its value at the centre, its largest difference from that, and the sum of the
 /// magnitudes of its terms.
 #[derive(Clone, Copy)]
-struct Range {
+struct Values {
     middle: f64,
     reach: f64,
     terms: f64,
@@ -222,11 +222,11 @@ impl Extent {
         Self { centre: 0.5 * (min + max), half: 0.5 * (max - min) }
     }
 
-    fn range(&self, row: DVec4) -> Range {
+    fn range(&self, row: DVec4) -> Values {
         let (linear, size) = (row.truncate(), row.truncate().abs());
         let reach = size.dot(self.half);
         let terms = size.dot(self.centre.abs()) + reach + row.w.abs();
-        Range { middle: linear.dot(self.centre) + row.w, reach, terms }
+        Values { middle: linear.dot(self.centre) + row.w, reach, terms }
     }
 }
 
