@@ -325,7 +325,7 @@ pub struct Picture {
     pub size: (u32, u32),
     /// sRGB-encoded colour, not multiplied by its opacity, and opacity.
     pub colour: Vec<[u8; 4]>,
-    /// Distance along the view axis, `+inf` for background.
+    /// Distance from the eye along the view axis, model units; `+inf` for background.
     pub depth: Vec<f32>,
     /// [`Face::id`](crate::model::Face::id) or [`Mesh::id`](crate::model::Mesh::id), 0 for background.
     pub face: Vec<u32>,

@@ -63,9 +63,9 @@ pub struct EdgePoint {
     pub parameter: f64,
     /// The point, model coordinates.
     pub point: DVec3,
-    /// Its place in the picture, and its depth.
+    /// Its place in the picture, pixels.
     pub pixel: DVec2,
-    /// Distance from the eye along the view axis.
+    /// Distance from the eye along the view axis, model units.
     pub depth: f64,
     /// Whether it is seen.
     pub visibility: Visibility,

@@ -21,23 +21,23 @@ const TOLERANCE: f64 = 1e-12;
 /// within a millionth of the piece.
 const MOST_HALVINGS: u32 = 20;
 
-/// An area with the estimate of its error.
+/// An area and the estimate of its error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Area {
     /// Square model units.
     pub area: f64,
-    /// The same.
+    /// Estimate of its error, square model units.
     pub error: f64,
 }
 
-/// Of a closed part.
+/// Area, volume and centre of a closed part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mass {
     /// Of all faces.
     pub area: Area,
     /// Cubic model units.
     pub volume: f64,
-    /// Estimate of its error.
+    /// Estimate of its error, cubic model units.
     pub error: f64,
     /// Centre of the volume, model coordinates.
     pub centre: DVec3,

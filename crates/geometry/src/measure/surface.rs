@@ -16,7 +16,7 @@ use glam::{DAffine3, DMat3, DVec3};
 /// Points along each side of the face's part of the domain.
 const LOOKS: usize = 5;
 
-/// The shape of a face's surface, model coordinates.
+/// The shape of a face's surface: points and radii in model units, unit directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub enum SurfaceShape {
