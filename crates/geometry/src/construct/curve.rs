@@ -56,8 +56,8 @@ pub fn line(a: DVec3, b: DVec3) -> Result<BSpline<DVec4>, ConstructError> {
     Ok(BSpline::from_bezier(Bezier::line(a, b), 0.0, 1.0)?)
 }
 
-/// `centre + cos t x + sin t y` for `t` from `from` to `to`, radians, at most 1024 turns: a circle where `x` and `y` are
-/// of one length and at right angles, else an ellipse with these conjugate radii.
+/// `centre + cos t x + sin t y` for `t` from `from` to `to`, radians, at most 1024 turns: a circle where `x` and `y`
+/// are of one length and at right angles, else an ellipse with these conjugate radii.
 ///
 /// The domain is `[from, to]`; at the knots, at most a quarter turn apart, the parameter is the angle. Whole turns
 /// close bit for bit. Accuracy: rounding, below `1e-14` of the radius (plus of the centre's coordinates).

@@ -5,20 +5,20 @@
 //!   area: g = |S_u × S_v|      volume: g = p · n / 3      centre: g = x² n_x / 2, ...      n = ± S_u × S_v  (Gauss)
 //! ```
 //!
-//! Loops run counter-clockwise and holes clockwise, as the model promises, so their sums need no test for inside. A loop
-//! that crosses itself counts by its winding number. Both integrals are sums of Gauss's rules: `G` takes one a knot span,
-//! the loops' pieces are halved until the rules agree.
+//! Loops run counter-clockwise and holes clockwise, as the model promises, so their sums need no test for inside. A
+//! loop that crosses itself counts by its winding number. Both integrals are sums of Gauss's rules: `G` takes one rule
+//! for each knot span, and the loops' pieces are halved until the rules agree.
 
 use crate::math::gauss::{rule, within};
 use crate::model::{Face, Part};
 use crate::spline::{Bezier, Control, Jet2};
 use glam::{DAffine3, DVec2, DVec3};
 
-/// Tolerance of the integrals along the loops, as a share of what they would be if no part of a sum cancelled another: of
-/// a moment that is 0 by symmetry only rounding is left, which no halving makes less.
+/// Tolerance of the integrals along the loops, as a share of what they would be if no part of a sum cancelled another:
+/// of a moment that is 0 by symmetry only rounding is left, which no halving makes less.
 const TOLERANCE: f64 = 1e-12;
-/// Halvings of one piece of a loop at most. A step of `G`, at a knot line where the surface's derivative has one, is then
-/// within a millionth of the piece.
+/// Halvings of one piece of a loop at most. A step of `G`, at a knot line where the surface's derivative has one, is
+/// then within a millionth of the piece.
 const MOST_HALVINGS: u32 = 20;
 
 /// An area and the estimate of its error.
@@ -57,8 +57,8 @@ fn breaks(knots: &[f64], (low, high): (f64, f64)) -> Vec<f64> {
     all
 }
 
-/// The pieces of a face's loops. Of a face without loops, the side `u = u1` of its domain, cut at the knots: `G` is 0 on
-/// the opposite side, and `v` is constant on the two others.
+/// The pieces of a face's loops. Of a face without loops, the side `u = u1` of its domain, cut at the knots: `G` is 0
+/// on the opposite side, and `v` is constant on the two others.
 fn pieces(face: &Face) -> Vec<Bezier<DVec3>> {
     if !face.loops.is_empty() {
         return face.loops.iter().flat_map(|l| l.curves()).collect();
@@ -68,8 +68,8 @@ fn pieces(face: &Face) -> Vec<Bezier<DVec3>> {
     rows.windows(2).map(|row| Bezier::line(DVec2::new(u1, row[0]), DVec2::new(u1, row[1]))).collect()
 }
 
-/// `∬ density du dv` over the points of the domain that a face keeps, and estimates of the errors. The first density is
-/// `|S_u × S_v|`; each other is at most `most` times as large, which the tolerances follow.
+/// `∬ density du dv` over the points of the domain that a face keeps, and estimates of the errors. The first density
+/// is `|S_u × S_v|`; each other is at most `most` times as large, which the tolerances follow.
 fn integral<const N: usize>(face: &Face, density: &impl Fn(&Jet2) -> [f64; N], most: [f64; N]) -> ([f64; N], [f64; N]) {
     let surface = &face.surface;
     let (along_u, (v0, v1)) = surface.domain();

@@ -9,14 +9,14 @@ use glam::DAffine3;
 const ROUND: f64 = 1e-7;
 
 impl Face {
-    /// Area inside the loops, squares of model units, in the coordinates of the part. Accuracy and cost are those of
+    /// Area inside the loops, square model units, in the coordinates of the part. Accuracy and cost are those of
     /// [`mass::area`].
     pub fn area(&self) -> f64 {
         mass::area(self, DAffine3::IDENTITY).area
     }
 
-    /// Radius of a cylinder or sphere, and of the tube of a torus, model units, in the coordinates of the part; `None` for
-    /// other kinds, and where the carrier surface is not round.
+    /// Radius of a cylinder or sphere, and of the tube of a torus, model units, in the coordinates of the part; `None`
+    /// for other kinds, and where the carrier surface is not round.
     pub fn radius(&self) -> Option<f64> {
         let ((u0, u1), (v0, v1)) = self.surface.domain();
         let at = |s: f64, t: f64| self.surface.jet2(u0 + s * (u1 - u0), v0 + t * (v1 - v0));

@@ -309,8 +309,8 @@ impl Camera {
         (self.eye, (forward + across / focal.x).normalize())
     }
 
-    /// Pixel position and depth of a model point; `None` behind the eye of a perspective view. Depth is the distance from
-    /// the eye along the view axis, model units.
+    /// Pixel position and depth of a model point; `None` behind the eye of a perspective view. Depth is the distance
+    /// from the eye along the view axis, model units.
     pub fn project(&self, p: DVec3) -> Option<(DVec2, f64)> {
         let q = self.pixel_matrix() * p.extend(1.0);
         (q.w > 0.0).then(|| (DVec2::new(q.x / q.w, q.y / q.w), q.z))

@@ -74,8 +74,8 @@ fn holes_are_no_area() {
     near(face(vec![border, hole]).area(), 4.0 * (18.0 * 8.0 - PI * 9.0));
 }
 
-/// Twice as long along v below the knot line v = 5 as above it; a triangle crosses that line off the middle of its sides.
-/// A rule that is halved 14 times only is off by 3e-7 of the area.
+/// Twice as long along v below the knot line v = 5 as above it; a triangle crosses that line off the middle of its
+/// sides. A rule that is halved 14 times only is off by 3e-7 of the area.
 #[test]
 fn a_step_of_the_derivative_is_found() {
     let net = [0.0, 20.0, 30.0].into_iter().flat_map(|y| [0.0, 40.0].map(|x| DVec4::new(x, y, 0.0, 1.0))).collect();
