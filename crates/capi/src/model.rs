@@ -3,7 +3,7 @@
 use crate::border::{
     Failure, SelvedgeStatus, Sized, argument, border, c_text, free, given, handle, place, taken, text,
 };
-use selvedge_session::{Loaded, ReadOptions, Snapper, Source, Stop, bounds, read};
+use selvedge_jobs::{Loaded, ReadOptions, Snapper, Source, Stop, bounds, read};
 use std::ffi::{CString, c_char, c_void};
 use std::path::Path;
 use std::ptr::null;

@@ -7,8 +7,8 @@ use crate::args::ThumbnailArgs;
 use crate::{Outcome, device, target};
 use anyhow::{Error, Result};
 use selvedge::picture::{FrameSettings, Outputs, Samples, SceneSettings};
-use selvedge_session::{
-    Backdrop, Drawer, Job, Limits, Loaded, NAMED, ReadOptions, SessionError, Source, Stop, Viewpoint, lines, read,
+use selvedge_jobs::{
+    Backdrop, Drawer, Job, JobError, Limits, Loaded, NAMED, ReadOptions, Source, Stop, Viewpoint, lines, read,
     write_png,
 };
 use std::sync::Arc;
@@ -39,9 +39,9 @@ pub fn run(args: &ThumbnailArgs) -> Result<Outcome> {
 }
 
 /// A device's error has an exit status of its own.
-fn told(error: SessionError) -> Error {
+fn told(error: JobError) -> Error {
     match error {
-        SessionError::Device(error) | SessionError::Draw(error) => error.into(),
+        JobError::Device(error) | JobError::Draw(error) => error.into(),
         error => error.into(),
     }
 }

@@ -19,7 +19,7 @@ use anyhow::{Error, Result};
 use selvedge::gpu::GpuError;
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge_io::import::Import;
-use selvedge_session::Limits;
+use selvedge_jobs::Limits;
 use std::path::Path;
 use std::sync::mpsc;
 use std::thread;

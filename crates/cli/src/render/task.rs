@@ -13,7 +13,7 @@ use crate::target::{self, JSON, NPY, PNG, Target};
 use anyhow::{Result, bail};
 use selvedge::model::Camera;
 use selvedge::picture::Picture;
-use selvedge_session::{Direction, NAMED};
+use selvedge_jobs::{Direction, NAMED};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
