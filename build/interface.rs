@@ -68,7 +68,7 @@ impl Interfaces {
         }
         let group = found.group.map(|id| found.numbers.get(&id).copied().unwrap_or_default());
         if is_compute && group.contains(&0) {
-            return Err(format!("{shader}: the size of its workgroups is not told"));
+            return Err(format!("{shader}: the size of its workgroups is not stated"));
         }
         let constants = found.constants.iter().filter_map(|(constant, id)| Some((module.names.get(id)?, *constant)));
         let mut ids = Vec::new();

@@ -100,16 +100,16 @@ pub fn beyond(exceeded: Exceeded) -> Error {
 /// printed.
 pub fn judge(path: &Path, import: &Import, read: &ReadArgs) -> Result<()> {
     let summary = import.summary();
-    let told = format!("{}: {summary}", named(path));
+    let message = format!("{}: {summary}", named(path));
     if summary.draws_nothing() {
-        bail!("{told}");
+        bail!("{message}");
     }
     if summary.is_complete() {
         return Ok(());
     }
     if read.strict {
-        bail!("--strict: {told}");
+        bail!("--strict: {message}");
     }
-    tracing::warn!("{told}");
+    tracing::warn!("{message}");
     Ok(())
 }

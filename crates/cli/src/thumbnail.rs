@@ -17,8 +17,8 @@ use std::sync::Arc;
 pub fn run(args: &ThumbnailArgs) -> Result<Outcome> {
     let stop = Stop::default();
     let Loaded { model, .. } =
-        read(Source::Path(&args.model), &ReadOptions::default(), &stop, &|_| ()).map_err(told)?;
-    let camera = Viewpoint::Standard(NAMED[0]).camera(&model, (args.size, args.size)).map_err(told)?;
+        read(Source::Path(&args.model), &ReadOptions::default(), &stop, &|_| ()).map_err(failure)?;
+    let camera = Viewpoint::Standard(NAMED[0]).camera(&model, (args.size, args.size)).map_err(failure)?;
     let job = Job {
         model: Arc::clone(&model),
         camera,
@@ -32,14 +32,14 @@ pub fn run(args: &ThumbnailArgs) -> Result<Outcome> {
         backdrop: Backdrop::Nothing,
         limits: Limits::default(),
     };
-    let mut drawer = Drawer::new(&device::options(args.device.as_deref(), false)).map_err(told)?;
-    let picture = drawer.draw(&job, &stop).map_err(told)?.picture;
+    let mut drawer = Drawer::new(&device::options(args.device.as_deref(), false)).map_err(failure)?;
+    let picture = drawer.draw(&job, &stop).map_err(failure)?.picture;
     target::write(&args.output, |to| Ok(write_png(to, picture.size, &picture.colour)?))?;
     Ok(Outcome::Good)
 }
 
 /// A device's error has an exit status of its own.
-fn told(error: JobError) -> Error {
+fn failure(error: JobError) -> Error {
     match error {
         JobError::Device(error) | JobError::Draw(error) => error.into(),
         error => error.into(),

@@ -134,8 +134,8 @@ impl Shot {
     fn outputs(&self) -> impl Iterator<Item = Target> {
         let picture = self.output.iter().map(|path| Target::new(path, PNG));
         let images = self.aovs.iter().map(|aov| Target::new(&aov.file, NPY));
-        let told = self.stats.iter().chain(&self.camera_out).map(|path| Target::new(path, JSON));
-        picture.chain(images).chain(told)
+        let json = self.stats.iter().chain(&self.camera_out).map(|path| Target::new(path, JSON));
+        picture.chain(images).chain(json)
     }
 
     /// Writes all of them.
