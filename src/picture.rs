@@ -277,17 +277,24 @@ pub struct SceneSettings {
     pub solid_budget: Option<u64>,
 }
 
-/// Images in addition to the colour.
+/// Images in addition to the colour. [`Picture`] says what each holds, in which unit and space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub struct Outputs {
+    /// [`Picture::depth`].
     pub depth: bool,
+    /// [`Picture::face`].
     pub face: bool,
+    /// [`Picture::uv`].
     pub uv: bool,
+    /// [`Picture::normal`].
     pub normal: bool,
+    /// [`Picture::thickness`].
     pub thickness: bool,
+    /// [`Picture::edge`].
     pub edge: bool,
+    /// [`Picture::part`].
     pub part: bool,
+    /// [`Picture::instance`].
     pub instance: bool,
 }
 
