@@ -375,7 +375,7 @@ void main() {
                 bool is_patch = SOLIDS_HAVE_PATCHES && of_patch;
                 Fragment f = is_patch ? fragment_at(fragments, side) : Fragment(0u, 0.0, side, 0u);
                 packed = pack_layer((is_patch ? SEEN_OPERAND : SEEN_SOLID) | f.what, f.uv, t);
-                shows = FOLLOWED_FOR == FOR_BACK;
+                shows = FOLLOWED_FOR == FOR_BACK && opacity < 1.0;
             } else if (opacity > 0.0) {
                 if (first_seen == stop && rest == 1.0) first_seen = t;
                 Lit lit = lit_at(seen.colour.rgb, seen.n, false, ray, t, seen.surface);
