@@ -33,6 +33,7 @@ mod lengths;
 mod light;
 mod living;
 mod look;
+mod mesh_lines;
 mod meshes;
 mod met_lines;
 mod models;
