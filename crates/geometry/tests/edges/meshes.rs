@@ -80,19 +80,10 @@ fn odd_triangles() {
     assert_eq!(kinds(zero).len(), 6);
 }
 
-/// The sides of a ball of triangles are smooth, each once, with the corners across; those of a block are creases, and
-/// its diagonals are smooth.
+/// The diagonals of a cube's sides, with the corners across them; with a wider limit its edges, too.
 #[test]
 fn smooth_sides_are_those_between_creases() {
-    let block: Vec<[DVec3; 3]> = {
-        let pick = |i: usize, axis: usize| if i >> axis & 1 == 0 { 0.0 } else { 1.0 };
-        let corner = |i: usize| DVec3::new(pick(i, 0), pick(i, 1), pick(i, 2));
-        let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).map(|t| t.map(corner)).collect()
-    };
-    let triangles = (0..block.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    let mesh = Mesh::new(1, block.concat(), triangles, vec![]).unwrap();
-    let part = Part { meshes: vec![mesh], ..Part::default() };
+    let part = Part { meshes: vec![quads(&cube())], ..Part::default() };
     let found = part.smooth_sides(&EdgeLimits::default());
     assert_eq!(found.len(), 6);
     for side in &found {
@@ -101,5 +92,5 @@ fn smooth_sides_are_those_between_creases() {
         // the other corners of the square
         assert_eq!(side.beside[0] + side.beside[1], a + b, "{side:?}");
     }
-    assert!(part.smooth_sides(&EdgeLimits { crease: 2.0, ..EdgeLimits::default() }).len() == 18);
+    assert_eq!(part.smooth_sides(&EdgeLimits { crease: 2.0, ..EdgeLimits::default() }).len(), 18);
 }
