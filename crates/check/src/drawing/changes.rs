@@ -175,17 +175,17 @@ impl<'a> Changes<'a> {
     /// All changes between two rays.
     pub fn between(&self, a: &Ray, b: &Ray, probe: &mut Probe<'_>) -> Vec<Change> {
         let mut out = Vec::new();
-        self.look(a, b, LEVELS, probe, &mut out);
+        self.search(a, b, LEVELS, probe, &mut out);
         out
     }
 
-    fn look(&self, a: &Ray, b: &Ray, levels: u32, probe: &mut Probe<'_>, out: &mut Vec<Change>) {
+    fn search(&self, a: &Ray, b: &Ray, levels: u32, probe: &mut Probe<'_>, out: &mut Vec<Change>) {
         if levels == 0 {
             return;
         }
         if self.is_one(a, b) {
             if self.is_suspect(a, b) {
-                self.look_within(a, b, levels, probe, out);
+                self.search_within(a, b, levels, probe, out);
             }
             return;
         }
@@ -194,13 +194,13 @@ impl<'a> Changes<'a> {
             let middle = self.ray(0.5 * (low.pixel + high.pixel), probe);
             if self.is_one(&low, &middle) { low = middle } else { high = middle }
         }
-        self.look(a, &low, levels - 1, probe, out);
+        self.search(a, &low, levels - 1, probe, out);
         out.extend(self.why(&low, &high, probe));
-        self.look(&high, b, levels - 1, probe, out);
+        self.search(&high, b, levels - 1, probe, out);
     }
 
     /// Two points of one surface: the largest step between them, of the normal or of the depth.
-    fn look_within(&self, a: &Ray, b: &Ray, levels: u32, probe: &mut Probe<'_>, out: &mut Vec<Change>) {
+    fn search_within(&self, a: &Ray, b: &Ray, levels: u32, probe: &mut Probe<'_>, out: &mut Vec<Change>) {
         let turns = self.turns(a, b);
         let step = |p: &Ray, q: &Ray| match (&p.hit, &q.hit) {
             (Some(p), Some(q)) if turns => p.normal.distance(q.normal),
@@ -211,8 +211,8 @@ impl<'a> Changes<'a> {
             let middle = self.ray(0.5 * (low.pixel + high.pixel), probe);
             if !self.is_one(&low, &middle) {
                 // another surface lies between
-                self.look(&low, &middle, levels - 1, probe, out);
-                self.look(&middle, &high, levels - 1, probe, out);
+                self.search(&low, &middle, levels - 1, probe, out);
+                self.search(&middle, &high, levels - 1, probe, out);
                 return;
             }
             if step(&low, &middle) >= step(&middle, &high) { high = middle } else { low = middle }
