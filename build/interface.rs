@@ -8,16 +8,14 @@
 //!
 //! Source: Khronos, *SPIR-V Specification* 1.6, sections 2.3, 3.6, 3.7 and 3.42.
 
-use crate::reflect::{Module, instructions};
+use crate::reflect::{Module, OP_CONSTANT, OP_DECORATE, instructions};
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write as _;
 
-const OP_CONSTANT: u16 = 43;
 const OP_TYPE_IMAGE: u16 = 25;
 const OP_TYPE_SAMPLED_IMAGE: u16 = 27;
 const OP_TYPE_POINTER: u16 = 32;
 const OP_VARIABLE: u16 = 59;
-const OP_DECORATE: u16 = 71;
 const OP_EXECUTION_MODE_ID: u16 = 331;
 const MODE_LOCAL_SIZE_ID: u32 = 38;
 const DECORATION_SPEC_ID: u32 = 1;
@@ -68,7 +66,7 @@ impl Interfaces {
         }
         let group = found.group.map(|id| found.numbers.get(&id).copied().unwrap_or_default());
         if is_compute && group.contains(&0) {
-            return Err(format!("{shader}: the size of its workgroups is not told"));
+            return Err(format!("{shader}: the size of its workgroups is not stated"));
         }
         let constants = found.constants.iter().filter_map(|(constant, id)| Some((module.names.get(id)?, *constant)));
         let mut ids = Vec::new();

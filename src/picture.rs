@@ -277,17 +277,24 @@ pub struct SceneSettings {
     pub solid_budget: Option<u64>,
 }
 
-/// Images in addition to the colour.
+/// Images in addition to the colour. [`Picture`] says what each holds, in which unit and space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub struct Outputs {
+    /// [`Picture::depth`].
     pub depth: bool,
+    /// [`Picture::face`].
     pub face: bool,
+    /// [`Picture::uv`].
     pub uv: bool,
+    /// [`Picture::normal`].
     pub normal: bool,
+    /// [`Picture::thickness`].
     pub thickness: bool,
+    /// [`Picture::edge`].
     pub edge: bool,
+    /// [`Picture::part`].
     pub part: bool,
+    /// [`Picture::instance`].
     pub instance: bool,
 }
 
@@ -325,7 +332,7 @@ pub struct Picture {
     pub size: (u32, u32),
     /// sRGB-encoded colour, not multiplied by its opacity, and opacity.
     pub colour: Vec<[u8; 4]>,
-    /// Distance along the view axis, `+inf` for background.
+    /// Distance from the eye along the view axis, model units; `+inf` for background.
     pub depth: Vec<f32>,
     /// [`Face::id`](crate::model::Face::id) or [`Mesh::id`](crate::model::Mesh::id), 0 for background.
     pub face: Vec<u32>,

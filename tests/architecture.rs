@@ -21,14 +21,15 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("import", &["brep", "construct", "csg", "native", "math", "spline", "model"]),
     ("export", &["construct", "csg", "edges", "spline", "trim", "model"]),
     ("native", &["model"]),
-    // selvedge-check: Cargo enforces it
+    // selvedge-check and selvedge-jobs: Cargo enforces it
     ("check", &[]),
+    ("jobs", &[]),
     // selvedge-viewer: without a window
     ("navigation", &[]),
     ("pacing", &[]),
     ("desktop", &[]),
     ("watch", &[]),
-    ("session", &[]), // also the crate of that name, for which Cargo enforces it
+    ("session", &[]),
     ("settings", &["navigation"]),
     ("commands", &["navigation"]),
     ("pick", &["session"]),
@@ -130,7 +131,7 @@ const HOSTS: &[&str] =
     &["println!", "print!(", "eprintln!", "eprint!(", "dbg!(", "std::env::", "process::exit", "process::abort"];
 /// Sources of the library crates.
 const LIBRARIES: &[&str] =
-    &["src", "crates/geometry/src", "crates/io/src", "crates/check/src", "crates/session/src", "crates/viewer/src"];
+    &["src", "crates/geometry/src", "crates/io/src", "crates/check/src", "crates/jobs/src", "crates/viewer/src"];
 /// Longest source file.
 const MOST_LINES: usize = 500;
 
@@ -166,7 +167,7 @@ impl Source {
     fn new(path: String, text: &str) -> Self {
         let module = match path.strip_prefix("crates/") {
             Some(within) if within.starts_with("check/") => "check",
-            Some(within) if within.starts_with("session/") => "session",
+            Some(within) if within.starts_with("jobs/") => "jobs",
             Some(within) => within.split_once("/src/").expect("a source file").1,
             None => path.trim_start_matches("src/"),
         };
@@ -196,7 +197,7 @@ impl Source {
         let mut complain = |what: String| all.push(format!("{}: {what}", self.path));
         let module = self.module.as_str();
         match MAY_USE.iter().find(|(name, _)| *name == module) {
-            _ if ["check", "session"].contains(&module) => {}
+            _ if ["check", "jobs"].contains(&module) => {}
             None => complain(format!("tests/architecture.rs does not say what `{module}` may use")),
             Some((_, may)) => {
                 for used in self.uses().into_iter().filter(|used| *used != module && !may.contains(used)) {
@@ -282,7 +283,7 @@ fn a_forbidden_use_is_seen() {
     assert_eq!(complaints("src/frame/gaps/new.rs", "fn f() { unsafe { g() } }\n"), 1);
     assert_eq!(complaints("crates/geometry/src/spline/new.rs", "use ash::vk;\n"), 1);
     assert_eq!(complaints("crates/geometry/src/spline/new.rs", "use std::hash::Hash;\n"), 0);
-    assert_eq!(complaints("crates/session/src/new.rs", "fn f(x: selvedge::ash::vk::Image) {}\n"), 1);
+    assert_eq!(complaints("crates/jobs/src/new.rs", "fn f(x: selvedge::ash::vk::Image) {}\n"), 1);
     assert_eq!(
         complaints("crates/io/src/import/new.rs", "println!(\"read\");\n#[cfg(test)]\nmod tests { println!() }\n"),
         1

@@ -224,6 +224,12 @@ def plain_words(sources: list[str]) -> set[str]:
     return words | {"nan", "1e-9", "1e300", "-1", "0", "4294967295", "{", "}", "[", "]"}
 
 
+def native_words(sources: list[str]) -> set[str]:
+    """Variants of enums, as MessagePack has them: a byte with the length, and the name."""
+    names = {name for text in sources for name in re.findall(r"^    ([A-Z][A-Za-z0-9]{1,30})\b *[,({]", text, re.M)}
+    return {f"\\x{0xA0 + len(name):02x}{name}" for name in names}
+
+
 def iges_words(sources: list[str]) -> set[str]:
     kinds = {word for text in sources for word in re.findall(r"\b(1\d\d|308|314|402|406|408|5\d\d)\b", text)}
     return {f"{kind}," for kind in kinds} | {"1H,", "0.", "1.E9", ",,", ";"}
@@ -246,7 +252,7 @@ FORMATS = {
     "iges": (iges, "crates/io/src/import/iges", iges_words),
     "obj": (obj, "crates/io/src/import/obj", plain_words),
     "bv": (bv, "crates/io/src/import/bv", plain_words),
-    "native": (native, "src/model", plain_words),
+    "native": (native, "crates/geometry/src/model", native_words),
     "scad": (scad, "crates/io/src/import/scad", plain_words),
     "brlcad": (brlcad, "crates/io/src/import/brlcad", plain_words),
     "scene": (scene, "crates/io/src/import/scene", plain_words),

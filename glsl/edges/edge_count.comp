@@ -16,6 +16,7 @@ layout(scalar, binding = 3) readonly buffer EdgePieces { EdgePiece edge_pieces[]
 layout(binding = 4) uniform samplerBuffer edge_points;
 layout(scalar, binding = 5) writeonly buffer ChordCounts { uint chord_counts[]; };
 layout(scalar, binding = 6) buffer CountersBuffer { Counters counters; };
+layout(scalar, binding = 7) readonly buffer EdgeLines { EdgeLine edge_lines[]; };
 
 layout(scalar, push_constant) uniform Push {
     uint instance_count;
@@ -32,6 +33,9 @@ void main() {
     uint i = thread_number();
     if (i >= push.instance_count) return;
     PieceInstance piece_instance = piece_instances[i];
-    if (divide(edge_pieces[piece_instance.piece], views[piece_instance.placement])) atomicAdd(counters.clamps, 1u);
+    EdgePiece piece = edge_pieces[piece_instance.piece];
+    View view = views[piece_instance.placement];
+    bool is_drawn = (edge_lines[piece.edge].style & EDGE_TURNS) == 0u || is_outline(piece, view);
+    if (is_drawn && divide(piece, view)) atomicAdd(counters.clamps, 1u);
     chord_counts[i] = counted;
 }

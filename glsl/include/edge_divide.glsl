@@ -115,6 +115,24 @@ uint fate_of(View view, uint n, out bool near) {
     return max(uint(chords), 1u);
 }
 
+// Of a side of triangles (EDGE_TURNS): one of both faces the eye and the other does not. In the picture, they lie on one
+// side of it. Pixels are times W, and relative to the first end.
+bool is_outline(EdgePiece piece, View view) {
+    vec4 end = texelFetch(edge_points, int(piece.first));
+    vec4 q = to_pixel(view, end);
+    precise vec2 pixel = q.xy / q.w;
+    vec2 ways[3];
+    for (uint k = 0u; k < 3u; ++k) {
+        precise vec4 way = texelFetch(edge_points, int(piece.first + k + 1u)) - end;
+        vec4 moved = to_pixel(view, way);
+        precise vec2 beside = moved.xy - pixel * moved.w;
+        ways[k] = beside;
+    }
+    precise float first = ways[0].x * ways[1].y - ways[0].y * ways[1].x;
+    precise float second = ways[0].x * ways[2].y - ways[0].y * ways[2].x;
+    return (first < 0.0) == (second < 0.0);
+}
+
 // Visits the halves of a piece in order; true if one bends too much and cannot be halved further.
 bool divide(EdgePiece piece, View view) {
     uint n = min(piece.degree, EDGE_MOST_POINTS - 1u);

@@ -76,7 +76,11 @@ bool is_own(uint instance, uint key) {
 
 bool is_own_face(FaceInstance fi) { return is_own(fi.instance, word_at(face_keys, fi.face)); }
 
-bool is_own_triangle(uint instance, uint triangle) { return is_own(instance, OWN_TRIANGLE | triangle); }
+// Outlines of a mesh have no triangles of their own: all of the instance are, within TURN_SHEET_PX.
+bool is_own_triangle(uint instance, uint triangle) {
+    if ((chords[chord].style & EDGE_TURNS) == 0u) return is_own(instance, OWN_TRIANGLE | triangle);
+    return texelFetch(sources, int(instance)).y == piece_instances[chords[chord].piece_instance].instance;
+}
 
 const bool OWN_PATCHES_HIDE = false;
 #include "edge_seen.glsl"
@@ -91,6 +95,9 @@ layout(constant_id = 43) const bool DRAWS_FOLDS = false;
 
 // What Newton's method leaves of the way to the edge's place, and what the sheet bends on it.
 const float ON_SHEET_PX = 1.0 / 64.0;
+// An outline of a mesh lies behind the planes of the triangles beside it, by no more than it is away from them in the
+// picture where the mesh is round. Those that pixels of the line see are this near.
+const float TURN_SHEET_PX = 2.0;
 // Dashes of hidden lines and the gaps between them, in half widths of lines.
 const float DASH = 8.0;
 const float GAP = 6.0;
@@ -112,7 +119,9 @@ EdgePoint point_at(float t, EdgePiece piece, View view) {
         advance(w, n, i, t);
     }
     vec4 q = to_pixel(view, vec4(p.xyz / p.w, 1.0));
-    return EdgePoint(q.xy / q.w, seen_from_eye(q), vec2(ON_SHEET_PX, edge_lines[piece.edge].off));
+    bool turns = (edge_lines[piece.edge].style & EDGE_TURNS) != 0u;
+    vec2 slack = vec2(turns ? TURN_SHEET_PX : ON_SHEET_PX, edge_lines[piece.edge].off);
+    return EdgePoint(q.xy / q.w, seen_from_eye(q), slack);
 }
 
 // Share of a hidden line's dash at a pixel, by rows of a steep line and columns of a flat one.
@@ -201,7 +210,8 @@ void main() {
         if (steps == 0u || imageLoad(lines, at).x >= best) continue;
         bool near = !is_edge || (c.style & EDGE_NEAR) == 0u || is_near_own(p);
         if (!near || !is_seen(p, at) || is_covered(p, at)) {
-            steps = is_edge ? uint(covered * dash(along, gl_FragCoord.xy, half_px) * LINE_STEPS + 0.5) : 0u;
+            bool is_dashed = is_edge && (c.style & EDGE_TURNS) == 0u;
+            steps = is_dashed ? uint(covered * dash(along, gl_FragCoord.xy, half_px) * LINE_STEPS + 0.5) : 0u;
             if (push.hidden == 0u || steps == 0u) continue;
             best = steps << LINE_COVERAGE | what;
         }

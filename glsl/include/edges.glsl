@@ -41,6 +41,9 @@ const uint EDGE_BOLD = 2u; // outlines of sections
 const uint EDGE_STYLE = 3u;
 const uint EDGE_NEAR = 4u; // beside it: drawn only where a pixel around sees a face of its own
 const uint EDGE_UNDRAWN = 8u; // only folds beside it are drawn
+// Sides of triangles, drawn where the mesh turns away at them. Behind the two ends of each: the third corners of both
+// triangles.
+const uint EDGE_TURNS = 64u;
 // From this bit on: how many curved faces a smooth edge has, or sides a seam. Their folds close to the edge are drawn.
 const uint EDGE_SEEDS = 4u;
 const uint EDGE_MOST_SEEDS = 3u;

@@ -39,7 +39,10 @@ struct Change {
 // Model units across a pixel.
 float pixel_across(float t) { return (frame.perspective != 0u ? t : 1.0) / frame.focal; }
 
-bool is_cap(Sheet s) { return s.is_there && s.operand == 0u && (leaves[s.leaf].flags & LEAF_CAP) != 0u; }
+bool is_cap(Sheet s) {
+    bool is_side = s.is_there && s.leaf != NO_LEAF && s.operand == 0u;
+    return is_side && (leaves[s.leaf].flags & LEAF_CAP) != 0u;
+}
 
 vec3 point_on(float t, vec2 place) {
     Ray ray = eye_ray(frame, place);
@@ -96,6 +99,7 @@ float end_of(Sheet f, vec2 from, vec2 to, uint tile, out float cosine, out bool 
     cut = false;
     if (!is_depth(depths.y) || !is_depth(depths.z)) return best;
     float slack = ON_SIDE_PX * pixel_across(f.t);
+    uint item = leaves[f.leaf].item;
     uint first = min(word_at(tile_starts, tile), frame.tile_leaf_capacity);
     uint end = min(word_at(tile_starts, tile + 1u), frame.tile_leaf_capacity);
     vec3 p0 = point_on(depths.x, from);
@@ -103,7 +107,9 @@ float end_of(Sheet f, vec2 from, vec2 to, uint tile, out float cosine, out bool 
     for (uint i = first; i < end; ++i) {
         uint number = leaf_number(tile_leaf_at(tile_leaves, i));
         Leaf leaf = leaves[number];
-        if (number >= frame.followed_leaf || (leaf.flags & LEAF_BOUNDARY) != 0u) continue;
+        // a solid that is seen through ends at its own sides, and at what is opaque
+        bool is_opaque = number < frame.followed_leaf;
+        if (!is_opaque && leaf.item != item || (leaf.flags & LEAF_BOUNDARY) != 0u) continue;
         for (uint k = leaf.first; k < leaf.first + leaf.count; ++k) {
             uint side = side_word(leaf_surfaces, k);
             if (side >> SIDE_SHIFT == f.surface) continue;
@@ -136,8 +142,9 @@ float end_of(Sheet f, vec2 from, vec2 to, uint tile, out float cosine, out bool 
     return best;
 }
 
-// Between pixels that see two surfaces, or nothing at one of them. `a` and `b` are their centres.
-Change change_between(Sheet sheets[2], vec2 a, vec2 b) {
+// Between pixels that see two surfaces, or nothing at one of them. `a` and `b` are their centres. `order`: 1 where of two
+// surfaces the nearer one is seen, -1 where it is the farther one.
+Change change_between(Sheet sheets[2], vec2 a, vec2 b, float order) {
     Change c = Change(CHANGE_NONE, 0.5, sheets[0].is_there, 0.0);
     bool two = sheets[0].is_there && sheets[1].is_there;
     bool swapped = !sheets[0].is_there;
@@ -163,7 +170,7 @@ Change change_between(Sheet sheets[2], vec2 a, vec2 b) {
         }
         bool met0 = is_depth(depths[0]);
         bool met1 = is_depth(depths[1]);
-        float g = depths[0] - depths[1];
+        float g = order * (depths[0] - depths[1]);
         if (i == 0u) {
             g0 = met0 && met1 ? g : NEVER;
         } else if (i == 1u) {
@@ -190,7 +197,7 @@ Change change_between(Sheet sheets[2], vec2 a, vec2 b) {
                 g0 = -g1;
             } else {
                 // neither is there where the other is seen: the nearer one hides the farther
-                c.first = sheets[0].t < sheets[1].t;
+                c.first = order * (sheets[0].t - sheets[1].t) < 0.0;
                 swapped = !c.first;
                 two = false;
             }

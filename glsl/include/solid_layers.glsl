@@ -54,6 +54,8 @@ layout(scalar, push_constant) uniform Marks {
 const uint FOR_COLOUR = 0u;    // the pixel's colour
 const uint FOR_FIRST = 1u;     // the images of the first face that is not fully transparent
 const uint FOR_THICKNESS = 2u; // its length within solids
+const uint FOR_FRONT = 3u;     // the nearest face that is seen through, packed: layer_words.glsl
+const uint FOR_BACK = 4u;      // the farthest one in front of what is opaque
 layout(constant_id = 15) const uint FOLLOWED_FOR = FOR_COLOUR;
 // Whether contacts and overlaps are marked; only for colour.
 layout(constant_id = 16) const bool MARKS = false;
@@ -70,6 +72,7 @@ Patch patch_at(uint i) { return patches[i]; }
 
 #include "patch_normal.glsl"
 #include "visible.glsl"
+#include "layer_words.glsl"
 #include "sides.glsl"
 
 const uint NOBODY = 0xffffffffu;
@@ -175,6 +178,8 @@ Layer layer_of_patch(Fragment f, Ray ray) {
 
 float depth_written(float t) { return reversed_depth(frame, t) / (frame.perspective != 0u ? t : 1.0); }
 
+bool packs_faces() { return FOLLOWED_FOR == FOR_FRONT || FOLLOWED_FOR == FOR_BACK; }
+
 void main() {
     uint n = tile_in_band(frame, uvec2(gl_FragCoord.xy));
     uint first = min(tile_starts[n], frame.tile_leaf_capacity);
@@ -192,6 +197,7 @@ void main() {
     float rest = 1.0;     // transparency of all layers so far
     float first_seen = stop;
     float thickness = 0.0;
+    vec4 packed = vec4(0.0); // nothing
     bool touches = false;
     bool overlaps = false;
     bool shows = true;    // layers are still drawn
@@ -365,7 +371,12 @@ void main() {
             if (SOLIDS_HAVE_PATCHES && of_patch) seen = layer_of_patch(fragment_at(fragments, side), ray);
             else seen = layer_of(side, t, ray);
             float opacity = seen.colour.a;
-            if (opacity > 0.0) {
+            if (opacity > 0.0 && packs_faces()) {
+                bool is_patch = SOLIDS_HAVE_PATCHES && of_patch;
+                Fragment f = is_patch ? fragment_at(fragments, side) : Fragment(0u, 0.0, side, 0u);
+                packed = pack_layer((is_patch ? SEEN_OPERAND : SEEN_SOLID) | f.what, f.uv, t);
+                shows = FOLLOWED_FOR == FOR_BACK && opacity < 1.0;
+            } else if (opacity > 0.0) {
                 if (first_seen == stop && rest == 1.0) first_seen = t;
                 Lit lit = lit_at(seen.colour.rgb, seen.n, false, ray, t, seen.surface);
                 if (FOLLOWED_FOR == FOR_FIRST) {
@@ -403,6 +414,10 @@ void main() {
     // count rays whose loops a driver ended
     if (steps != wanted || !done) atomicAdd(counters.clamps, 1u);
     if (FOLLOWED_FOR == FOR_FIRST) discard;
+    if (packs_faces()) {
+        out_colour = packed;
+        return;
+    }
     if (FOLLOWED_FOR == FOR_THICKNESS) {
         out_colour = vec4(thickness * length(ray.d));
         return;

@@ -1,4 +1,5 @@
-// What a pixel sees of a Boolean solid, followed to other places of the picture. Needs scene.glsl, view.glsl,
+// What a pixel sees of a Boolean solid, followed to other places of the picture. face_sheet.glsl has the sheets of faces
+// and meshes that are of no solid. Needs scene.glsl, view.glsl,
 // solids.glsl, boundary_operands.glsl, eye_ray.glsl, sides.glsl, refine.glsl, visible.glsl, `frame`, and what
 // sides.glsl and patch.glsl need.
 //
@@ -16,7 +17,7 @@ const uint SPLINE_SHEET = 0xc0000000u;
 const uint NO_LEAF = 0xffffffffu;
 
 struct Sheet {
-    bool is_there;  // a Boolean solid is seen
+    bool is_there;  // something is seen
     bool is_round;  // has an equation beside its tangent plane
     uint surface;   // as Side.surface; of a spline face SPLINE_SHEET
     uint leaf;
@@ -25,9 +26,10 @@ struct Sheet {
     float t;        // its depth
     bool enters;    // rays get to where the surface's function is below 0
     vec2 range;     // depths nearer to this root than to another one of the same kind
+    uvec2 face;     // of a face or mesh that is of no solid: the pixel's words; else 0
 };
 
-const Sheet NO_SHEET = Sheet(false, false, 0u, 0u, 0u, vec4(0.0), 0.0, false, vec2(0.0));
+const Sheet NO_SHEET = Sheet(false, false, 0u, 0u, 0u, vec4(0.0), 0.0, false, vec2(0.0), uvec2(0u));
 
 bool is_depth(float t) { return abs(t) < 0.1 * NEVER; }
 
@@ -45,13 +47,21 @@ vec3 normal_on(Sheet s, vec3 p) {
     return normalize(surface_gradient(surface_at(surfaces, s.surface), p - place_at(surface_places, s.surface).xyz));
 }
 
-// The normal of a spline face of an operand, model axes, and the operand's number.
-vec3 normal_of_patch(uint patch_instance, vec2 uv, vec2 pixel, out uint operand) {
+// A spline face at a pixel: the point of it, model axes, its normal, and the operand that it bounds.
+struct PatchPoint {
+    vec3 n;
+    uint operand;
+    float t;    // depth
+    vec2 uv;    // of the patch
+    float miss; // distance from the pixel, pixels
+};
+
+PatchPoint patch_point(uint patch_instance, vec2 uv, vec2 pixel) {
     FaceInstance fi = face_instances[patch_instances[patch_instance]];
     Patch patch_ = patch_at(faces[fi.face].first_patch + patch_instance - fi.first_patch_instance);
     Sample s = refine(patch_, views[fi.instance], uv, pixel);
-    operand = instances[fi.instance].operand;
-    return normalize(instances[fi.instance].normal * cross(normalize(s.jet.du), normalize(s.jet.dv)));
+    vec3 n = normalize(instances[fi.instance].normal * cross(normalize(s.jet.du), normalize(s.jet.dv)));
+    return PatchPoint(n, instances[fi.instance].operand, s.q.z, s.uv, length(s.miss));
 }
 
 // `seen` and `uv` are those of the pixel.
@@ -66,11 +76,11 @@ Sheet sheet_at(ivec2 at, uvec2 seen, uint uv) {
     vec3 p = ray.o + s.t * ray.d;
     vec3 n;
     if (of_patch) {
-        uint operand;
-        n = normal_of_patch(seen_patch_instance(seen.x), unpack_uv(uv), pixel, operand);
+        PatchPoint on = patch_point(seen_patch_instance(seen.x), unpack_uv(uv), pixel);
+        n = on.n;
         s.surface = SPLINE_SHEET;
         s.leaf = NO_LEAF;
-        s.operand = operand + 1u;
+        s.operand = on.operand + 1u;
     } else {
         Side side = side_at(seen_side(seen.x), s.t, ray);
         n = normalize(side.n);

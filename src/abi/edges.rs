@@ -1,8 +1,8 @@
 //! Lines along edges. Twins of `glsl/include/edges.glsl`.
 
 pub use crate::abi::constants::edges::{
-    EDGE_BOLD, EDGE_FULL, EDGE_MOST_SEEDS, EDGE_NEAR, EDGE_SEEDS, EDGE_THIN, EDGE_UNDRAWN, OWN_TRIANGLE, SEED_END,
-    SOLID_NUMBER,
+    EDGE_BOLD, EDGE_FULL, EDGE_MOST_SEEDS, EDGE_NEAR, EDGE_SEEDS, EDGE_THIN, EDGE_TURNS, EDGE_UNDRAWN, FOLD_NUMBER,
+    OWN_TRIANGLE, SEED_END, SOLID_NUMBER,
 };
 use bytemuck::{Pod, Zeroable};
 

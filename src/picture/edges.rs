@@ -12,7 +12,7 @@ pub struct EdgeSettings {
     pub which: EdgeChoice,
     /// Lines along edges across which the surface continues without a visible angle.
     pub tangent: TangentEdges,
-    /// Outlines of curved faces, where they turn away from the eye.
+    /// Outlines of curved faces and of meshes, where they turn away from the eye.
     pub silhouettes: bool,
     /// Also draw lines behind faces: dashed, in [`hidden_colour`](Self::hidden_colour).
     pub hidden: bool,

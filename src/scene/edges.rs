@@ -3,6 +3,7 @@
 //! ```text
 //!   Part::edges ─▶ EdgeLine, one an edge that is drawn ─▶ own faces: numbers of the scene's, or triangles
 //!              └─▶ EdgePiece, one a rational Bézier piece ─▶ control points
+//!   Part::smooth_sides ─▶ one EdgeLine, an EdgePiece a side: drawn where the mesh turns away there
 //!   placed parts ─▶ PieceInstance: a piece, its view, its instance
 //! ```
 //!
@@ -13,7 +14,7 @@ use super::data::SceneData;
 use super::deep_zoom::KnownEdges;
 use super::fold_seeds::{PartFaces, seeds};
 use crate::abi;
-use crate::model::{Edge, EdgeKind, Edges, Model, Part};
+use crate::model::{Edge, EdgeKind, EdgeLimits, Edges, Model, Part, SmoothSide};
 use crate::picture::{EdgeChoice, EdgeSettings, LineStyle};
 use glam::{DAffine3, DVec3, DVec4};
 use rayon::prelude::*;
@@ -160,6 +161,21 @@ impl EdgeData {
                 |&(mesh, nth): &(usize, usize)| abi::OWN_TRIANGLE | (of.first_triangles[part][mesh] + nth as u32);
             self.push_line(number, style, edge.triangles.iter().map(triangle).collect(), 0.0, 0);
             self.push_piece(&edge.ends.map(|p| p.extend(1.0)), origin);
+        }
+        if self.settings.silhouettes {
+            self.push_outlines(&of.model.parts[part].smooth_sides(&EdgeLimits::default()), origin);
+        }
+    }
+
+    /// Adds sides of triangles that are outlines in some views: pieces of one line.
+    fn push_outlines(&mut self, sides: &[SmoothSide], origin: DVec3) {
+        if sides.is_empty() {
+            return;
+        }
+        self.push_line(abi::FOLD_NUMBER, LineStyle::Full, Vec::new(), 0.0, abi::EDGE_TURNS);
+        for side in sides {
+            self.push_piece(&side.ends.map(|p| p.extend(1.0)), origin);
+            self.points.extend(side.beside.map(|p| (p - origin).extend(1.0).as_vec4().to_array()));
         }
     }
 

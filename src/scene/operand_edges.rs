@@ -5,7 +5,8 @@
 //!           ─Part::cut, by its sections─▶ outlines, bold ─▶ EdgeLine, EdgePiece, PieceInstance, as those of placed parts
 //! ```
 //!
-//! Where other primitives cut the solid, a line is drawn only where a pixel beside it sees a face of its own.
+//! Where other primitives cut the solid, a line is drawn only where a pixel beside it sees a face of its own: none in a
+//! solid that is seen through.
 
 use super::data::SceneData;
 use super::edges::{EdgeData, UndrawnEdges};
@@ -65,8 +66,12 @@ impl SceneData {
             return Ok(());
         };
         let mut known = Known::default();
-        // what rays are followed through is drawn as parts are, or seen through
-        let is_seen = |operand: &&Operand| self.solids.operand_leaves[operand.number as usize] < self.solids.followed;
+        // parts and meshes that are seen through by themselves have edges as other parts have, and so have those that
+        // rays are followed through for other reasons
+        let is_seen = |operand: &&Operand| {
+            let leaf = self.solids.operand_leaves[operand.number as usize];
+            leaf < self.solids.followed || self.solids.is_in_clear_solid(leaf)
+        };
         for operand in self.solids.operands.iter().filter(is_seen) {
             let Some(edges) = known.of(&operand.primitive.shape, model)? else { continue };
             let meshes = &self.solids.operand_meshes[operand.meshes.clone()];

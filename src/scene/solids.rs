@@ -331,6 +331,22 @@ impl SolidData {
         (self.followed as usize) < self.leaves.len()
     }
 
+    /// Some solid that is seen through is no closed part or mesh alone: those have edges of their own.
+    pub(crate) fn has_clear_solids(&self) -> bool {
+        let leaves = (0..).zip(&self.leaves).skip(self.followed as usize);
+        let is_one = |(number, leaf): (u32, &abi::Leaf)| leaf.flags & abi::LEAF_BOUNDARY == 0 || leaf.item != number;
+        leaves.filter(|(_, leaf)| leaf.flags & abi::LEAF_ELSEWHERE == 0).any(is_one)
+    }
+
+    /// Whether the leaf of an operand without equations belongs to a solid that is seen through, beside other leaves.
+    pub(super) fn is_in_clear_solid(&self, leaf: u32) -> bool {
+        let Some(of) = self.leaves.get(leaf as usize).filter(|of| of.flags & abi::LEAF_ELSEWHERE == 0) else {
+            return false;
+        };
+        let second = self.leaves.get(of.item as usize + 1);
+        leaf >= self.followed && second.is_some_and(|second| second.item == of.item)
+    }
+
     /// The volume that trims a scene; `None` if it is all of space.
     pub(super) fn volume(volume: &Solid, coincidence: f64, way: TakenWay) -> Result<Option<Self>, UndrawnSolid> {
         if !matches!(way, TakenWay::Table | TakenWay::Exact) {

@@ -5,7 +5,7 @@
 
 use super::view::to_pixel;
 use crate::abi::constants::edge_divide::{EDGE_HALVINGS, EDGE_MOST_CHORDS, EDGE_TOLERANCE_PX};
-use crate::abi::{Chord, EdgeLine, EdgePiece, Frame, PieceInstance, View};
+use crate::abi::{Chord, EDGE_TURNS, EdgeLine, EdgePiece, Frame, PieceInstance, View};
 
 /// Most chords of a piece; a piece that needs more is halved.
 pub const MOST_CHORDS: u32 = EDGE_MOST_CHORDS;
@@ -37,6 +37,9 @@ pub fn divide(frame: &Frame, given: &Given<'_>) -> (Vec<Vec<Chord>>, u32) {
             let points = &given.points[piece.first as usize..=(piece.first + piece.degree) as usize];
             let style = given.lines[piece.edge as usize].style;
             let walk = Walk { frame, view: &given.views[piece_instance.placement as usize], margin: given.margin_px };
+            if style & EDGE_TURNS != 0 && !walk.is_outline(&given.points[piece.first as usize..][..4]) {
+                return Vec::new();
+            }
             let (chords, clamped) = walk.divide(points, (number, style));
             clamps += u32::from(clamped);
             chords
@@ -96,6 +99,18 @@ fn at(net: &[Point], t: f32) -> Point {
 }
 
 impl Walk<'_> {
+    /// Of a side of triangles, its ends and the third corners of both.
+    fn is_outline(&self, corners: &[Point]) -> bool {
+        let q = to_pixel(self.view, corners[0]);
+        let pixel = [q[0] / q[3], q[1] / q[3]];
+        let [along, a, b] = [1, 2, 3].map(|k| {
+            let moved = to_pixel(self.view, std::array::from_fn(|i| corners[k][i] - corners[0][i]));
+            [moved[0] - pixel[0] * moved[3], moved[1] - pixel[1] * moved[3]]
+        });
+        let side = |to: [f32; 2]| along[0] * to[1] - along[1] * to[0] < 0.0;
+        side(a) == side(b)
+    }
+
     fn fate(&self, net: &[Point]) -> Fate {
         let n = net.len() - 1;
         let last = self.frame.size.map(|size| size + self.margin);

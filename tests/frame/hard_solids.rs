@@ -4,13 +4,13 @@
 use crate::cages;
 use crate::shapes::operands;
 use crate::shapes::solids::{self, at, ball, block, moved, post, ring, turned};
-use crate::solids::{faults, right_at};
+use crate::solids::right_at;
 use crate::support::{assert_silent, perspective, render, watched};
 use glam::DVec3;
 use selvedge::csg::{Builder, Op};
 use selvedge::model::{Camera, Mesh, Model, Primitive, Projection, Quadric, Shape, Solid};
 use selvedge::picture::{SceneSettings, SolidWay};
-use selvedge_check::Tracer;
+use selvedge_check::{JudgeOptions, Tracer, judge};
 use std::sync::Arc;
 
 const SIZE: (u32, u32) = (120, 80);
@@ -172,7 +172,10 @@ fn outer_equators_from_afar() {
             ..near
         };
         renderer.upload(&model).unwrap();
-        assert_eq!(faults(&mut renderer, &Tracer::new(&model), &afar, false), None, "{minor}");
+        let picture = render(&mut renderer, &afar);
+        let j = judge(&Tracer::new(&model), &afar, &picture.images(), &JudgeOptions::default());
+        assert_eq!((j.wrong, j.given_up), (0, 0), "{minor}: {:?}", j.mismatches);
+        assert!(j.depth_regular.px.count > 300, "{minor}: few pixels show the ring");
     }
     assert_silent(renderer);
 }

@@ -11,31 +11,31 @@ use selvedge::picture::{
 use selvedge_check::drawing::{DrawingSettings, LineImage, LineJudgement, judge_lines};
 use selvedge_check::{Hit, Tracer};
 
-const SIZE: (u32, u32) = (120, 90);
+pub const SIZE: (u32, u32) = (120, 90);
 /// Number of a line of a Boolean solid in the image of edges.
-const SOLID: u32 = u32::MAX - 1;
+pub const SOLID: u32 = u32::MAX - 1;
 /// Half a line's width, pixels.
-const HALF: f64 = 0.625;
+pub const HALF: f64 = 0.625;
 /// Rays along a pixel's side.
 const RAYS: usize = 5;
 /// A tenth of a pixel for the line, a tenth for the place of a change between two rays.
-const OFF: f64 = 0.2;
+pub const OFF: f64 = 0.2;
 /// Where three surfaces meet between four centres, lines go to the mean of their places: up to half a pixel off, in the
 /// pixels around.
-const OFF_AT_JUNCTIONS: f64 = 0.6;
-const JUNCTION: f64 = 2.5;
+pub const OFF_AT_JUNCTIONS: f64 = 0.6;
+pub const JUNCTION: f64 = 2.5;
 /// Pixels of a picture without a line: where a fold runs out, in what is smooth between two centres.
 const ENDS: usize = 1;
 /// A pixel has the line's number where the line covers a tenth of it.
 const MARKED: f64 = HALF + 0.5 - 0.1;
 
-fn lines() -> EdgeSettings {
+pub fn lines() -> EdgeSettings {
     let usual = EdgeSettings::default();
     let at = |px: f64| px * EdgeSettings::HEIGHT / f64::from(SIZE.1);
     EdgeSettings { width: at(2.0 * HALF), thin_width: at(0.5), section_width: at(4.0 * HALF), ..usual }
 }
 
-fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
+pub fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
     let mut renderer = watched_with(model, settings);
     let outputs = Outputs { edge: true, ..Outputs::ALL };
     let picture = renderer.render(camera, &FrameSettings::default(), outputs).unwrap();
@@ -43,7 +43,7 @@ fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
     picture
 }
 
-fn with(edges: EdgeSettings) -> SceneSettings {
+pub fn with(edges: EdgeSettings) -> SceneSettings {
     SceneSettings { edges: Some(edges), ..SceneSettings::default() }
 }
 
@@ -173,7 +173,7 @@ fn lines_are_where_exact_rays_see_two_surfaces() {
 }
 
 /// As `selvedge check --edges` judges them: without outlines, and with smooth transitions as wide as edges.
-fn judged_by_program(model: &Model, camera: &Camera) -> LineJudgement {
+pub fn judged_by_program(model: &Model, camera: &Camera) -> LineJudgement {
     let drawn = EdgeSettings { tangent: TangentEdges::Full, ..lines() };
     let picture = draw(model, with(drawn), camera);
     let settings = DrawingSettings { silhouettes: false, ..DrawingSettings::default() };

@@ -1,6 +1,6 @@
 //! The boundary of every call: status, last error, caught panics, structs of any size read and written.
 
-use selvedge_session::SessionError;
+use selvedge_jobs::JobError;
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char};
 use std::mem::size_of;
@@ -34,13 +34,13 @@ pub fn argument(text: impl Into<String>) -> Failure {
     Failure(SelvedgeStatus::Argument, text.into())
 }
 
-impl From<SessionError> for Failure {
-    fn from(error: SessionError) -> Self {
+impl From<JobError> for Failure {
+    fn from(error: JobError) -> Self {
         let status = match &error {
-            SessionError::Import(_) | SessionError::Nothing { .. } | SessionError::Limit(_) => SelvedgeStatus::File,
-            SessionError::Device(_) => SelvedgeStatus::Device,
-            SessionError::Draw(_) | SessionError::Validation(_) | SessionError::Closed => SelvedgeStatus::Render,
-            SessionError::Camera(_) | SessionError::Pinhole(_) | SessionError::Edges(_) | SessionError::Snap => {
+            JobError::Import(_) | JobError::Nothing { .. } | JobError::Limit(_) => SelvedgeStatus::File,
+            JobError::Device(_) => SelvedgeStatus::Device,
+            JobError::Draw(_) | JobError::Validation(_) | JobError::Closed => SelvedgeStatus::Render,
+            JobError::Camera(_) | JobError::Pinhole(_) | JobError::Edges(_) | JobError::Snap => {
                 SelvedgeStatus::Argument
             }
             _ => SelvedgeStatus::Internal,

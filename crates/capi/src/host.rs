@@ -270,7 +270,7 @@ pub unsafe extern "C" fn selvedge_host_new(
 
 /// Names the images that a host draws into.
 fn outputs(bits: u32) -> Result<Outputs, Failure> {
-    let outputs = selvedge_session::Image::outputs(crate::picture::images(bits)?);
+    let outputs = selvedge_jobs::Image::outputs(crate::picture::images(bits)?);
     if outputs.thickness {
         return Err(argument("a host's frame has no image of thickness"));
     }

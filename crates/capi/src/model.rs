@@ -3,7 +3,7 @@
 use crate::border::{
     Failure, SelvedgeStatus, Sized, argument, border, c_text, free, given, handle, place, taken, text,
 };
-use selvedge_session::{Loaded, ReadOptions, Snapper, Source, Stop, bounds, read};
+use selvedge_jobs::{Loaded, ReadOptions, Snapper, Source, Stop, bounds, read};
 use std::ffi::{CString, c_char, c_void};
 use std::path::Path;
 use std::ptr::null;
@@ -202,16 +202,16 @@ pub unsafe extern "C" fn selvedge_model_warning(
         let model = unsafe { handle("model", model) }?;
         let at =
             usize::try_from(index).ok().and_then(|i| Some((model.loaded.warnings.get(i)?, model.warnings.get(i)?)));
-        let (told, (file, message)) =
+        let (noted, (file, message)) =
             at.ok_or_else(|| argument(format!("there is no warning {index}: there are {}", model.warnings.len())))?;
-        let (line, entity) = told.place.numbers();
+        let (line, entity) = noted.place.numbers();
         let value = SelvedgeWarning {
             struct_size: 0,
             file: file.as_ptr(),
             message: message.as_ptr(),
             line: line.map_or(0, |line| line as u64),
             entity: entity.unwrap_or(0),
-            count: told.count as u64,
+            count: noted.count as u64,
         };
         // SAFETY: as the caller promises
         unsafe { given(warning, value) }

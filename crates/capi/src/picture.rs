@@ -2,7 +2,7 @@
 
 use crate::border::{Failure, SelvedgeStatus, Sized, argument, border, free, given, handle, text};
 use selvedge::picture::Picture;
-use selvedge_session::{Image, Values, save_png};
+use selvedge_jobs::{Image, Values, save_png};
 use std::ffi::{c_char, c_void};
 use std::path::Path;
 

@@ -6,7 +6,7 @@ use crate::picture::{SelvedgePicture, images};
 use glam::{DMat3, DVec3};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Samples, SceneSettings, Style};
-use selvedge_session::{
+use selvedge_jobs::{
     Ambient, Backdrop, DeviceOptions, Directions, Image, Job, Lens, Limits, Pinhole, Viewpoint, Worker, colour, lines,
     smooth,
 };

@@ -3,7 +3,7 @@
 use crate::border::{SelvedgeStatus, Sized, argument, border, given, handle, taken};
 use crate::model::SelvedgeModel;
 use crate::renderer::{NO_VIEW, SelvedgeView};
-use selvedge_session::{SNAP_KINDS, Snapped, Snapper};
+use selvedge_jobs::{SNAP_KINDS, Snapped, Snapper};
 use std::sync::Arc;
 
 /// An edge's end.

@@ -63,9 +63,9 @@ pub struct EdgePoint {
     pub parameter: f64,
     /// The point, model coordinates.
     pub point: DVec3,
-    /// Its place in the picture, and its depth.
+    /// Its place in the picture, pixels.
     pub pixel: DVec2,
-    /// Distance from the eye along the view axis.
+    /// Distance from the eye along the view axis, model units.
     pub depth: f64,
     /// Whether it is seen.
     pub visibility: Visibility,
@@ -228,7 +228,18 @@ impl Tracer {
         })
     }
 
-    /// The hit is on a solid that is seen through.
+    /// The primitive of a hit on a Boolean solid: index into the solids' union.
+    pub(super) fn primitive(&self, hit: &Hit) -> Option<usize> {
+        (hit.part >= self.parts.len()).then_some(hit.face_index)
+    }
+
+    /// The hit is on a face of a solid that is drawn face by face, most of them seen through.
+    pub(super) fn is_layer(&self, hit: &Hit) -> bool {
+        let solids = self.solids.as_ref();
+        self.primitive(hit).is_some_and(|p| solids.is_some_and(|s| s.is_of_clear(p)))
+    }
+
+    /// The hit is on a face that is seen through.
     pub(super) fn is_clear(&self, hit: &Hit) -> bool {
         let solids = self.solids.iter().filter(|_| hit.part >= self.parts.len());
         let mut primitives = solids.filter_map(|s| s.union().primitives().get(hit.face_index));

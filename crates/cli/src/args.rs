@@ -37,7 +37,7 @@ use glam::DVec3;
 use selvedge::model::Model;
 use selvedge::picture::{Levels, Samples, Smooth, SolidWay, Style, TrimWay};
 use selvedge_io::import::Import;
-use selvedge_session::{Ambient, Backdrop, Directions};
+use selvedge_jobs::{Ambient, Backdrop, Directions};
 use std::{path::PathBuf, str::FromStr};
 
 /// Printed at the end of every help text.
@@ -118,7 +118,7 @@ pub struct EdgeArgs {
 impl EdgeArgs {
     /// The value of the option, or its default.
     pub fn smooth(&self) -> Smooth {
-        selvedge_session::smooth(self.smooth, self.samples)
+        selvedge_jobs::smooth(self.smooth, self.samples)
     }
 }
 

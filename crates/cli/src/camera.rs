@@ -12,7 +12,7 @@ use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use selvedge::model::{Bounds, Camera, Model, Projection};
 use selvedge_io::import::{Import, NamedCamera};
-use selvedge_session::Direction;
+use selvedge_jobs::Direction;
 
 /// How much nearer the close view is. At six times a 1080p picture shows the detail of 6480 lines: far beyond the
 /// resolution of a mesh made for the whole view.
@@ -25,7 +25,7 @@ const NARROW: f64 = 1e-4;
 /// Default size of a picture.
 const SIZE: Size = Size(1920, 1080);
 
-pub use selvedge_session::{CameraFile, bounds, whole};
+pub use selvedge_jobs::{CameraFile, bounds, whole};
 
 /// A camera and its name in reports.
 #[derive(Clone, Debug)]
@@ -175,7 +175,7 @@ impl CameraArgs {
 
 /// `camera` with a depth range that holds the model, checked.
 fn fitted(camera: Camera, bounds: Bounds) -> Result<Camera> {
-    selvedge_session::fitted(camera, bounds).context("the camera shows nothing")
+    selvedge_jobs::fitted(camera, bounds).context("the camera shows nothing")
 }
 
 /// `zoom` times magnified: the eye stays, the angle narrows. From 1 on the picture's middle moves from the model's to

@@ -83,10 +83,10 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
             stats,
         });
     }
-    let told = |text: &str| output::print_beside(text, pictures.iter().chain(&args.json));
-    told(&table(&verdicts, tolerance_px))?;
+    let print = |text: &str| output::print_beside(text, pictures.iter().chain(&args.json));
+    print(&table(&verdicts, tolerance_px))?;
     if let Some(missing) = missing {
-        told(&format!("judged without what the file holds beside: {missing}"))?;
+        print(&format!("judged without what the file holds beside: {missing}"))?;
     }
     if let Some(path) = &args.json {
         output::json(path, &verdicts)?;

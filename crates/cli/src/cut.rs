@@ -85,15 +85,15 @@ impl CutArgs {
         }
         if let Some(path) = &self.trim_by {
             let by = reading::open(path, read, &Default::default())?.model;
-            let told = || path.display().to_string();
+            let file = || path.display().to_string();
             if !by.instances.is_empty() {
-                bail!("{}: holds parts, and a volume that trims needs equations", told());
+                bail!("{}: holds parts, and a volume that trims needs equations", file());
             }
             if by.solids.is_empty() {
-                bail!("{}: holds no solid to trim by", told());
+                bail!("{}: holds no solid to trim by", file());
             }
-            let volume = Solid::union(&by.solids).with_context(told)?;
-            model.trim_by(&volume).with_context(told)?;
+            let volume = Solid::union(&by.solids).with_context(file)?;
+            model.trim_by(&volume).with_context(file)?;
         }
         for plane in &self.section {
             *model = model.section(plane.normal, plane.offset)?;

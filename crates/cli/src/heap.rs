@@ -20,7 +20,7 @@ mod glibc {
 
 #[cfg(all(test, target_os = "linux", target_env = "gnu"))]
 mod tests {
-    use selvedge_session::resident;
+    use selvedge_jobs::resident;
     use std::hint::black_box;
 
     /// The last block is in use: the heap does not shrink by itself below it.

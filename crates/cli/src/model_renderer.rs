@@ -10,7 +10,7 @@ use selvedge::headless::{HeadlessOptions, HeadlessRenderer, PictureView};
 use selvedge::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use selvedge::picture::{EdgeSettings, FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings, Style};
 use selvedge_io::import::Import;
-use selvedge_session::{Ambient, Limits, Step, Work, guarded};
+use selvedge_jobs::{Ambient, Limits, Step, Work, guarded};
 use serde::Serialize;
 use std::path::Path;
 use std::sync::Arc;

@@ -5,7 +5,7 @@ use anyhow::Result;
 use comfy_table::{Table, TableComponent, presets};
 use selvedge::picture::{FrameStats, Picture};
 use selvedge_io::import::Import;
-use selvedge_session::{Image, Values};
+use selvedge_jobs::{Image, Values};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -33,7 +33,7 @@ pub fn json(path: &Path, value: &impl Serialize) -> Result<()> {
 
 /// sRGB colour and opacity, row 0 on top.
 pub fn png(path: &Path, size: (u32, u32), pixels: &[[u8; 4]]) -> Result<()> {
-    target::write(path, |to| Ok(selvedge_session::write_png(to, size, pixels)?))
+    target::write(path, |to| Ok(selvedge_jobs::write_png(to, size, pixels)?))
 }
 
 /// An image as a NumPy array.

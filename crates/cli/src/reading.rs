@@ -5,7 +5,7 @@ use crate::progress::importing;
 use crate::{output, target};
 use anyhow::{Error, Result, bail};
 use selvedge_io::import::{self, Facets, Folders, Import, ImportError, Options, Stage};
-use selvedge_session::{Bound, Exceeded, Limits, SessionError, Step, Stop, Work, import_within};
+use selvedge_jobs::{Bound, Exceeded, JobError, Limits, Step, Stop, Work, import_within};
 use std::io;
 use std::path::Path;
 use std::time::Instant;
@@ -75,14 +75,14 @@ fn imported(
 
 /// Why the work on something failed. An error of the device keeps its type, which has an exit status of its own. A limit
 /// is named by its option.
-pub fn failure(error: SessionError, what: &str) -> Error {
+pub fn failure(error: JobError, what: &str) -> Error {
     match error {
-        SessionError::Device(error) | SessionError::Draw(error) => error.into(),
-        SessionError::Import(error @ (ImportError::TooLarge { .. } | ImportError::Expansion { .. })) => {
+        JobError::Device(error) | JobError::Draw(error) => error.into(),
+        JobError::Import(error @ (ImportError::TooLarge { .. } | ImportError::Expansion { .. })) => {
             Error::from(error).context("more than --limit-mib allows")
         }
-        SessionError::Import(error) => error.into(),
-        SessionError::Limit(exceeded) => beyond(exceeded),
+        JobError::Import(error) => error.into(),
+        JobError::Limit(exceeded) => beyond(exceeded),
         error => Error::from(error).context(what.to_owned()),
     }
 }
@@ -100,16 +100,16 @@ pub fn beyond(exceeded: Exceeded) -> Error {
 /// printed.
 pub fn judge(path: &Path, import: &Import, read: &ReadArgs) -> Result<()> {
     let summary = import.summary();
-    let told = format!("{}: {summary}", named(path));
+    let message = format!("{}: {summary}", named(path));
     if summary.draws_nothing() {
-        bail!("{told}");
+        bail!("{message}");
     }
     if summary.is_complete() {
         return Ok(());
     }
     if read.strict {
-        bail!("--strict: {told}");
+        bail!("--strict: {message}");
     }
-    tracing::warn!("{told}");
+    tracing::warn!("{message}");
     Ok(())
 }

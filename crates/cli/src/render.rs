@@ -17,7 +17,7 @@ use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::Camera;
 use selvedge::picture::{Outputs, Picture};
 use selvedge_io::import::Import;
-use selvedge_session::{Backdrop, Image, Limits, MOST_IN_FLIGHT, Work, legend};
+use selvedge_jobs::{Backdrop, Image, Limits, MOST_IN_FLIGHT, Work, legend};
 use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;

@@ -98,10 +98,10 @@ pub fn run(args: &SweepArgs) -> Result<Outcome> {
             }
         }
     }
-    let told = |text: &str| output::print_beside(text, args.out.iter());
-    told(&format!("{device}\n{}\n{}", table(&rows), growth::told(&rows)))?;
+    let print = |text: &str| output::print_beside(text, args.out.iter());
+    print(&format!("{device}\n{}\n{}", table(&rows), growth::sentences(&rows)))?;
     if args.rate {
-        told(&rate::told(args, &rows)?)?;
+        print(&rate::sentence(args, &rows)?)?;
     }
     if let Some(path) = &args.out {
         target::write(path, |to| {

@@ -68,7 +68,7 @@ pub fn check(inputs: &[&Path], outputs: &[Target]) -> Result<()> {
         inputs.iter().filter(|path| !is_standard(path)).map(|path| (*path, Identity::of(path))).collect();
     let mut written: Vec<(&Path, Identity)> = Vec::new();
     for Target { path, form } in outputs {
-        let told = path.display();
+        let shown = path.display();
         let identity = if is_standard(path) {
             Some(Identity::Standard)
         } else {
@@ -77,10 +77,10 @@ pub fn check(inputs: &[&Path], outputs: &[Target]) -> Result<()> {
         };
         let Some(identity) = identity else { continue };
         if let Some((input, _)) = read.iter().find(|(_, known)| known.as_ref() == Some(&identity)) {
-            bail!("{told}: the same file as the input {}, which it would replace", input.display());
+            bail!("{shown}: the same file as the input {}, which it would replace", input.display());
         }
         if let Some((other, _)) = written.iter().find(|(_, known)| *known == identity) {
-            bail!("{told}: the same place as another output, {}", other.display());
+            bail!("{shown}: the same place as another output, {}", other.display());
         }
         written.push((path, identity));
     }
@@ -90,25 +90,25 @@ pub fn check(inputs: &[&Path], outputs: &[Target]) -> Result<()> {
 impl Form {
     /// Checks that the place can have such a file.
     fn check(self, path: &Path) -> Result<()> {
-        let told = path.display();
+        let shown = path.display();
         if let Some(ending) = path.extension() {
             let ending = ending.to_string_lossy();
             if !self.endings.iter().any(|known| ending.eq_ignore_ascii_case(known)) {
                 let wanted: Vec<_> = self.endings.iter().map(|e| format!(".{e}")).collect();
-                bail!("{told}: what is written here is {}, so its name ends in {}", self.name, wanted.join(" or "));
+                bail!("{shown}: what is written here is {}, so its name ends in {}", self.name, wanted.join(" or "));
             }
         }
-        let place = resolved(path).with_context(|| format!("cannot write {told}"))?;
+        let place = resolved(path).with_context(|| format!("cannot write {shown}"))?;
         match fs::metadata(&place) {
-            Ok(found) if found.is_dir() => bail!("{told}: a folder, not a file that can be written"),
+            Ok(found) if found.is_dir() => bail!("{shown}: a folder, not a file that can be written"),
             Ok(found) if !found.is_file() => return Ok(()),
             // renaming another file over it would ignore this
-            Ok(found) if found.permissions().readonly() => bail!("{told}: the file is write-protected"),
+            Ok(found) if found.permissions().readonly() => bail!("{shown}: the file is write-protected"),
             _ => {}
         }
         let folder = place.parent().unwrap_or(Path::new("."));
         // a file must be made here before it is renamed
-        beside(folder).with_context(|| format!("cannot write {told}: no file can be made in its folder"))?;
+        beside(folder).with_context(|| format!("cannot write {shown}: no file can be made in its folder"))?;
         Ok(())
     }
 }

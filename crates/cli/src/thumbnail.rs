@@ -7,8 +7,8 @@ use crate::args::ThumbnailArgs;
 use crate::{Outcome, device, target};
 use anyhow::{Error, Result};
 use selvedge::picture::{FrameSettings, Outputs, Samples, SceneSettings};
-use selvedge_session::{
-    Backdrop, Drawer, Job, Limits, Loaded, NAMED, ReadOptions, SessionError, Source, Stop, Viewpoint, lines, read,
+use selvedge_jobs::{
+    Backdrop, Drawer, Job, JobError, Limits, Loaded, NAMED, ReadOptions, Source, Stop, Viewpoint, lines, read,
     write_png,
 };
 use std::sync::Arc;
@@ -17,8 +17,8 @@ use std::sync::Arc;
 pub fn run(args: &ThumbnailArgs) -> Result<Outcome> {
     let stop = Stop::default();
     let Loaded { model, .. } =
-        read(Source::Path(&args.model), &ReadOptions::default(), &stop, &|_| ()).map_err(told)?;
-    let camera = Viewpoint::Standard(NAMED[0]).camera(&model, (args.size, args.size)).map_err(told)?;
+        read(Source::Path(&args.model), &ReadOptions::default(), &stop, &|_| ()).map_err(failure)?;
+    let camera = Viewpoint::Standard(NAMED[0]).camera(&model, (args.size, args.size)).map_err(failure)?;
     let job = Job {
         model: Arc::clone(&model),
         camera,
@@ -32,16 +32,16 @@ pub fn run(args: &ThumbnailArgs) -> Result<Outcome> {
         backdrop: Backdrop::Nothing,
         limits: Limits::default(),
     };
-    let mut drawer = Drawer::new(&device::options(args.device.as_deref(), false)).map_err(told)?;
-    let picture = drawer.draw(&job, &stop).map_err(told)?.picture;
+    let mut drawer = Drawer::new(&device::options(args.device.as_deref(), false)).map_err(failure)?;
+    let picture = drawer.draw(&job, &stop).map_err(failure)?.picture;
     target::write(&args.output, |to| Ok(write_png(to, picture.size, &picture.colour)?))?;
     Ok(Outcome::Good)
 }
 
 /// A device's error has an exit status of its own.
-fn told(error: SessionError) -> Error {
+fn failure(error: JobError) -> Error {
     match error {
-        SessionError::Device(error) | SessionError::Draw(error) => error.into(),
+        JobError::Device(error) | JobError::Draw(error) => error.into(),
         error => error.into(),
     }
 }

@@ -11,7 +11,7 @@ use selvedge::picture::{EdgeSettings, Picture};
 use selvedge_check::drawing::{DrawingSettings, LineImage, LineJudgement, judge_lines};
 use selvedge_check::{JudgeOptions, Judgement, SunJudgement, SunTracer, Tracer, judge, judge_sun};
 
-pub use selvedge_session::{worst_shift_px, wrong};
+pub use selvedge_jobs::{worst_shift_px, wrong};
 
 /// Judges about `samples` pixels of a picture, and every one at which the face changes. In a view `times` closer than
 /// the whole model, the depth of a tie is as much smaller.

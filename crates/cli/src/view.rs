@@ -35,7 +35,7 @@ mod tests {
     use glam::{DAffine3, DVec3};
     use selvedge::model::{Instance, Mesh, Model, Part};
     use selvedge::picture::Samples;
-    use selvedge_session::Ambient;
+    use selvedge_jobs::Ambient;
 
     /// The window and `render` have a share each of the model's diagonal.
     #[test]

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use selvedge_session::{Directions, Lens, Pinhole, Viewpoint};
+use selvedge_jobs::{Directions, Lens, Pinhole, Viewpoint};
 
 /// Where a picture is taken from, for any size: ``Camera.look_at`` or ``Camera.opencv``.
 #[pyclass(frozen, module = "selvedge")]

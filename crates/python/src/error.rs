@@ -3,7 +3,7 @@
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use selvedge_io::import::{ImportError, Warning};
-use selvedge_session::{Exceeded, SessionError, Work};
+use selvedge_jobs::{Exceeded, JobError, Work};
 use std::io::ErrorKind;
 
 /// An instance of one of the package's classes.
@@ -13,26 +13,22 @@ fn instance<'py, A: pyo3::call::PyCallArgs<'py>>(py: Python<'py>, class: &str, a
 }
 
 /// The exception of an error.
-pub fn raised(py: Python<'_>, error: &SessionError) -> PyErr {
+pub fn raised(py: Python<'_>, error: &JobError) -> PyErr {
     let text = error.to_string();
     let nowhere = (None::<usize>, None::<u32>);
     match error {
-        SessionError::Import(import) => {
+        JobError::Import(import) => {
             let missing = matches!(import, ImportError::Read { source, .. } if source.kind() == ErrorKind::NotFound);
             let class = if missing { "MissingFileError" } else { "ReadError" };
             instance(py, class, (text, import.file(), import.line(), nowhere.1))
         }
-        SessionError::Nothing { file, .. } | SessionError::Limit(Exceeded { file, work: Work::Reading, .. }) => {
+        JobError::Nothing { file, .. } | JobError::Limit(Exceeded { file, work: Work::Reading, .. }) => {
             instance(py, "ReadError", (text, file, nowhere.0, nowhere.1))
         }
-        SessionError::Camera(_) | SessionError::Pinhole(_) | SessionError::Edges(_) | SessionError::Snap => {
-            PyValueError::new_err(text)
-        }
-        SessionError::Device(_) => instance(py, "DeviceError", (text,)),
-        SessionError::Closed => instance(py, "ClosedError", (text,)),
-        SessionError::Draw(_) | SessionError::Validation(_) | SessionError::Limit(_) => {
-            instance(py, "RenderError", (text,))
-        }
+        JobError::Camera(_) | JobError::Pinhole(_) | JobError::Edges(_) | JobError::Snap => PyValueError::new_err(text),
+        JobError::Device(_) => instance(py, "DeviceError", (text,)),
+        JobError::Closed => instance(py, "ClosedError", (text,)),
+        JobError::Draw(_) | JobError::Validation(_) | JobError::Limit(_) => instance(py, "RenderError", (text,)),
         _ => PyRuntimeError::new_err(text),
     }
 }

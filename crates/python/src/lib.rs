@@ -3,7 +3,7 @@
 //! ```text
 //!   selvedge/__init__.py   signatures, `open`, shapes of other kernels, jobs in flight, files with a manifest
 //!     └ _native            this: Model, Face, Edge, Camera, Renderer, Picture, Limits
-//!         └ selvedge-session
+//!         └ selvedge-jobs
 //! ```
 //!
 //! Work that takes time runs in threads of its own. The caller's thread waits without the interpreter's lock and looks

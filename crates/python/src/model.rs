@@ -14,7 +14,7 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::PyTuple;
 use selvedge::model;
 use selvedge_io::import;
-use selvedge_session::{Loaded, Node, ReadOptions, SNAP_KINDS, Snapper, Source, bounds, read};
+use selvedge_jobs::{Loaded, Node, ReadOptions, SNAP_KINDS, Snapper, Source, bounds, read};
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;

@@ -6,7 +6,7 @@ use pyo3::exceptions::{PyAttributeError, PyOSError, PyRuntimeWarning, PyValueErr
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use selvedge::picture::{self, Outputs};
-use selvedge_session::{CameraFile, Drawn, Image, save_png, write_png};
+use selvedge_jobs::{CameraFile, Drawn, Image, save_png, write_png};
 use serde::Serialize;
 use std::ffi::CString;
 use std::path::PathBuf;

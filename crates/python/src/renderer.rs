@@ -10,8 +10,8 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use selvedge::model::Camera as View;
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Outputs, Samples, SceneSettings, Smooth, Style};
-use selvedge_session::{
-    self as session, Ambient, Backdrop, CameraFile, DeviceOptions, Drawn, Image, Job, SessionError, Ticket, Verdict,
+use selvedge_jobs::{
+    self as session, Ambient, Backdrop, CameraFile, DeviceOptions, Drawn, Image, Job, JobError, Ticket, Verdict,
     Viewpoint, Worker, lines, smooth,
 };
 use std::str::FromStr;
@@ -142,7 +142,7 @@ struct Chosen {
 
 impl Chosen {
     /// The picture of a model.
-    fn job(self, model: Arc<selvedge::model::Model>) -> Result<Job, SessionError> {
+    fn job(self, model: Arc<selvedge::model::Model>) -> Result<Job, JobError> {
         let camera = self.viewpoint.camera(&model, self.size)?;
         let curvature = self.style.is_curvature();
         let curvature_range = match self.curvature_range {
@@ -175,7 +175,7 @@ impl Renderer {
         let (outputs, camera) = (job.outputs, job.camera);
         let submitted = {
             let worker = self.worker.read().unwrap_or_else(PoisonError::into_inner);
-            worker.as_ref().ok_or(SessionError::Closed).and_then(|worker| worker.submit(job))
+            worker.as_ref().ok_or(JobError::Closed).and_then(|worker| worker.submit(job))
         };
         let ticket = submitted.map_err(|error| raised(py, &error))?;
         Ok(Pending { ticket: Mutex::new(Some(ticket)), outputs, camera })

@@ -4,7 +4,7 @@ use numpy::ndarray::arr2;
 use numpy::{PyArray, PyArray2};
 use pyo3::prelude::*;
 use selvedge::model::{self, Bounds, EdgeKind, Edges, SurfaceKind};
-use selvedge_session::Loaded;
+use selvedge_jobs::Loaded;
 use std::sync::Arc;
 
 /// (2, 3): smallest and largest coordinates.

@@ -2,7 +2,7 @@
 
 use crate::error::raised;
 use pyo3::prelude::*;
-use selvedge_session::{SessionError, Stop};
+use selvedge_jobs::{JobError, Stop};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
@@ -15,7 +15,7 @@ const BETWEEN: Duration = Duration::from_millis(20);
 pub fn until<T: Send>(
     py: Python<'_>,
     stop: impl Fn(),
-    mut answer: impl FnMut(Duration) -> Option<Result<T, SessionError>> + Send,
+    mut answer: impl FnMut(Duration) -> Option<Result<T, JobError>> + Send,
 ) -> PyResult<T> {
     loop {
         if let Some(answer) = py.detach(|| answer(BETWEEN)) {
@@ -28,7 +28,7 @@ pub fn until<T: Send>(
 /// Runs `work` in a thread. After a signal the thread ends where the work looks at its [`Stop`].
 pub fn apart<T: Send + 'static>(
     py: Python<'_>,
-    work: impl FnOnce(&Stop) -> Result<T, SessionError> + Send + 'static,
+    work: impl FnOnce(&Stop) -> Result<T, JobError> + Send + 'static,
 ) -> PyResult<T> {
     let stop = Stop::default();
     let (tell, told) = mpsc::channel();
@@ -40,7 +40,7 @@ pub fn apart<T: Send + 'static>(
         move |at_most| match told.recv_timeout(at_most) {
             Ok(result) => Some(result),
             Err(RecvTimeoutError::Timeout) => None,
-            Err(RecvTimeoutError::Disconnected) => Some(Err(SessionError::Panicked("a thread ended".to_owned()))),
+            Err(RecvTimeoutError::Disconnected) => Some(Err(JobError::Panicked("a thread ended".to_owned()))),
         },
     )
 }

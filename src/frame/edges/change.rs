@@ -4,10 +4,13 @@
 //!   two pixels ─▶ the surfaces that they see ─▶ where both meet, or the nearer one folds or ends ─▶ share of the way, style
 //! ```
 //!
+//! Of solids that are seen through, it looks at the nearest faces, or the farthest ones.
+//!
 //! Reads: everything that `Bindings` names. Writes: an image of two words a pixel: to the right, and below.
 
 use crate::bindings::Primitives;
 use crate::frame::common::draw::Draw;
+use crate::frame::transparency::solid_layers::Faces;
 use crate::gpu::{
     Attachment, Blend, Buffer, ColourTarget, Commands, Device, GpuError, Image, Pipeline, Resource, TexelBuffer,
 };
@@ -39,6 +42,8 @@ pub(crate) struct Bindings<'a> {
     pub boundary_operands: Option<BoundaryOperands<'a>>,
     /// (u, v) of spline faces that bound operands; not read where there are none.
     pub operand_uv: &'a Image,
+    /// What is seen through, of a pass for that.
+    pub layers: Option<(&'a Image, Faces)>,
 }
 
 /// Of meshes that bound operands, in binding order.
@@ -54,11 +59,16 @@ pub(crate) struct BoundaryOperands<'a> {
 struct Params {
     drawn: u32,
     lists: u32,
+    order: f32,
 }
 
 impl Change {
-    /// `surfaces`: the most general kind of the solids' surfaces, `abi::SURFACE_*`.
-    pub(crate) fn new(device: &Device, data: &SceneData, surfaces: u32) -> Result<Self, GpuError> {
+    /// `surfaces`: the most general kind of the solids' surfaces, `abi::SURFACE_*`. `seen_through`: for solids that are.
+    pub(crate) fn new(
+        device: &Device,
+        data: &SceneData,
+        (surfaces, seen_through): (u32, bool),
+    ) -> Result<Self, GpuError> {
         let boundary_operands = !data.solids.operand_leaves.is_empty();
         let constants = [
             (constant::SCENE_HAS_RATIONAL, u32::from(data.has_rational)),
@@ -67,9 +77,15 @@ impl Change {
             (constant::SOLIDS_HAVE, surfaces),
             (constant::SOLIDS_HAVE_BOUNDARY_OPERANDS, u32::from(boundary_operands)),
             (constant::SOLIDS_HAVE_PATCHES, u32::from(data.has_operands)),
+            (constant::SCENE_HAS_FACES, u32::from(data.has_patches)),
+            (constant::SCENE_HAS_MESHES, u32::from(data.has_meshes())),
         ];
         let colour = [ColourTarget { format: CHANGE_FORMAT, blend: Blend::Replace }];
-        let draw = Draw::new("edge_change", &shaders::RESOLVE_VERT, &shaders::EDGE_CHANGE_FRAG);
+        let (name, shader) = match seen_through {
+            true => ("edge_change (seen through)", &shaders::EDGE_CHANGE_LAYERS_FRAG),
+            false => ("edge_change", &shaders::EDGE_CHANGE_FRAG),
+        };
+        let draw = Draw::new(name, &shaders::RESOLVE_VERT, shader);
         Ok(Self { pipeline: Draw { constants: &constants, colour: &colour, ..draw }.pipeline(device)? })
     }
 
@@ -90,6 +106,7 @@ impl Change {
         let s = b.scene;
         let patches: [&Buffer; 4] = [&s.face_instances, &s.faces, &s.patches, &s.patch_instances];
         let instances: &Buffer = &s.instances;
+        let meshes = s.meshes.as_ref().map_or([b.frame; 3], |m| [&m.instances, &m.triangles, &m.positions]);
         let resources: Vec<_> = [b.frame.into()]
             .into_iter()
             .chain(b.primitives.resources())
@@ -100,8 +117,11 @@ impl Change {
             .chain([b.operand_uv.into()])
             .chain(patches.map(Resource::from))
             .chain([Resource::from(&s.points)])
+            .chain(meshes.map(Resource::from))
+            .chain(b.layers.map(|(layers, _)| Resource::from(layers)))
             .collect();
-        let params = Params { drawn, lists: u32::from(b.tiles.is_some()) };
+        let order = if matches!(b.layers, Some((_, Faces::Farthest))) { -1.0 } else { 1.0 };
+        let params = Params { drawn, lists: u32::from(b.tiles.is_some()), order };
         cmd.rendering_rows((into.image.size(), rows), &[into], None, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&params));
             cmd.draw(3, 0, 1);

@@ -67,7 +67,8 @@ impl Divide {
     pub(crate) fn count(&self, cmd: &Commands<'_>, b: &Bindings<'_>, params: Params) {
         let [frame, views, piece_instances, pieces] =
             [b.frame, b.views, b.piece_instances, b.pieces].map(Resource::from);
-        let resources = [frame, views, piece_instances, pieces, b.points.into(), b.counts.into(), b.counters.into()];
+        let [counts, counters, lines] = [b.counts, b.counters, b.lines].map(Resource::from);
+        let resources = [frame, views, piece_instances, pieces, b.points.into(), counts, counters, lines];
         self.count.bind(cmd, &resources, bytemuck::bytes_of(&params));
         self.count.dispatch(cmd, params.instance_count);
     }

@@ -100,8 +100,8 @@ pub(crate) struct EdgeStage {
     draw: Buffer,
     /// Each pixel's best line.
     best: Image,
-    /// Where what is seen of Boolean solids changes; where there are some.
-    changes: Option<Image>,
+    /// Of lines of Boolean solids; where there are some.
+    solids: Option<solid_lines::Images>,
 }
 
 /// What passes that ask whether a point is seen read of Boolean solids.
@@ -135,7 +135,7 @@ impl EdgeStage {
             chords: room.structs::<Chord>("edge chords", room.capacities.edges.chords)?,
             draw: room.indirect::<u32>("edge draw", divide::DRAW_WORDS)?,
             best: room.image("best lines", BEST_FORMAT, COUNTED)?,
-            changes: passes.solids.as_ref().map(|_| solid_lines::changes(room)).transpose()?,
+            solids: passes.solids.as_ref().map(|solids| solid_lines::Images::new(room, solids)).transpose()?,
         })
     }
 
@@ -210,9 +210,9 @@ impl EdgeStage {
             barrier::images(cmd, &[(&self.best, written, written)]);
             fold.record(cmd, &bindings, self.half_px[0]);
         }
-        if let (Some(solids), Some(changes)) = (&passes.solids, &self.changes) {
+        if let (Some(solids), Some(images)) = (&passes.solids, &self.solids) {
             barrier::images(cmd, &[(&self.best, written, written)]);
-            solids.draw(frame, cmd, (changes, &self.best), self.half_px);
+            solids.draw(frame, cmd, (images, &self.best), self.half_px);
         }
         barrier::images(cmd, &[(&self.best, written, read)]);
         let bindings = show::Bindings {

@@ -3,11 +3,17 @@
 //!
 //! ```text
 //!   what centres see, surfaces' equations ──edge_change──▶ places between centres ──edge_join──▶ each pixel's best line
+//!   solid_layers ─▶ the nearest faces of what is seen through ──the same──▶
+//!                ─▶ the farthest ones, before what is opaque  ──the same──▶
 //! ```
 
 use super::{change, join};
 use crate::abi::constants::edges::{LINES_FOLDS, LINES_SHARP, LINES_SMOOTH, LINES_SMOOTH_FULL};
 use crate::frame::common::room::{DRAWN_AND_READ, Room};
+use crate::frame::solids::SolidParts;
+use crate::frame::solids::bands::Band;
+use crate::frame::transparency::solid_layers::{FACES_FORMAT, Faces, For, SolidLayers};
+use crate::frame::transparency::{Transparency, kinds};
 use crate::frame::{Frame, WRITE_TO_READ};
 use crate::gpu::{Access, Attachment, Commands, Device, GpuError, Image, Load, barrier};
 use crate::picture::{EdgeChoice, EdgeSettings, TangentEdges};
@@ -19,6 +25,43 @@ pub(crate) struct Passes {
     drawn: u32,
     change: change::Change,
     join: join::Join,
+    /// Where some solid is seen through.
+    seen_through: Option<SeenThrough>,
+}
+
+/// The passes of what is seen through.
+struct SeenThrough {
+    faces: [(Faces, SolidLayers); 2],
+    change: change::Change,
+}
+
+impl SeenThrough {
+    fn new(device: &Device, data: &SceneData, surfaces: u32) -> Result<Self, GpuError> {
+        let pass =
+            |faces| SolidLayers::new(device, For::Lines(faces), None, kinds(data, surfaces)).map(|pass| (faces, pass));
+        Ok(Self {
+            faces: [pass(Faces::Nearest)?, pass(Faces::Farthest)?],
+            change: change::Change::new(device, data, (surfaces, true))?,
+        })
+    }
+}
+
+/// The images.
+pub(super) struct Images {
+    /// Places between centres, two words a pixel.
+    changes: Image,
+    /// Faces of what is seen through; where there is some.
+    layers: Option<Image>,
+}
+
+impl Images {
+    pub(super) fn new(room: &Room<'_>, passes: &Passes) -> Result<Self, GpuError> {
+        let layers = || room.image("faces seen through", FACES_FORMAT, DRAWN_AND_READ);
+        Ok(Self {
+            changes: room.image("changes of solids", change::CHANGE_FORMAT, DRAWN_AND_READ)?,
+            layers: passes.seen_through.as_ref().map(|_| layers()).transpose()?,
+        })
+    }
 }
 
 /// Which lines are drawn: `LINES_*`.
@@ -36,26 +79,46 @@ impl Passes {
     /// `None` where there is no Boolean solid.
     pub(super) fn new(device: &Device, data: &SceneData, settings: &EdgeSettings) -> Result<Option<Self>, GpuError> {
         let Some(surfaces) = data.solids.kinds() else { return Ok(None) };
-        let (change, join) = (change::Change::new(device, data, surfaces)?, join::Join::new(device)?);
-        Ok(Some(Self { drawn: drawn(settings), change, join }))
+        let (change, join) = (change::Change::new(device, data, (surfaces, false))?, join::Join::new(device)?);
+        let is_clear = data.is_layered && data.solids.has_clear_solids();
+        let seen_through = is_clear.then(|| SeenThrough::new(device, data, surfaces)).transpose()?;
+        Ok(Some(Self { drawn: drawn(settings), change, join, seen_through }))
     }
-}
 
-/// Places between centres, two words a pixel.
-pub(super) fn changes(room: &Room<'_>) -> Result<Image, GpuError> {
-    room.image("changes of solids", change::CHANGE_FORMAT, DRAWN_AND_READ)
-}
-
-impl Passes {
     /// Lines into `best`. If the lists of primitives are those of one band, they are made again.
     pub(super) fn draw(
         &self,
         frame: &Frame<'_>,
         cmd: &Commands<'_>,
-        (changes, best): (&Image, &Image),
+        (images, best): (&Images, &Image),
         half_px: [f32; 3],
     ) {
         let Some(solids) = frame.solids() else { return };
+        let into = (&images.changes, best);
+        self.lines(frame, cmd, (&solids, &self.change), into, None);
+        self.join.record(cmd, frame.constants, into, half_px);
+        let clear = (&self.seen_through, &images.layers, &frame.stages.transparency);
+        let (Some(passes), Some(layers), Some(transparency)) = clear else { return };
+        // they were read back
+        let counters = &frame.stages.common.counters;
+        barrier::buffers(cmd, &[(counters, Access::TRANSFER_READ, Access::FRAGMENT_WRITE | Access::COMPUTE_WRITE)]);
+        for (faces, pass) in &passes.faces {
+            nearest_or_farthest(frame, cmd, (transparency, pass, &solids), layers);
+            barrier::images(cmd, &[(best, Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE)]);
+            self.lines(frame, cmd, (&solids, &passes.change), into, Some((layers, *faces)));
+            self.join.record(cmd, frame.constants, into, half_px);
+        }
+    }
+
+    /// Places between centres into `changes`; `best` is of the format of operands' (u, v).
+    fn lines(
+        &self,
+        frame: &Frame<'_>,
+        cmd: &Commands<'_>,
+        (solids, change): (&SolidParts<'_>, &change::Change),
+        (changes, best): (&Image, &Image),
+        layers: Option<(&Image, Faces)>,
+    ) {
         let (s, v) = (frame.scene, &frame.stages.visibility);
         let parts = solids.resolve(frame);
         let bindings = change::Bindings {
@@ -72,27 +135,49 @@ impl Passes {
                 positions: m.positions,
                 planes: m.planes,
             }),
-            // of the same format
             operand_uv: parts.operand_uv.unwrap_or(best),
+            layers,
         };
         let (written, read) = (Access::COLOUR_WRITE, Access::FRAGMENT_READ);
         barrier::images(cmd, &[(changes, read.discarded(), written)]);
-        let mut counted_again = false;
-        for band in frame.bands() {
-            if !band.is_whole {
-                if !std::mem::replace(&mut counted_again, true) {
-                    // they were read back
-                    let counters = &frame.stages.common.counters;
-                    barrier::buffers(cmd, &[(counters, Access::TRANSFER_READ, Access::COMPUTE_WRITE)]);
-                    frame.count_bands_again(cmd);
-                }
-                solids.lists(frame, cmd, &band);
-            }
+        each_band(frame, cmd, solids, |band| {
             cmd.after(WRITE_TO_READ.0, read);
             let into = Attachment { image: changes, load: Load::Discard };
-            self.change.record(cmd, &bindings, (into, band.rows.clone()), self.drawn);
-        }
+            change.record(cmd, &bindings, (into, band.rows.clone()), self.drawn);
+        });
         barrier::images(cmd, &[(changes, written, read)]);
-        self.join.record(cmd, frame.constants, (changes, best), half_px);
+    }
+}
+
+/// Faces of what is seen through, into `layers`.
+fn nearest_or_farthest(
+    frame: &Frame<'_>,
+    cmd: &Commands<'_>,
+    (transparency, pass, solids): (&Transparency, &SolidLayers, &SolidParts<'_>),
+    layers: &Image,
+) {
+    let (written, read) = (Access::COLOUR_WRITE, Access::FRAGMENT_READ);
+    barrier::images(cmd, &[(layers, read.discarded(), written)]);
+    each_band(frame, cmd, solids, |band| {
+        let into = Attachment { image: layers, load: Load::Discard };
+        transparency.faces(frame, cmd, (pass, solids), (into, band));
+    });
+    barrier::images(cmd, &[(layers, written, read)]);
+}
+
+/// Bands of rows with their lists: those of the whole picture are there, those of single bands are made again.
+fn each_band(frame: &Frame<'_>, cmd: &Commands<'_>, solids: &SolidParts<'_>, draw: impl Fn(&Band)) {
+    let mut counted_again = false;
+    for band in frame.bands() {
+        if !band.is_whole {
+            if !std::mem::replace(&mut counted_again, true) {
+                // they were read back
+                let counters = &frame.stages.common.counters;
+                barrier::buffers(cmd, &[(counters, Access::TRANSFER_READ, Access::COMPUTE_WRITE)]);
+                frame.count_bands_again(cmd);
+            }
+            solids.lists(frame, cmd, &band);
+        }
+        draw(&band);
     }
 }

@@ -40,20 +40,25 @@ pub(super) enum Drawing {
     Beside,
 }
 
+/// `surfaces`: the most general kind of the solids' surfaces, `abi::SURFACE_*`.
+pub(super) fn kinds(data: &SceneData, surfaces: u32) -> Kinds {
+    Kinds {
+        surfaces,
+        boundary_operands: !data.solids.operand_leaves.is_empty(),
+        patches: data.has_operands,
+        rational: data.has_rational,
+        pieces: data.has_pieces,
+        fine: data.has_fine,
+        marks: data.highlight.map(|h| [h.contact, h.overlap]),
+        sun: data.sun.is_some(),
+    }
+}
+
 impl Passes {
     /// `None` if no rays are followed.
     pub(super) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<Self>, GpuError> {
         let Some(surfaces) = data.solids.kinds().filter(|_| data.solids.is_followed()) else { return Ok(None) };
-        let kinds = Kinds {
-            surfaces,
-            boundary_operands: !data.solids.operand_leaves.is_empty(),
-            patches: data.has_operands,
-            rational: data.has_rational,
-            pieces: data.has_pieces,
-            fine: data.has_fine,
-            marks: data.highlight.map(|h| [h.contact, h.overlap]),
-            sun: data.sun.is_some(),
-        };
+        let kinds = kinds(data, surfaces);
         let make = |purpose| SolidLayers::new(device, purpose, formats.depth, kinds);
         let colour = match data.samples {
             Samples::One => For::Colour(formats.colour),
@@ -111,11 +116,11 @@ impl Transparency {
         }
     }
 
-    fn band(&self, frame: &Frame<'_>, cmd: &Commands<'_>, (solids, drawing): (&SolidParts<'_>, Drawing), band: &Band) {
-        let (c, s, passes) = (&frame.stages.common, frame.scene, &self.passes);
-        // following a ray needs its tile's list
-        let Some(tiles) = solids.stage.tiles() else { return };
-        let bindings = Bindings {
+    /// What following a ray through solids reads; `None` without the lists of tiles that it needs.
+    fn bindings<'b>(&'b self, frame: &'b Frame<'_>, solids: &'b SolidParts<'_>) -> Option<Bindings<'b>> {
+        let (c, s) = (&frame.stages.common, frame.scene);
+        let tiles = solids.stage.tiles()?;
+        Some(Bindings {
             frame: frame.constants,
             primitives: solids.scene.primitives(solids.centres.surfaces),
             leaf_centres: solids.centres.leaves,
@@ -137,7 +142,27 @@ impl Transparency {
                 .boundary_operands
                 .as_ref()
                 .map(|m| [&m.meshes, &m.triangles, &m.positions, &m.planes]),
-        };
+        })
+    }
+
+    /// Draws the faces whose lines are drawn into a band's rows of `target`. The lists are the band's.
+    pub(super) fn faces(
+        &self,
+        frame: &Frame<'_>,
+        cmd: &Commands<'_>,
+        (pass, solids): (&SolidLayers, &SolidParts<'_>),
+        (target, band): (Attachment<'_>, &Band),
+    ) {
+        let Some(bindings) = self.bindings(frame, solids) else { return };
+        let w = WRITE_TO_READ.0;
+        cmd.after(w | Access::INDIRECT_READ, Access::FRAGMENT_WRITE);
+        pass.record(cmd, &bindings, &[target], None, band.rows.clone());
+        cmd.after(Access::FRAGMENT_WRITE, w | Access::INDIRECT_READ);
+    }
+
+    fn band(&self, frame: &Frame<'_>, cmd: &Commands<'_>, (solids, drawing): (&SolidParts<'_>, Drawing), band: &Band) {
+        let passes = &self.passes;
+        let Some(bindings) = self.bindings(frame, solids) else { return };
         let w = WRITE_TO_READ.0;
         let rows = || band.rows.clone();
         cmd.after(w | Access::INDIRECT_READ, Access::FRAGMENT_WRITE);

@@ -4,7 +4,8 @@
 //!   behind (the colours of pass `resolve`) ──┐
 //!   leaves of the tile, item by item ────────┴──▶ layers, front to back ──▶ colour, over the colours behind
 //!                                                                        ├─▶ images of the first layer
-//!                                                                        └─▶ length within solids
+//!                                                                        ├─▶ length within solids
+//!                                                                        └─▶ the first face, or the last, for lines
 //! ```
 //!
 //! Reads: everything that `Bindings` names. Writes: the targets, and the counters `clamps`, `contacts` and `overlaps`.
@@ -34,7 +35,20 @@ pub(crate) enum For {
     First { colour: vk::Format, aovs: &'static [vk::Format] },
     /// The length within solids, the only target.
     Thickness,
+    /// The faces that [`Faces`] names, the only target.
+    Lines(Faces),
 }
+
+/// The faces of what is seen through whose lines are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Faces {
+    Nearest,
+    /// In front of what is opaque.
+    Farthest,
+}
+
+/// Format of the image of such faces: `glsl/include/layer_words.glsl`.
+pub(crate) const FACES_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// The kinds of surfaces in the scene.
 #[derive(Clone, Copy, Debug)]
@@ -105,9 +119,12 @@ impl SolidLayers {
                 (1, "first", std::iter::once(target(colour, Blend::Leave)).chain(aovs).collect())
             }
             For::Thickness => (2, "thickness", vec![target(THICKNESS_FORMAT, Blend::Replace)]),
+            For::Lines(Faces::Nearest) => (3, "nearest faces", vec![target(FACES_FORMAT, Blend::Replace)]),
+            For::Lines(Faces::Farthest) => (4, "farthest faces", vec![target(FACES_FORMAT, Blend::Replace)]),
         };
-        // lengths within solids are not lit
-        let sun = kinds.sun && number != 2;
+        // lengths within solids and faces for lines are not lit, and nothing hides them by the host's depth
+        let is_lit = number < 2;
+        let sun = kinds.sun && is_lit;
         let marks = kinds.marks.filter(|_| number == 0);
         let writes = matches!(purpose, For::First { .. });
         let fragment = if sun { &shaders::SOLID_LAYERS_SUN_FRAG } else { &shaders::SOLID_LAYERS_FRAG };
@@ -125,7 +142,7 @@ impl SolidLayers {
                 (constant::SOLIDS_HAVE_PATCHES, u32::from(kinds.patches)),
             ],
             colour: &colour,
-            depth: depth.filter(|_| number != 2).map(|format| DepthTest {
+            depth: depth.filter(|_| is_lit).map(|format| DepthTest {
                 format,
                 compare: vk::CompareOp::GREATER_OR_EQUAL,
                 write: writes,

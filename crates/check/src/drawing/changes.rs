@@ -11,9 +11,13 @@
 //! Surfaces are told apart by their numbers, which faces that coincide share. Spline faces of an operand have none:
 //! there, a jump of the depth or a turn of the normal between the two rays is halved.
 //!
-//! Not known, and [`Why::Unsure`]: where something hides a solid that is none, or meets it; where an operand without an
-//! equation ends in front of something, for it may end there by an edge of its own, by a cut, or as a facet; meshes
-//! that are drawn as meshes.
+//! Where a face or mesh that is no solid's meets a solid, a line has to be. Not known, and [`Why::Unsure`]: where it hides
+//! one, for it has lines of its own, or lies flush on one; where an operand without an equation meets one, or ends in
+//! front of something, for it may end there by an edge of its own, by a cut, or as a facet; meshes that are drawn as
+//! meshes.
+//!
+//! A view is looked at up to three times ([`Look`]). Where the farthest faces of what is seen through change because
+//! something opaque begins to hide one, no line is theirs.
 
 use super::{DrawingSettings, LineKind};
 use crate::model::{Camera, EdgeLimits, Isolated, Model, Primitive, Shape};
@@ -42,7 +46,18 @@ const LEVELS: u32 = 8;
 /// where caps of two solids meet.
 pub(super) const OFF: f64 = 0.5;
 
-/// A ray through a place of the picture, and the nearest point that is not seen through.
+/// Which point along a ray counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Look {
+    /// The nearest one that is of no solid with layers.
+    Opaque,
+    /// The nearest one of all: changes of layers.
+    Nearest,
+    /// The farthest layer in front of what is opaque.
+    Farthest,
+}
+
+/// A ray through a place of the picture, and the point that counts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ray {
     pub pixel: DVec2,
@@ -84,6 +99,8 @@ struct Traits {
     bound: Bound,
     /// It cuts others open, as a section does.
     is_cut: bool,
+    /// Of a solid that is drawn in layers.
+    is_layer: bool,
 }
 
 /// Finds changes in one view.
@@ -91,25 +108,29 @@ struct Traits {
 pub(super) struct Changes<'a> {
     tracer: &'a Tracer,
     camera: &'a Camera,
+    look: Look,
     silhouettes: bool,
     /// Of each primitive of the solids' union.
     traits: Vec<Traits>,
-    has_clear: bool,
+    has_layers: bool,
     /// Some primitive has no equations.
     has_operands: bool,
 }
 
 impl<'a> Changes<'a> {
-    /// `None` in a model without opaque Boolean solids.
-    pub fn new(model: &Model, tracer: &'a Tracer, camera: &'a Camera, settings: &DrawingSettings) -> Option<Self> {
-        let primitives = tracer.solids.as_ref()?.union().primitives();
-        if !primitives.iter().any(Primitive::is_opaque) {
-            return None;
-        }
+    /// `None` in a model without such Boolean solids.
+    pub fn new(
+        model: &Model,
+        tracer: &'a Tracer,
+        (camera, look): (&'a Camera, Look),
+        settings: &DrawingSettings,
+    ) -> Option<Self> {
+        let solids = tracer.solids.as_ref()?;
+        let primitives = solids.union().primitives();
         // an expression that is too large to be split is drawn as it is
         let isolated = Isolated::of(&model.solids, model.coincidence()).ok().flatten();
         let is_isolated = |p: &Primitive| isolated.iter().flat_map(|i| &i.meshes).any(|mesh| mesh.id == p.id);
-        let traits = |p: &Primitive| Traits {
+        let traits = |(number, p): (usize, &Primitive)| Traits {
             bound: match &p.shape {
                 Shape::Part(_) => Bound::Spline,
                 Shape::Mesh(_) if is_isolated(p) => Bound::Isolated,
@@ -117,13 +138,15 @@ impl<'a> Changes<'a> {
                 _ => Bound::Equations,
             },
             is_cut: model.cuts.contains(&p.id),
+            is_layer: solids.is_of_clear(number),
         };
-        let traits: Vec<Traits> = primitives.iter().map(traits).collect();
-        Some(Self {
+        let traits: Vec<Traits> = primitives.iter().enumerate().map(traits).collect();
+        traits.iter().any(|t| t.is_layer == (look != Look::Opaque)).then(|| Self {
             tracer,
             camera,
+            look,
             silhouettes: settings.silhouettes,
-            has_clear: primitives.iter().any(|p| !p.is_opaque()),
+            has_layers: traits.iter().any(|t| t.is_layer),
             has_operands: traits.iter().any(|t| t.bound != Bound::Equations),
             traits,
         })
@@ -131,32 +154,38 @@ impl<'a> Changes<'a> {
 
     /// The ray through a place.
     pub fn ray(&self, pixel: DVec2, probe: &mut Probe<'_>) -> Ray {
-        let hit = match self.has_clear {
-            false => probe.first(pixel),
-            true => probe.hits(pixel).iter().find(|hit| !self.tracer.is_clear(hit)).copied(),
+        let hit = match self.look {
+            Look::Opaque if self.has_layers => self.stop(pixel, probe),
+            Look::Opaque | Look::Nearest => probe.first(pixel),
+            Look::Farthest => {
+                let hits = probe.hits(pixel);
+                let layers = hits.iter().take_while(|hit| self.tracer.is_layer(hit));
+                let seen = 1 + layers.clone().take_while(|hit| self.tracer.is_clear(hit)).count();
+                layers.take(seen).last().copied()
+            }
         };
         Ray { pixel, hit }
     }
 
-    /// The primitive of a hit on a Boolean solid.
-    pub fn primitive(&self, hit: &Hit) -> Option<usize> {
-        (hit.part >= self.tracer.parts.len()).then_some(hit.face_index)
+    /// The nearest point of what is opaque along the ray through a place.
+    fn stop(&self, pixel: DVec2, probe: &mut Probe<'_>) -> Option<Hit> {
+        probe.hits(pixel).iter().find(|hit| !self.tracer.is_layer(hit)).copied()
     }
 
     /// All changes between two rays.
     pub fn between(&self, a: &Ray, b: &Ray, probe: &mut Probe<'_>) -> Vec<Change> {
         let mut out = Vec::new();
-        self.look(a, b, LEVELS, probe, &mut out);
+        self.search(a, b, LEVELS, probe, &mut out);
         out
     }
 
-    fn look(&self, a: &Ray, b: &Ray, levels: u32, probe: &mut Probe<'_>, out: &mut Vec<Change>) {
+    fn search(&self, a: &Ray, b: &Ray, levels: u32, probe: &mut Probe<'_>, out: &mut Vec<Change>) {
         if levels == 0 {
             return;
         }
         if self.is_one(a, b) {
             if self.is_suspect(a, b) {
-                self.look_within(a, b, levels, probe, out);
+                self.search_within(a, b, levels, probe, out);
             }
             return;
         }
@@ -165,13 +194,13 @@ impl<'a> Changes<'a> {
             let middle = self.ray(0.5 * (low.pixel + high.pixel), probe);
             if self.is_one(&low, &middle) { low = middle } else { high = middle }
         }
-        self.look(a, &low, levels - 1, probe, out);
+        self.search(a, &low, levels - 1, probe, out);
         out.extend(self.why(&low, &high, probe));
-        self.look(&high, b, levels - 1, probe, out);
+        self.search(&high, b, levels - 1, probe, out);
     }
 
     /// Two points of one surface: the largest step between them, of the normal or of the depth.
-    fn look_within(&self, a: &Ray, b: &Ray, levels: u32, probe: &mut Probe<'_>, out: &mut Vec<Change>) {
+    fn search_within(&self, a: &Ray, b: &Ray, levels: u32, probe: &mut Probe<'_>, out: &mut Vec<Change>) {
         let turns = self.turns(a, b);
         let step = |p: &Ray, q: &Ray| match (&p.hit, &q.hit) {
             (Some(p), Some(q)) if turns => p.normal.distance(q.normal),
@@ -182,8 +211,8 @@ impl<'a> Changes<'a> {
             let middle = self.ray(0.5 * (low.pixel + high.pixel), probe);
             if !self.is_one(&low, &middle) {
                 // another surface lies between
-                self.look(&low, &middle, levels - 1, probe, out);
-                self.look(&middle, &high, levels - 1, probe, out);
+                self.search(&low, &middle, levels - 1, probe, out);
+                self.search(&middle, &high, levels - 1, probe, out);
                 return;
             }
             if step(&low, &middle) >= step(&middle, &high) { high = middle } else { low = middle }
@@ -194,7 +223,7 @@ impl<'a> Changes<'a> {
     /// Both rays meet one surface, as far as numbers tell, or none of a Boolean solid.
     fn is_one(&self, a: &Ray, b: &Ray) -> bool {
         let (Some(a), Some(b)) = (&a.hit, &b.hit) else { return a.hit.is_none() && b.hit.is_none() };
-        let (p, q) = match (self.primitive(a), self.primitive(b)) {
+        let (p, q) = match (self.tracer.primitive(a), self.tracer.primitive(b)) {
             (Some(p), Some(q)) => (p, q),
             (p, q) => return p == q,
         };
@@ -212,7 +241,7 @@ impl<'a> Changes<'a> {
 
     /// There may be a jump or a crease between two points of one surface.
     fn is_suspect(&self, a: &Ray, b: &Ray) -> bool {
-        let Some(primitive) = a.hit.as_ref().and_then(|hit| self.primitive(hit)) else { return false };
+        let Some(primitive) = a.hit.as_ref().and_then(|hit| self.tracer.primitive(hit)) else { return false };
         match self.traits[primitive].bound {
             Bound::Mesh | Bound::Isolated => false,
             Bound::Equations | Bound::Spline => self.turns(a, b) || self.gap(a, b) > SUSPECT_PX,
@@ -222,7 +251,7 @@ impl<'a> Changes<'a> {
     /// The normal of a spline operand turns between two of its points.
     fn turns(&self, a: &Ray, b: &Ray) -> bool {
         let (Some(p), Some(q)) = (&a.hit, &b.hit) else { return false };
-        let is_spline = self.primitive(p).is_some_and(|p| self.traits[p].bound == Bound::Spline);
+        let is_spline = self.tracer.primitive(p).is_some_and(|p| self.traits[p].bound == Bound::Spline);
         is_spline && p.normal.angle_between(q.normal) > SUSPECT_TURN
     }
 
@@ -244,12 +273,18 @@ impl<'a> Changes<'a> {
 
     /// The change between two rays that are [`CLOSE`] to each other.
     fn why(&self, low: &Ray, high: &Ray, probe: &mut Probe<'_>) -> Option<Change> {
-        let depth = |ray: &Ray| ray.hit.map_or(f64::INFINITY, |hit| hit.depth);
+        // of two points that one is seen whose number is less
+        let order = if self.look == Look::Farthest { -1.0 } else { 1.0 };
+        let depth = |ray: &Ray| ray.hit.map_or(f64::INFINITY, |hit| order * hit.depth);
         let (first, other) = if depth(low) <= depth(high) { (low, high) } else { (high, low) };
         let near = first.hit?;
-        let [p, q] = [first, other].map(|ray| ray.hit.as_ref().and_then(|hit| self.primitive(hit)));
+        let [p, q] = [first, other].map(|ray| ray.hit.as_ref().and_then(|hit| self.tracer.primitive(hit)));
         let traits = |p: Option<usize>| p.map(|p| self.traits[p]);
         let either = |test: &dyn Fn(Traits) -> bool| [p, q].into_iter().filter_map(traits).any(test);
+        let is_layer = |p: Option<usize>| traits(p).is_some_and(|t| t.is_layer);
+        if self.look != Look::Opaque && !is_layer(p) && !is_layer(q) {
+            return None;
+        }
         let primitive = p.or(q)?;
         let is_outline = either(&|t| t.is_cut);
         let off = if self.has_operands { OFF } else { 0.0 };
@@ -259,7 +294,17 @@ impl<'a> Changes<'a> {
         if either(&|t| t.bound == Bound::Isolated) {
             return unsure;
         }
-        if depth(other) - near.depth > JUMP_PX * self.pixel_across(near.depth) {
+        let jump = JUMP_PX * self.pixel_across(near.depth);
+        if depth(other) - depth(first) > jump {
+            if self.look != Look::Opaque && !is_layer(p) {
+                return None; // it is looked at without layers
+            }
+            let stop = if self.look == Look::Farthest { self.stop(other.pixel, probe) } else { None };
+            match stop.map(|stop| near.depth - stop.depth) {
+                Some(before) if before > jump => return None,
+                Some(before) if before >= -jump => return unsure,
+                _ => {}
+            }
             // what hides a solid and is none has lines of its own
             let Some(traits) = traits(p) else { return unsure };
             return match (traits.bound, self.folds(first, other, probe)) {
@@ -269,16 +314,22 @@ impl<'a> Changes<'a> {
                 _ => unsure,
             };
         }
-        let (Some(p), Some(q), Some(far)) = (p, q, other.hit) else { return unsure };
+        let far = other.hit?;
+        let limits = EdgeLimits::default();
+        let angle = near.normal.angle_between(far.normal);
+        let (Some(p), Some(q)) = (p, q) else {
+            let is_known = self.traits[primitive].bound == Bound::Equations;
+            // normals of faces that are no solid's may point either way
+            let meets = angle.min(std::f64::consts::PI - angle) > limits.smooth + UNSURE;
+            return if is_known && meets { Some(Change { off: OFF, ..line(LineKind::Sharp) }) } else { unsure };
+        };
         let (s, t) = (self.traits[p], self.traits[q]);
         if near.surface.is_some() && near.surface == far.surface {
             let are_two = s.is_cut && t.is_cut && p != q;
             return are_two.then(|| Change { off: OFF, ..line(LineKind::Sharp) });
         }
         let is_operand = p == q && s.bound != Bound::Equations;
-        let limits = EdgeLimits::default();
         let limit = if is_operand && s.bound == Bound::Mesh { limits.crease } else { limits.smooth };
-        let angle = near.normal.angle_between(far.normal);
         match angle - limit {
             over if over > UNSURE => Some(line(LineKind::Sharp)),
             over if over < -UNSURE && is_operand => None,

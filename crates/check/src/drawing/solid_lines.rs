@@ -12,7 +12,7 @@
 //!
 //! What no pixel's centre sees needs no line.
 
-use super::changes::{Change, Changes, OFF, Ray, Why};
+use super::changes::{Change, Changes, Look, OFF, Ray, Why};
 use super::judge::SPACING;
 use super::path::{LineSource, Path, Spot, View};
 use super::sources::{edge_path, of, segment};
@@ -62,17 +62,21 @@ pub(super) fn places(
     camera: &Camera,
     settings: &DrawingSettings,
 ) -> Result<Vec<Place>, DrawingError> {
-    let Some(changes) = Changes::new(model, tracer, camera, settings) else { return Ok(Vec::new()) };
     let (width, height) = (camera.size.0 as usize, camera.size.1 as usize);
     let tops: Vec<usize> = (0..height).step_by(ROWS).collect();
-    let of_band = |probe: &mut Probe<'_>, top: usize| {
-        let last = (top + ROWS).min(height - 1);
-        Band::new(&changes, (top, last), width, probe).places(&changes, settings, probe)
-    };
-    let mut out: Vec<Place> = tops.into_par_iter().map_init(|| tracer.probe(camera), of_band).flatten_iter().collect();
+    let mut out = Vec::new();
+    for look in [Look::Opaque, Look::Nearest, Look::Farthest] {
+        let Some(changes) = Changes::new(model, tracer, (camera, look), settings) else { continue };
+        let of_band = |probe: &mut Probe<'_>, top: &usize| {
+            let last = (top + ROWS).min(height - 1);
+            Band::new(&changes, (*top, last), width, probe).places(&changes, settings, probe)
+        };
+        let found: Vec<Vec<Place>> = tops.par_iter().map_init(|| tracer.probe(camera), of_band).collect();
+        out.extend(found.into_iter().flatten());
+    }
     let primitives = tracer.solids.iter().flat_map(|solids| solids.union().primitives()).enumerate();
     for (number, primitive) in primitives {
-        let operand = Operand { tracer, changes: &changes, number, primitive };
+        let operand = Operand { tracer, number, primitive };
         out.extend(operand.places(model.parts.len(), view, camera, settings)?);
     }
     Ok(out)
@@ -188,7 +192,6 @@ fn within(changes: &Changes<'_>, corner: DVec2, probe: &mut Probe<'_>) -> Vec<Ch
 /// A primitive that may have edges of its own.
 struct Operand<'a> {
     tracer: &'a Tracer,
-    changes: &'a Changes<'a>,
     number: usize,
     primitive: &'a Primitive,
 }
@@ -241,12 +244,19 @@ impl Operand<'_> {
         Place { ends: [spot.pixel; 2], need, is_outline: false, off: OFF, primitive }
     }
 
-    /// Nothing hides the point, and one of nine pixels around it sees the operand: others may have cut it away there.
+    /// Nothing hides the point, and one of nine pixels around it sees the operand, maybe through others: it may be cut away
+    /// there.
     fn is_near(&self, spot: &Spot, known: f64, probe: &mut Probe<'_>) -> bool {
-        let own = |hit: &Hit| self.changes.primitive(hit) == Some(self.number);
+        let own = |hit: &Hit| self.tracer.primitive(hit) == Some(self.number);
         let seen = self.tracer.sight(spot.point, known, &own, probe);
         let is_hidden = !matches!(seen, Visibility::Visible | Visibility::Unsure);
         let mut around = (0..9).map(|k| DVec2::new(f64::from(k % 3 - 1), f64::from(k / 3 - 1)));
-        !is_hidden && around.any(|way| self.changes.ray(spot.pixel + way, probe).hit.as_ref().is_some_and(own))
+        // edges are seen through what is seen through
+        let mut sees = |pixel: DVec2| {
+            let mut hits = probe.hits(pixel).iter();
+            let is_layer = |hit: &&Hit| self.tracer.is_layer(hit);
+            hits.clone().take_while(is_layer).any(own) || hits.find(|hit| !is_layer(hit)).is_some_and(own)
+        };
+        !is_hidden && around.any(|way| sees(spot.pixel + way))
     }
 }

@@ -62,6 +62,11 @@ impl LayerTracer {
         &self.all
     }
 
+    /// The primitive, of [`union`](Self::union), is of a clear solid.
+    pub fn is_of_clear(&self, primitive: usize) -> bool {
+        self.clear.first().is_some_and(|(_, first)| primitive >= *first as usize)
+    }
+
     /// The way through the union of the opaque solids, and through each clear one.
     pub fn traces(&self, origin: DVec3, direction: DVec3) -> (Trace, Vec<Trace>) {
         let speed = direction.length();

@@ -1,6 +1,6 @@
 //! Images beside the colour.
 
-use selvedge_session::Image;
+use selvedge_jobs::Image;
 use std::path::PathBuf;
 use std::str::FromStr;
 

@@ -4,7 +4,7 @@ use anyhow::Result;
 use clap::Args;
 use selvedge::model::Colour;
 use selvedge::picture::{EdgeChoice, EdgeSettings, Style, TangentEdges};
-use selvedge_session::colour;
+use selvedge_jobs::colour;
 
 /// Which lines are drawn, and how.
 #[derive(Debug, Args)]

@@ -3,7 +3,7 @@
 use crate::values::{length, mebibytes, seconds};
 use clap::{Args, ValueEnum};
 use selvedge::construct::subdivide::Scheme;
-use selvedge_session::{Limits, memory};
+use selvedge_jobs::{Limits, memory};
 use std::path::PathBuf;
 use std::time::Duration;
 

@@ -1,5 +1,5 @@
 use super::*;
-use selvedge_session::Image;
+use selvedge_jobs::Image;
 
 #[test]
 fn clap_accepts_the_definition() {

@@ -13,7 +13,7 @@ use selvedge::model::{Camera, Projection};
 use selvedge::picture::{EdgeChoice, TangentEdges};
 use selvedge_check::Tracer;
 use selvedge_check::drawing::{Drawing, DrawingSettings};
-use selvedge_session::Direction;
+use selvedge_jobs::Direction;
 use std::path::PathBuf;
 use std::time::Instant;
 use svg::Page;

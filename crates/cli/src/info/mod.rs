@@ -18,7 +18,7 @@ use selvedge::model::{EdgeCounts, Mesh, Model, Part, SurfaceKind};
 use selvedge::picture::{SceneSettings, TrimWay};
 use selvedge::renderer::trim_way;
 use selvedge_io::import::{FaceRecord, Import, ImportReport, Summary};
-use selvedge_session::Node;
+use selvedge_jobs::Node;
 use serde::Serialize;
 use solids::SolidRow;
 use std::collections::BTreeMap;

@@ -132,12 +132,12 @@ impl<'a> Items<'a> {
                 let number = Number { number: face.id, item: None, placed: Some(placed) };
                 add(Name::Face(number), format!("{:?}", face.kind), begin(face));
             }
-            let mut told = HashSet::new();
+            let mut listed = HashSet::new();
             let edges = self.edges.get(instance.part).map_or(&[][..], |edges| edges.edges.as_slice());
             for (nth, edge) in edges.iter().enumerate() {
                 let source = edge.source.unwrap_or(EdgeSource { entity: nth as u32 + 1, item: None });
                 let name = Name::Edge(Number { number: source.entity, item: source.item, placed: Some(placed) });
-                if let Some(first) = edge.curve.first().filter(|_| told.insert(name)) {
+                if let Some(first) = edge.curve.first().filter(|_| listed.insert(name)) {
                     add(name, format!("{:?}", edge.kind), first.piece.point(0.0));
                 }
             }

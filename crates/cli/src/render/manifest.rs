@@ -26,8 +26,8 @@ pub struct Known {
 impl Known {
     /// The facts about a file: its summary, how many seconds it took to read, and its hash in hexadecimal digits.
     pub fn new(path: &Path, summary: &Summary, warnings: usize, instances: usize, read_s: f64) -> Result<Self> {
-        let told = || format!("{}: its SHA-256", path.display());
-        let hash = hashed(path).with_context(told)?;
+        let what = || format!("{}: its SHA-256", path.display());
+        let hash = hashed(path).with_context(what)?;
         let sha256 = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
         Ok(Self { sha256, faces: summary.faces.drawn, instances, warnings, complete: summary.is_complete(), read_s })
     }

@@ -19,7 +19,7 @@ use anyhow::{Error, Result};
 use selvedge::gpu::GpuError;
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge_io::import::Import;
-use selvedge_session::Limits;
+use selvedge_jobs::Limits;
 use std::path::Path;
 use std::sync::mpsc;
 use std::thread;
@@ -108,13 +108,13 @@ impl Run<'_> {
         self.failed += 1;
         // errors of the renderer name no file
         let error = if explained(&error).contains(&name) { error } else { error.context(name) };
-        let told = explained(&error);
+        let message = explained(&error);
         let left = &task.shots[count.min(task.shots.len())..];
-        self.manifest.iter_mut().try_for_each(|manifest| manifest.others(task, left, Some(&told)))?;
+        self.manifest.iter_mut().try_for_each(|manifest| manifest.others(task, left, Some(&message)))?;
         if self.args.many.fail_fast || of_device(&error) {
             return Err(error);
         }
-        bar.tell(&format!("selvedge: {told}"));
+        bar.tell(&format!("selvedge: {message}"));
         Ok(())
     }
 

@@ -13,7 +13,7 @@ use crate::target::{self, JSON, NPY, PNG, Target};
 use anyhow::{Result, bail};
 use selvedge::model::Camera;
 use selvedge::picture::Picture;
-use selvedge_session::{Direction, NAMED};
+use selvedge_jobs::{Direction, NAMED};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -134,8 +134,8 @@ impl Shot {
     fn outputs(&self) -> impl Iterator<Item = Target> {
         let picture = self.output.iter().map(|path| Target::new(path, PNG));
         let images = self.aovs.iter().map(|aov| Target::new(&aov.file, NPY));
-        let told = self.stats.iter().chain(&self.camera_out).map(|path| Target::new(path, JSON));
-        picture.chain(images).chain(told)
+        let json = self.stats.iter().chain(&self.camera_out).map(|path| Target::new(path, JSON));
+        picture.chain(images).chain(json)
     }
 
     /// Writes all of them.

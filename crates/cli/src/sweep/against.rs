@@ -54,7 +54,7 @@ pub fn run(args: &SweepArgs, models: &[(String, Model)]) -> Result<Outcome> {
                     let ms: [f64; 3] = std::array::from_fn(|i| pass_ms(&frames[i], ""));
                     (0..3).for_each(|i| sums[i] += ms[i]);
                     let triangles = |i: usize| frames[i][0].triangles.to_string();
-                    let told = |level: u32| match view.level {
+                    let label = |level: u32| match view.level {
                         Err(px) if level == FINEST => format!("64 is off by {px:.3}"),
                         _ => level.to_string(),
                     };
@@ -66,11 +66,11 @@ pub fn run(args: &SweepArgs, models: &[(String, Model)]) -> Result<Outcome> {
                         format!("{:.4}", view.bound_px),
                         format!("{:.1}", ms[0]),
                         triangles(0),
-                        told(level),
+                        label(level),
                         format!("{:.1}", ms[1]),
                         triangles(1),
                         format!("{:.2}", ms[1] / ms[0]),
-                        told(most),
+                        label(most),
                         format!("{:.1}", ms[2]),
                         triangles(2),
                         format!("{:.2}", ms[2] / ms[0]),

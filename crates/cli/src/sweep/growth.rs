@@ -13,7 +13,7 @@ const QUANTITIES: [Quantity; 3] = [
 ];
 
 /// Sentences: one a quantity that was swept, and one of patches and pixels together where both were.
-pub fn told(rows: &[Row]) -> String {
+pub fn sentences(rows: &[Row]) -> String {
     let rows: Vec<_> = rows.iter().filter(|r| r.factors == "bound").collect();
     let line = |(name, of): &Quantity| {
         let points: Vec<_> = rows.iter().map(|r| (of(r).ln(), r.all_ms.ln())).collect();

@@ -12,7 +12,7 @@ use selvedge::picture::{FrameSettings, Outputs};
 const SIDE: usize = 64;
 
 /// The rate of the row that drew the most triangles.
-pub fn told(args: &SweepArgs, rows: &[Row]) -> Result<String> {
+pub fn sentence(args: &SweepArgs, rows: &[Row]) -> Result<String> {
     let row = rows.iter().max_by_key(|r| r.triangles).context("nothing was drawn")?;
     let model = grid(row.triangles as usize / (2 * SIDE * SIDE) + 1)?;
     let mut camera = Camera::around(model.bounds(), DVec3::new(0.0, -0.3, 1.0), DVec3::Y, 0.6, (row.width, row.height));

@@ -6,8 +6,8 @@ fn png(path: &Path) -> Target {
 
 #[track_caller]
 fn refused(inputs: &[&Path], outputs: &[Target], message: &str) {
-    let told = format!("{:#}", check(inputs, outputs).expect_err("refused"));
-    assert!(told.contains(message), "{told}");
+    let error = format!("{:#}", check(inputs, outputs).expect_err("refused"));
+    assert!(error.contains(message), "{error}");
 }
 
 #[test]

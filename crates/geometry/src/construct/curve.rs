@@ -56,8 +56,8 @@ pub fn line(a: DVec3, b: DVec3) -> Result<BSpline<DVec4>, ConstructError> {
     Ok(BSpline::from_bezier(Bezier::line(a, b), 0.0, 1.0)?)
 }
 
-/// `centre + cos t x + sin t y` for `t` from `from` to `to`, at most 1024 turns: a circle where `x` and `y` are of
-/// one length and at right angles, else an ellipse with these conjugate radii.
+/// `centre + cos t x + sin t y` for `t` from `from` to `to`, radians, at most 1024 turns: a circle where `x` and `y`
+/// are of one length and at right angles, else an ellipse with these conjugate radii.
 ///
 /// The domain is `[from, to]`; at the knots, at most a quarter turn apart, the parameter is the angle. Whole turns
 /// close bit for bit. Accuracy: rounding, below `1e-14` of the radius (plus of the centre's coordinates).
@@ -90,7 +90,7 @@ pub fn ellipse(centre: DVec3, x: DVec3, y: DVec3, from: f64, to: f64) -> Result<
 }
 
 /// The circle of `radius` about `centre` in the plane across `axis`, from the direction `start` on (made
-/// perpendicular to the axis), by `angle` around the axis. See [`ellipse`].
+/// perpendicular to the axis), by `angle` around the axis, radians. See [`ellipse`].
 ///
 /// # Errors
 /// As [`ellipse`]; a radius that is not positive; a start along the axis.

@@ -43,7 +43,7 @@ fn jet(piece: &Bezier<DVec4>, t: f64) -> (DVec3, DVec3) {
     (at, (d.truncate() - at * d.w) / p.w)
 }
 
-/// Length of a placed edge, and an estimate of its error.
+/// Length of a placed edge, and an estimate of its error; model units.
 pub fn length(edge: &Edge, transform: DAffine3) -> (f64, f64) {
     let mut total = (0.0, 0.0);
     for span in &edge.curve {

@@ -1,4 +1,4 @@
-//! Creases and borders of triangles.
+//! Creases and borders of triangles, and the sides between, which are outlines in some views.
 //!
 //! ```text
 //!      ╱│╲        sides that two triangles share, if these turn by more than the limit    crease
@@ -9,12 +9,38 @@
 //! and files with a mesh a face, have the same creases. A triangle without area has no angle: its sides are neither. A
 //! side of three triangles or more is a crease.
 
-use crate::model::{EdgeKind, Mesh, MeshEdge};
+use crate::model::{EdgeKind, Mesh, MeshEdge, SmoothSide};
 use glam::DVec3;
 use std::collections::HashMap;
 
 /// The creases and borders of all meshes, in the order of their first triangle.
 pub(super) fn edges(meshes: &[Mesh], crease: f64) -> Vec<MeshEdge> {
+    let mut found = sides(meshes);
+    found.retain_mut(|edge| {
+        let kind = kind(meshes, edge, crease);
+        edge.kind = kind.unwrap_or(edge.kind);
+        kind.is_some()
+    });
+    found
+}
+
+/// The sides of two triangles that are neither, in the order of their first triangle.
+pub(super) fn smooth_sides(meshes: &[Mesh], crease: f64) -> Vec<SmoothSide> {
+    let smooth = |side: &MeshEdge| {
+        let &[a, b] = &side.triangles[..] else { return None };
+        let third = |(mesh, triangle): (usize, usize)| {
+            let [a, b, c] = meshes[mesh].corners(triangle);
+            let has_area = (b - a).cross(c - a).length() > 0.0;
+            [a, b, c].into_iter().find(|corner| !side.ends.contains(corner)).filter(|_| has_area)
+        };
+        let beside = [third(a)?, third(b)?];
+        kind(meshes, side, crease).is_none().then_some(SmoothSide { ends: side.ends, beside })
+    };
+    sides(meshes).iter().filter_map(smooth).collect()
+}
+
+/// All sides with their triangles, as borders.
+fn sides(meshes: &[Mesh]) -> Vec<MeshEdge> {
     let mut numbers: HashMap<[u64; 3], u32> = HashMap::new();
     let mut number = |p: DVec3| {
         let next = numbers.len() as u32;
@@ -41,11 +67,6 @@ pub(super) fn edges(meshes: &[Mesh], crease: f64) -> Vec<MeshEdge> {
             }
         }
     }
-    found.retain_mut(|edge| {
-        let kind = kind(meshes, edge, crease);
-        edge.kind = kind.unwrap_or(edge.kind);
-        kind.is_some()
-    });
     found
 }
 

@@ -5,7 +5,7 @@
 //!   stretch   loops cut at vertices: edges of the source as they are, the rest where it passes a vertex
 //!   join      stretches that are one edge: by the source, else by geometry
 //!   kind      sharp, smooth, seam, border: by the angle across it
-//!   mesh      creases and borders of triangles
+//!   mesh      creases and borders of triangles, and the sides between
 //!   flatten   an edge as a line in the picture
 //!   nearest   the point of an edge nearest to a pixel
 //!   track     the place in a face's (u, v) next to a point of its edge
@@ -36,7 +36,7 @@ pub use sheet::Sheet;
 pub use track::Track;
 
 use crate::math::golden::section;
-use crate::model::{Bounds, Edge, EdgeLimits, EdgeUse, Edges, Face, Part};
+use crate::model::{Bounds, Edge, EdgeLimits, EdgeUse, Edges, Face, Part, SmoothSide};
 use crate::spline::SplineError;
 use glam::DVec3;
 use join::{Boundaries, join};
@@ -88,6 +88,12 @@ impl Part {
         let mut edges = self.assembled(&sheets, found, (reach, size), limits)?;
         edges.of_meshes = mesh::edges(&self.meshes, limits.crease);
         Ok(edges)
+    }
+
+    /// Sides of triangles that are outlines in some views: those of two triangles with an area that turn by at most
+    /// `limits.crease`. In the order of their first triangle.
+    pub fn smooth_sides(&self, limits: &EdgeLimits) -> Vec<SmoothSide> {
+        mesh::smooth_sides(&self.meshes, limits.crease)
     }
 
     fn assembled(

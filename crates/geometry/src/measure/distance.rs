@@ -20,9 +20,9 @@ use glam::{DAffine3, DVec2, DVec3, DVec4};
 pub struct Distance {
     /// Model units.
     pub distance: f64,
-    /// On the first and on the second item.
+    /// On the first and on the second item, model coordinates.
     pub points: [DVec3; 2],
-    /// How much the last step changed it, and the rounding of the coordinates.
+    /// How much the last step changed it, and the rounding of the coordinates; model units.
     pub error: f64,
 }
 

@@ -9,10 +9,12 @@
 //! | two of the first three | smallest distance and where; angle; distance of centres or axes |
 //! | two points | distance, also along x, y and z |
 //!
-//! Values carry an estimate of their own error; the accuracy of the file is the limit.
+//! Values carry an estimate of their own error; the accuracy of the file is the limit. [`Face::area`], [`Face::radius`]
+//! and [`Edge::length`] give single numbers in the coordinates of the part.
 
 pub mod distance;
 pub mod mass;
+mod size;
 pub mod surface;
 
 use crate::edges::curve::{self, Circle, CurveShape, SAME};

@@ -16,33 +16,50 @@ use glam::{DAffine3, DMat3, DVec3};
 /// Points along each side of the face's part of the domain.
 const LOOKS: usize = 5;
 
-/// The shape of a face's surface, model coordinates.
+/// The shape of a face's surface: points and radii in model units, unit directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub enum SurfaceShape {
+    /// A plane.
     Plane {
+        /// Across the plane.
         normal: DVec3,
+        /// A point of the plane.
         point: DVec3,
     },
+    /// A circular cylinder.
     Cylinder {
+        /// Along the cylinder.
         axis: DVec3,
+        /// A point of the axis.
         point: DVec3,
+        /// Of the circle.
         radius: f64,
     },
-    /// `half_angle` between axis and side, radians.
+    /// A circular cone.
     Cone {
+        /// From the apex towards the face.
         axis: DVec3,
+        /// The tip.
         apex: DVec3,
+        /// Between axis and side, radians.
         half_angle: f64,
     },
+    /// A sphere.
     Sphere {
+        /// Of the sphere.
         centre: DVec3,
+        /// Of the sphere.
         radius: f64,
     },
+    /// A torus.
     Torus {
+        /// Across the circle through the middle of the tube.
         axis: DVec3,
+        /// Of that circle.
         centre: DVec3,
+        /// Of that circle.
         major: f64,
+        /// Of the tube.
         minor: f64,
     },
     /// None of these.

@@ -38,13 +38,13 @@ pub enum Projection {
 pub struct Camera {
     /// Position of the eye, model units.
     pub eye: DVec3,
-    /// A point on the view axis.
+    /// A point on the view axis, model units.
     pub target: DVec3,
     /// A direction that points up in the picture; not along the view axis.
     pub up: DVec3,
     /// Perspective or parallel.
     pub projection: Projection,
-    /// Nearest and farthest depth drawn.
+    /// Nearest and farthest depth drawn: distances from the eye along the view axis, model units.
     pub depth_range: (f64, f64),
     /// Width and height in pixels.
     pub size: (u32, u32),
@@ -187,7 +187,7 @@ impl Camera {
     }
 
     /// A camera that shows the sphere around `bounds` from direction `from` (towards the eye); the depth range encloses
-    /// it. [`Camera::framing`] fits a model tightly.
+    /// it. [`Camera::framing`] fits a model tightly. `fov_y` in radians, `size` in pixels.
     pub fn around(bounds: Bounds, from: DVec3, up: DVec3, fov_y: f64, size: (u32, u32)) -> Self {
         let radius = (bounds.diagonal() * 0.5).max(1e-9);
         let centre = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
@@ -295,7 +295,7 @@ impl Camera {
         DMat4::from_cols(across(x, self.size.0), across(y, self.size.1), nearness, w).transpose()
     }
 
-    /// The ray through pixel position `p` (continuous, `y` down): origin and unit direction.
+    /// The ray through pixel position `p` (continuous, `y` down): origin and unit direction, model coordinates.
     pub fn ray(&self, p: DVec2) -> (DVec3, DVec3) {
         let (right, up, forward) = self.axes();
         let principal = self.principal_px();
@@ -309,7 +309,8 @@ impl Camera {
         (self.eye, (forward + across / focal.x).normalize())
     }
 
-    /// Pixel position and depth of a model point; `None` behind the eye of a perspective view.
+    /// Pixel position and depth of a model point; `None` behind the eye of a perspective view. Depth is the distance
+    /// from the eye along the view axis, model units.
     pub fn project(&self, p: DVec3) -> Option<(DVec2, f64)> {
         let q = self.pixel_matrix() * p.extend(1.0);
         (q.w > 0.0).then(|| (DVec2::new(q.x / q.w, q.y / q.w), q.z))

@@ -53,24 +53,19 @@ pub enum ModelError {
     Coincident,
 }
 
-/// What a colour belongs to.
-#[allow(missing_docs)]
+/// What a colour belongs to, by indices: into [`Model::instances`], [`Model::parts`], the part's faces or meshes, and
+/// the primitives of a solid.
+#[allow(missing_docs)] // the fields are those indices
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coloured {
+    /// An instance.
     Instance(usize),
-    Face {
-        part: usize,
-        face: usize,
-    },
-    Mesh {
-        part: usize,
-        mesh: usize,
-    },
+    /// A face of a part.
+    Face { part: usize, face: usize },
+    /// A mesh of a part.
+    Mesh { part: usize, mesh: usize },
     /// A primitive of a solid; the solid's number is that of [`Model::solids`], and their count for [`Model::trim`].
-    Primitive {
-        solid: usize,
-        primitive: usize,
-    },
+    Primitive { solid: usize, primitive: usize },
 }
 
 impl std::fmt::Display for Coloured {

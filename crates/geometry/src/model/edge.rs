@@ -103,6 +103,16 @@ pub struct MeshEdge {
     pub kind: EdgeKind,
 }
 
+/// A side of two triangles across which a mesh does not crease. It is an outline where one of them faces the eye and the
+/// other does not: where both lie on one side of it in the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmoothSide {
+    /// Its ends, part coordinates.
+    pub ends: [DVec3; 2],
+    /// The third corners of both triangles.
+    pub beside: [DVec3; 2],
+}
+
 /// Edges and vertices of a part.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Edges {

@@ -9,16 +9,24 @@ use serde::Deserialize;
 /// The kind of a surface in its source, before it became a rational B-spline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[allow(missing_docs)]
 pub enum SurfaceKind {
+    /// A plane.
     Plane,
+    /// A circular cylinder.
     Cylinder,
+    /// A circular cone.
     Cone,
+    /// A sphere.
     Sphere,
+    /// A torus.
     Torus,
+    /// A curve turned about an axis.
     Revolution,
+    /// A curve moved along a vector.
     Extrusion,
+    /// At a constant distance from another surface.
     Offset,
+    /// A B-spline, or what has become one: Bézier patches, constructions, subdivision.
     BSpline,
 }
 

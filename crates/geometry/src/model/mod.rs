@@ -35,7 +35,7 @@ mod xray;
 
 pub use camera::{Camera, CameraError, Projection};
 pub use check::{Coloured, ModelError};
-pub use edge::{Edge, EdgeCounts, EdgeKind, EdgeLimits, EdgeRef, EdgeSource, EdgeUse, Edges, MeshEdge};
+pub use edge::{Edge, EdgeCounts, EdgeKind, EdgeLimits, EdgeRef, EdgeSource, EdgeUse, Edges, MeshEdge, SmoothSide};
 pub use face::{Face, FaceError, LoopAt, SurfaceKind, TrimLoop};
 pub use images::Images;
 pub use items::Items;

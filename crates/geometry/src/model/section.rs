@@ -229,7 +229,7 @@ mod tests {
         assert_eq!(cut.trim.map(|t| t.primitives().len()), Some(1));
         assert_eq!(cut.solids.len(), 3);
         assert_eq!(cut.solids[1], model.solids[0]);
-        // numbers of caps come after all others, and are told
+        // numbers of caps come after all others, and are listed
         assert_eq!(cut.cuts, [12, 13]);
         let ids = |s: &Solid| s.primitives().iter().map(|p| p.id).collect::<Vec<_>>();
         assert_eq!([ids(&cut.solids[0]), ids(&cut.solids[2])], [vec![7, 12], vec![10, 13]]);

@@ -23,7 +23,6 @@
 //! | [`TrimTable`] | in or out, by scan line, the way the GPU does | one binary search |
 //! | [`ExactTrim`] | winding number in single precision, as the GPU does without a table | a few arcs |
 //! | [`Face::bounds`], [`Part::bounds`], [`Model::bounds`] | how far the kept points reach | branch and bound |
-//! | [`Face::area`], [`Face::radius`], [`Edge::length`](crate::model::Edge::length) | measures | Gauss rules |
 //! | [`crossing`] | whether loops cross | nearly linear |
 //! | [`chord_bend, segment_count`] | how many chords stay within a tolerance | closed form |
 //!
@@ -31,8 +30,6 @@
 //! table and the half-open segments); A. Schollmeyer, B. Fröhlich, *Direct trimming of NURBS
 //! surfaces on the GPU*, 2009 (bi-monotone pieces).
 //!
-//! [`Face::area`]: crate::model::Face::area
-//! [`Face::radius`]: crate::model::Face::radius
 //! [`Face::bounds`]: crate::model::Face::bounds
 //! [`Part::bounds`]: crate::model::Part::bounds
 //! [`Model::bounds`]: crate::model::Model::bounds
@@ -43,7 +40,6 @@ mod crossing;
 mod distance;
 mod exact;
 mod flatten;
-mod measure;
 mod meet;
 mod piece;
 mod table;

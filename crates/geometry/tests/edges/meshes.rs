@@ -79,3 +79,18 @@ fn odd_triangles() {
         vec![quads(&[flat]), quads(&[[-DVec3::X, DVec3::new(-0.0, -0.0, -0.0), DVec3::Y, DVec3::new(-1.0, 1.0, 0.0)]])];
     assert_eq!(kinds(zero).len(), 6);
 }
+
+/// The diagonals of a cube's sides, with the corners across them; with a wider limit its edges, too.
+#[test]
+fn smooth_sides_are_those_between_creases() {
+    let part = Part { meshes: vec![quads(&cube())], ..Part::default() };
+    let found = part.smooth_sides(&EdgeLimits::default());
+    assert_eq!(found.len(), 6);
+    for side in &found {
+        let [a, b] = side.ends;
+        assert!((a.distance(b) - 2f64.sqrt()).abs() < 1e-15, "{side:?}");
+        // the other corners of the square
+        assert_eq!(side.beside[0] + side.beside[1], a + b, "{side:?}");
+    }
+    assert_eq!(part.smooth_sides(&EdgeLimits { crease: 2.0, ..EdgeLimits::default() }).len(), 18);
+}

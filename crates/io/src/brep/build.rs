@@ -195,11 +195,11 @@ fn lost(face: &FaceGeometry, edges: &[Edge], uses: &[Vec<EdgeCurve>], support: &
         list.first().is_some_and(|first| pole(first).is_some() && list.iter().all(|e| pole(e) == pole(first)))
     };
     let empty = lists.zip(uses).filter(|(list, uses)| uses.is_empty() && !at_pole(list));
-    let told = |(list, _): (&Vec<(usize, bool)>, _)| {
+    let note = |(list, _): (&Vec<(usize, bool)>, _)| {
         let edge = list.first().map_or(String::new(), |(index, _)| format!(", edge #{},", edges[*index].id));
         format!("face #{}: a loop without length{edge} was left out", face.id)
     };
-    empty.map(told).collect()
+    empty.map(note).collect()
 }
 
 /// The edges of each bound in the direction of the bound; edges without length are left out. A single edge whose

@@ -51,17 +51,17 @@ pub fn settle(edges: &mut [Edge], faces: &mut [&mut FaceGeometry], closed: bool,
     let mut notes = Vec::new();
     for (index, users) in off {
         let Some(edge) = edges.get_mut(index) else { continue };
-        let (miss, told) = (missed(&*edge), REPORTED * limit(&*edge));
+        let (miss, reported) = (missed(&*edge), REPORTED * limit(&*edge));
         let supports = users.iter().filter_map(|at| Support::new(&faces[*at].surface, tolerance).ok());
-        let told = match better(&*edge, &supports.collect::<Vec<_>>(), (miss, tolerance)) {
+        let outcome = match better(&*edge, &supports.collect::<Vec<_>>(), (miss, tolerance)) {
             Some(better) => {
                 *edge = better;
                 ": they and its faces say where it runs"
             }
-            None if miss > told => "",
+            None if miss > reported => "",
             None => continue,
         };
-        notes.push((edge.id, format!("its curve misses its vertices by {miss:.3e} mm{told}")));
+        notes.push((edge.id, format!("its curve misses its vertices by {miss:.3e} mm{outcome}")));
     }
     mark_ambiguous(edges, faces, closed, tolerance);
     notes

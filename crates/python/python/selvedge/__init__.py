@@ -141,7 +141,7 @@ class Renderer:
             colour, gradient, or none (transparent).
         curvature_range: the mean curvature at the end of the scale, 1/mm, whose square is that of Gaussian curvature;
             without it a round number at which most of the model's curvatures are told apart.
-        edges: lines along "all" edges, the "sharp" ones, or "none". silhouettes: outlines of curved faces, too.
+        edges: lines along "all" edges, the "sharp" ones, or "none". silhouettes: outlines of curved faces and meshes, too.
         hidden_lines: lines behind faces, dashed. line_width: pixels; without it 1 or more, and more in high pictures.
         samples: 1, 4 or 8 of each pixel's colour. smooth: at samples=1, borders that are smooth: "borders" of all faces (the
             default), "trims", those of trimmed faces by exact areas, or "none".

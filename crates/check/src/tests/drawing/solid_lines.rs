@@ -230,3 +230,68 @@ fn edges_of_operands_have_lines() {
         faults(&model, &camera, &image(&camera, |p| to_segments(&edges, p).min(to_segments(&[within], p))));
     assert!(stray as f64 > 0.7 * within[0].distance(within[1]), "{stray}");
 }
+
+/// All twelve edges of a block of glass have lines; those at its back are missed if they have none.
+#[test]
+fn edges_at_the_back_of_glass_have_lines() {
+    let clear = Primitive { colour: [1.0, 1.0, 1.0, 0.4], ..block(-HALF, HALF) };
+    let (model, camera) = (solid("A", vec![clear]), isometric());
+    let front = edges_of_block(&camera, -HALF, HALF).concat();
+    // the corner that is farthest from the eye
+    let corner = -HALF * ISO.signum();
+    let back: Vec<[DVec2; 2]> = [DVec3::X, DVec3::Y, DVec3::Z]
+        .map(|axis| [corner, corner + axis * ISO.signum()].map(|p| pixel(&camera, p)))
+        .to_vec();
+    let off = |p: DVec2| to_segments(&front, p).min(to_segments(&back, p));
+    let found = judged(&model, &camera, &DrawingSettings::default(), &image(&camera, off));
+    assert_eq!((found.missing, found.stray, found.unsure), (0, 0, 0), "{found:?}");
+    let (missing, stray) = faults(&model, &camera, &image(&camera, |p| to_segments(&front, p)));
+    assert!(stray == 0 && missing as f64 > 0.8 * crossed(&back), "{missing} {stray}");
+    let (missing, stray) = faults(&model, &camera, &image(&camera, |p| to_segments(&back, p)));
+    assert!(stray == 0 && missing > 300, "{missing} {stray}");
+    // a line within a face, which nothing hides
+    let within = [pixel(&camera, DVec3::new(-0.3, 0.3, 0.5)), pixel(&camera, DVec3::new(0.3, 0.3, 0.5))];
+    let (missing, stray) = faults(&model, &camera, &image(&camera, |p| off(p).min(to_segments(&[within], p))));
+    assert!(missing == 0 && stray > 20, "{missing} {stray}");
+}
+
+/// Something opaque within glass ends no face of it.
+#[test]
+fn what_is_within_glass_ends_none_of_its_faces() {
+    let clear = Primitive { colour: [1.0, 1.0, 1.0, 0.4], ..block(-HALF, HALF) };
+    let ball = at(DVec3::ZERO, Shape::Sphere { radius: 0.3 });
+    let both = [solid("A", vec![clear]), solid("A", vec![ball])].map(|model| model.solids).concat();
+    let (model, camera) = (Model { solids: both, ..Model::default() }, isometric());
+    let edges = edges_of_block(&camera, -HALF, HALF).concat();
+    let corner = -HALF * ISO.signum();
+    let behind = |p: DVec2| p.distance(DVec2::new(100.0, 75.0)) < 75.0 * 0.3;
+    let back: Vec<[DVec2; 2]> = [DVec3::X, DVec3::Y, DVec3::Z]
+        .map(|axis| [corner, corner + axis * ISO.signum()].map(|p| pixel(&camera, p)))
+        .to_vec();
+    let shown = |p: DVec2| if behind(p) { f64::INFINITY } else { to_segments(&back, p) };
+    let lines = image(&camera, |p| to_segments(&edges, p).min(shown(p)));
+    let settings = DrawingSettings { silhouettes: false, ..DrawingSettings::default() };
+    let found = judged(&model, &camera, &settings, &lines);
+    assert_eq!((found.missing, found.stray), (0, 0), "{found:?}");
+}
+
+/// Where a block stands in a face there has to be a line; along its sides the face hides and ends nothing.
+#[test]
+fn meetings_with_faces_have_lines() {
+    use super::super::shapes::{face, rectangle};
+    let plane = rectangle(DVec3::new(-9.0, -9.0, 0.0), DVec3::X * 18.0, DVec3::Y * 18.0);
+    let part = Part { faces: vec![face(7, plane, Vec::new())], ..Part::default() };
+    let camera = isometric();
+    let model = Model { solids: solid("A", vec![block(-HALF, HALF)]).solids, ..alone(part) };
+    let (low, high) = (-HALF.with_z(0.0), HALF);
+    let edges = edges_of_block(&camera, low, high).concat();
+    let at_floor = |x: f64, y: f64| pixel(&camera, DVec3::new(x, y, 0.0));
+    let met = [[at_floor(0.5, 0.5), at_floor(0.5, -0.5)], [at_floor(0.5, -0.5), at_floor(-0.5, -0.5)]];
+    assert_eq!(faults(&model, &camera, &image(&camera, |p| to_segments(&edges, p))), (0, 0));
+    // all but the two where the block meets the floor
+    let is_met = |edge: &[DVec2; 2]| met.iter().any(|m| m.iter().all(|p| edge.iter().any(|q| p.distance(*q) < 1e-6)));
+    let others: Vec<[DVec2; 2]> = edges.iter().copied().filter(|edge| !is_met(edge)).collect();
+    assert_eq!(others.len() + 2, edges.len());
+    let (missing, stray) = faults(&model, &camera, &image(&camera, |p| to_segments(&others, p)));
+    assert!(stray == 0 && missing as f64 > 0.8 * crossed(&met), "{missing} {stray}");
+}

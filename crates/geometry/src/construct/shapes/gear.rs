@@ -27,29 +27,29 @@ const HALVINGS: u32 = 40;
 /// Factor for the error between the samples; a flank's error has one hump a piece.
 const MARGIN: f64 = 1.1;
 
-/// A rectangular slot along a bore, at its side of positive x.
+/// A rectangular slot along a bore, at its side of positive x; model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Keyway {
-    /// Across.
+    /// Across the slot.
     pub width: f64,
     /// From the bore's circle, where the slot's middle meets it, outwards.
     pub depth: f64,
 }
 
-/// A stepped disc with a bore, and perhaps a keyway: the blank of a gear.
+/// A stepped disc with a bore, and perhaps a keyway: the blank of a gear. Lengths are model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GearBlank {
-    /// Of the disc.
+    /// Radius of the disc.
     pub radius: f64,
-    /// Of the disc, from `z = 0`.
+    /// Height of the disc, from `z = 0`.
     pub width: f64,
-    /// Of the hub.
+    /// Radius of the hub.
     pub hub_radius: f64,
-    /// Of the hub, from `z = 0` to above the disc.
+    /// Height of the hub, from `z = 0` to above the disc.
     pub hub_width: f64,
-    /// Of the bore.
+    /// Radius of the bore.
     pub bore: f64,
-    /// Of the bore.
+    /// Slot of the bore.
     pub keyway: Option<Keyway>,
 }
 
@@ -112,14 +112,14 @@ impl GearBlank {
     }
 }
 
-/// A spur gear with involute teeth.
+/// A spur gear with involute teeth. Lengths are model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpurGear {
     /// Pitch diameter over teeth, `m`.
     pub module: f64,
-    /// How many.
+    /// Number of teeth.
     pub teeth: u32,
-    /// From `z = 0`.
+    /// Height of the teeth, from `z = 0`.
     pub width: f64,
     /// Radius of the bore; 0 for none.
     pub bore: f64,

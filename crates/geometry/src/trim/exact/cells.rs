@@ -51,8 +51,8 @@ pub(super) fn sorted_into(chains: Chains, flats: Flats) -> ExactTrim {
         }
         for (column, list) in (0..).zip(&lists) {
             let region = Region::of(&grid, [column, row]);
-            let told = sorter.told(&region, list, crossings.right_of(region.centre().x));
-            let cell = sorter.cell(&mut cells, &region, &told);
+            let content = sorter.content(&region, list, crossings.right_of(region.centre().x));
+            let cell = sorter.cell(&mut cells, &region, &content);
             cells[(row * columns + column) as usize] = cell;
         }
     }
@@ -96,7 +96,7 @@ fn sign(arc: &Arc) -> i32 {
 }
 
 /// The arcs that meet a region's box, and the winding number of the others.
-struct Told {
+struct Content {
     /// Numbers of arcs and their flags.
     arcs: Vec<(u32, u32)>,
     /// How many of them are in the list.
@@ -117,15 +117,15 @@ struct Sorter<'a> {
 
 impl Sorter<'_> {
     /// The arcs that meet a region's box, where all crossings right of its centre add up to `right`.
-    fn told(&mut self, region: &Region, meet: &[u32], right: i32) -> Told {
+    fn content(&mut self, region: &Region, meet: &[u32], right: i32) -> Content {
         self.regions += 1;
         meet.iter().for_each(|&i| self.met[i as usize] = self.regions);
         let centre = region.centre();
-        let mut told = Told { arcs: Vec::with_capacity(meet.len()), length: 0, winding: right };
+        let mut content = Content { arcs: Vec::with_capacity(meet.len()), length: 0, winding: right };
         for &i in meet {
             let arc = &self.chains.arcs[i as usize];
             if let Some((u, sign)) = crossing(arc, centre.y) {
-                told.winding -= if u > centre.x { sign } else { 0 };
+                content.winding -= if u > centre.x { sign } else { 0 };
             }
             let mut flags = 0;
             for (high, flag) in [(false, AT_LOW), (true, AT_HIGH)] {
@@ -135,11 +135,11 @@ impl Sorter<'_> {
                     flags |= flag;
                 }
             }
-            told.winding -= lengthened(arc, flags, centre.y);
-            told.length += usize::from(self.is_listed((i, flags)));
-            told.arcs.push((i, flags));
+            content.winding -= lengthened(arc, flags, centre.y);
+            content.length += usize::from(self.is_listed((i, flags)));
+            content.arcs.push((i, flags));
         }
-        told
+        content
     }
 
     fn is_listed(&self, (arc, flags): (u32, u32)) -> bool {
@@ -148,9 +148,9 @@ impl Sorter<'_> {
     }
 
     /// A cell of the first level, split where it pays; its parts go behind the other cells.
-    fn cell(&mut self, cells: &mut Vec<Cell>, region: &Region, told: &Told) -> Cell {
-        match self.parts(region, told) {
-            None => self.whole(told),
+    fn cell(&mut self, cells: &mut Vec<Cell>, region: &Region, content: &Content) -> Cell {
+        match self.parts(region, content) {
+            None => self.whole(content),
             Some((halvings, parts)) => {
                 let first = cells.len() as u32;
                 cells.extend(parts.iter().map(|part| self.whole(part)));
@@ -160,15 +160,15 @@ impl Sorter<'_> {
     }
 
     /// Splits into as few parts as have few arcs each; else into the parts with the fewest.
-    fn parts(&mut self, region: &Region, told: &Told) -> Option<(u32, Vec<Told>)> {
-        let most = MOST_PARTS_AN_ENTRY * told.length;
+    fn parts(&mut self, region: &Region, content: &Content) -> Option<(u32, Vec<Content>)> {
+        let most = MOST_PARTS_AN_ENTRY * content.length;
         let mut best = None;
-        let mut longest = told.length;
+        let mut longest = content.length;
         for halvings in 1..=MOST_HALVINGS {
             if longest <= FEW || 1 << (2 * halvings) > most {
                 break;
             }
-            let parts = self.split(region, told, halvings);
+            let parts = self.split(region, content, halvings);
             if parts.iter().map(|part| part.length).sum::<usize>() > most {
                 break;
             }
@@ -180,16 +180,16 @@ impl Sorter<'_> {
         best
     }
 
-    fn split(&mut self, region: &Region, told: &Told, halvings: u32) -> Vec<Told> {
+    fn split(&mut self, region: &Region, content: &Content, halvings: u32) -> Vec<Content> {
         let n = 1 << halvings;
         let at = (0..n).flat_map(|row| (0..n).map(move |column| [column, row]));
         let mut meet = Vec::new();
         let parts = at.map(|at| {
             let part = region.part(at, halvings);
             let centre = part.centre();
-            let mut right = told.winding;
+            let mut right = content.winding;
             meet.clear();
-            for &(i, flags) in &told.arcs {
+            for &(i, flags) in &content.arcs {
                 let arc = &self.chains.arcs[i as usize];
                 right += crossing(arc, centre.y).map_or(0, |(u, sign)| if u > centre.x { sign } else { 0 });
                 right += lengthened(arc, flags, centre.y);
@@ -197,14 +197,14 @@ impl Sorter<'_> {
                     meet.push(i);
                 }
             }
-            self.told(&part, &meet, right)
+            self.content(&part, &meet, right)
         });
         parts.collect()
     }
 
-    fn whole(&mut self, told: &Told) -> Cell {
-        let list = told.arcs.iter().copied().filter(|entry| self.is_listed(*entry)).collect();
-        Cell::Whole { first: self.list(list), winding: told.winding }
+    fn whole(&mut self, content: &Content) -> Cell {
+        let list = content.arcs.iter().copied().filter(|entry| self.is_listed(*entry)).collect();
+        Cell::Whole { first: self.list(list), winding: content.winding }
     }
 
     /// First entry of a list.

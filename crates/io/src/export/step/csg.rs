@@ -67,22 +67,22 @@ pub(super) fn solid<W: Write>(
     let mut faces = Colours::default();
     let mut ids: BTreeMap<u32, Vec<Id>> = BTreeMap::new();
     let mut deviation: f64 = 0.0;
-    let mut told = Vec::new();
+    let mut left_out = Vec::new();
     for (&p, (primitive, operand)) in &operands {
         let Operand::Faces(part) = operand else { continue };
-        let found = shape(&mut apart, part, item, &mut faces, &mut told)?;
+        let found = shape(&mut apart, part, item, &mut faces, &mut left_out)?;
         if !found.solid || found.items.is_empty() {
-            told.push(ExportWarning {
+            left_out.push(ExportWarning {
                 item,
                 message: format!("was left out: primitive #{} is not closed", primitive.id),
             });
-            warnings.append(&mut told);
+            warnings.append(&mut left_out);
             return Ok(None);
         }
         deviation = deviation.max(found.deviation);
         ids.insert(p, found.items);
     }
-    warnings.append(&mut told);
+    warnings.append(&mut left_out);
     let last = apart.last();
     text.take(&aside, last)?;
     colours.append(faces);

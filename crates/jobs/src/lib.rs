@@ -35,7 +35,7 @@ pub use backdrop::{Backdrop, colour};
 pub use camera::{CameraFile, Lens, Pinhole, Viewpoint, bounds, fitted, whole};
 pub use directions::{Direction, Directions, NAMED};
 pub use drawer::{DeviceOptions, Drawer, Drawn, Job, MOST_IN_FLIGHT};
-pub use error::{SessionError, Stop, guarded};
+pub use error::{JobError, Stop, guarded};
 pub use images::{Image, Values};
 pub use legend::legend;
 pub use limits::{Bound, Exceeded, Limits, Step, Work, resident};

@@ -13,7 +13,7 @@
 //! anew, each alone.
 
 use crate::drawer::{DeviceOptions, Drawer, Drawn, Job};
-use crate::error::{SessionError, Stop, guarded};
+use crate::error::{JobError, Stop, guarded};
 use crate::limits::{Step, Work};
 use selvedge::gpu::GpuError;
 use std::collections::VecDeque;
@@ -23,7 +23,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-type Answer = Result<Drawn, SessionError>;
+type Answer = Result<Drawn, JobError>;
 
 /// A job on its way.
 struct Order {
@@ -35,7 +35,7 @@ struct Order {
 impl Order {
     /// Answers it; true unless the answer is a panic, after which the device is not used again.
     fn answer(self, drawn: Answer) -> bool {
-        let is_usable = !matches!(drawn, Err(SessionError::Panicked(_)));
+        let is_usable = !matches!(drawn, Err(JobError::Panicked(_)));
         let _ = self.answer.send(drawn); // the ticket may be dropped
         is_usable
     }
@@ -53,16 +53,16 @@ impl Order {
     }
 
     /// Whether its file's limits let a picture be drawn.
-    fn tested(&self) -> Result<(), SessionError> {
+    fn tested(&self) -> Result<(), JobError> {
         Ok(self.job.limits.begin(Work::Drawing).test()?)
     }
 
     /// Why it need not be begun.
-    fn refused(&self) -> Option<SessionError> {
+    fn refused(&self) -> Option<JobError> {
         if self.stop.is_set() {
-            return Some(SessionError::Stopped);
+            return Some(JobError::Stopped);
         }
-        self.tested().err().or_else(|| self.job.camera.check().err().map(SessionError::from))
+        self.tested().err().or_else(|| self.job.camera.check().err().map(JobError::from))
     }
 }
 
@@ -182,7 +182,7 @@ fn in_flight(drawer: &mut Drawer, [first, second]: [Order; 2], waiting: &mut Wai
     left.append(&mut early);
     match ended {
         Ok(()) => true,
-        Err(error @ SessionError::Panicked(_)) => {
+        Err(error @ JobError::Panicked(_)) => {
             if let Some(order) = left.pop_front() {
                 order.answer(Err(error));
             }
@@ -198,8 +198,8 @@ fn in_flight(drawer: &mut Drawer, [first, second]: [Order; 2], waiting: &mut Wai
     }
 }
 
-fn is_out_of_memory(error: &SessionError) -> bool {
-    matches!(error, SessionError::Draw(error) if error.gpu().is_some_and(GpuError::is_out_of_memory))
+fn is_out_of_memory(error: &JobError) -> bool {
+    matches!(error, JobError::Draw(error) if error.gpu().is_some_and(GpuError::is_out_of_memory))
 }
 
 /// Draws orders until the worker is closed, or a panic.
@@ -230,7 +230,7 @@ impl Ticket {
         match self.answer.recv_timeout(at_most) {
             Ok(answer) => Some(answer),
             Err(RecvTimeoutError::Timeout) => None,
-            Err(RecvTimeoutError::Disconnected) => Some(Err(SessionError::Closed)),
+            Err(RecvTimeoutError::Disconnected) => Some(Err(JobError::Closed)),
         }
     }
 
@@ -252,8 +252,8 @@ impl Worker {
     /// Starts the thread and opens the device.
     ///
     /// # Errors
-    /// [`SessionError::Device`].
-    pub fn new(options: DeviceOptions) -> Result<Self, SessionError> {
+    /// [`JobError::Device`].
+    pub fn new(options: DeviceOptions) -> Result<Self, JobError> {
         let (orders, incoming) = mpsc::channel::<Order>();
         let (opened, answer) = mpsc::channel();
         let work = move || match guarded(|| Drawer::new(&options)) {
@@ -264,25 +264,25 @@ impl Worker {
             Err(error) => drop(opened.send(Err(error))),
         };
         let thread = thread::Builder::new().name("selvedge".to_owned()).spawn(work);
-        let thread = thread.map_err(|error| SessionError::Panicked(format!("no thread: {error}")))?;
-        answer.recv().unwrap_or(Err(SessionError::Closed))?;
+        let thread = thread.map_err(|error| JobError::Panicked(format!("no thread: {error}")))?;
+        answer.recv().unwrap_or(Err(JobError::Closed))?;
         Ok(Self { orders: Some(orders), thread: Some(thread) })
     }
 
     /// Sends a job; it is drawn after those sent before.
     ///
     /// # Errors
-    /// [`SessionError::Closed`].
-    pub fn submit(&self, job: Job) -> Result<Ticket, SessionError> {
+    /// [`JobError::Closed`].
+    pub fn submit(&self, job: Job) -> Result<Ticket, JobError> {
         let (answer, receiver) = mpsc::channel();
         let stop = Stop::default();
         let order = Order { job: Box::new(job), stop: stop.clone(), answer };
-        let orders = self.orders.as_ref().ok_or(SessionError::Closed)?;
-        orders.send(order).map_err(|_| SessionError::Closed)?;
+        let orders = self.orders.as_ref().ok_or(JobError::Closed)?;
+        orders.send(order).map_err(|_| JobError::Closed)?;
         Ok(Ticket { answer: receiver, stop })
     }
 
-    /// Frees the device once the jobs sent before are drawn. Later jobs are [`SessionError::Closed`].
+    /// Frees the device once the jobs sent before are drawn. Later jobs are [`JobError::Closed`].
     pub fn close(&mut self) {
         self.orders = None;
         if let Some(thread) = self.thread.take() {
@@ -314,7 +314,7 @@ mod tests {
         Order { job: Box::new(job), stop: Stop::default(), answer: mpsc::channel().0 }
     }
 
-    fn checked(begun: &Mutex<Begun>) -> Result<(), SessionError> {
+    fn checked(begun: &Mutex<Begun>) -> Result<(), JobError> {
         guarded(|| {
             locked(begun).check();
             Ok(())
@@ -334,11 +334,11 @@ mod tests {
         stop.set();
         assert!(checked(&begun).is_ok(), "the second one is stopped, the third one has no time");
         drop(locked(&begun).pop());
-        assert!(matches!(checked(&begun), Err(SessionError::Stopped)));
+        assert!(matches!(checked(&begun), Err(JobError::Stopped)));
         drop(locked(&begun).pop());
         thread::sleep(Duration::from_millis(1));
         let late = checked(&begun);
-        assert!(matches!(late, Err(SessionError::Limit(Exceeded { bound: Bound::Time(_), .. }))), "{late:?}");
+        assert!(matches!(late, Err(JobError::Limit(Exceeded { bound: Bound::Time(_), .. }))), "{late:?}");
         assert_eq!(locked(&begun).end().len(), 1);
         assert!(checked(&begun).is_ok());
     }

@@ -1,6 +1,6 @@
 //! Memory of the process: alone in this file, since other tests of one process would take some of it.
 
-use selvedge_session::{Bound, Limits, Work, resident};
+use selvedge_jobs::{Bound, Limits, Work, resident};
 use std::hint::black_box;
 
 #[test]

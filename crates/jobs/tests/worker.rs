@@ -5,9 +5,9 @@ use selvedge::glam::DVec3;
 use selvedge::gpu::GpuError;
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
-use selvedge_session::{
-    Backdrop, Bound, DeviceOptions, Drawer, Drawn, Exceeded, Job, Limits, ReadOptions, SessionError, Source, Stop,
-    Ticket, Work, Worker, read,
+use selvedge_jobs::{
+    Backdrop, Bound, DeviceOptions, Drawer, Drawn, Exceeded, Job, JobError, Limits, ReadOptions, Source, Stop, Ticket,
+    Work, Worker, read,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -49,7 +49,7 @@ fn submitted(worker: &Worker, jobs: &[Job]) -> Vec<Ticket> {
     jobs.iter().map(|job| worker.submit(job.clone()).expect("the worker takes it")).collect()
 }
 
-fn answer(ticket: &Ticket) -> Result<Drawn, SessionError> {
+fn answer(ticket: &Ticket) -> Result<Drawn, JobError> {
     ticket.wait(Duration::from_secs(60)).expect("an answer within a minute")
 }
 
@@ -113,8 +113,8 @@ fn a_job_that_fails_costs_itself_only() {
     tickets[5].stop(); // the model is still being uploaded
     for (nth, (ticket, expected)) in tickets.iter().zip(&expected).enumerate() {
         match (nth, answer(ticket)) {
-            (3, Err(SessionError::Camera(_))) | (5, Err(SessionError::Stopped)) => {}
-            (6, Err(SessionError::Draw(error))) => assert!(error.to_string().contains("tolerance"), "{error}"),
+            (3, Err(JobError::Camera(_))) | (5, Err(JobError::Stopped)) => {}
+            (6, Err(JobError::Draw(error))) => assert!(error.to_string().contains("tolerance"), "{error}"),
             (3 | 5 | 6, Ok(_)) => panic!("picture {nth} was drawn"),
             (_, Ok(drawn)) => assert_same(&drawn, expected, &format!("picture {nth}")),
             (_, Err(error)) => panic!("picture {nth}: {error}"),
@@ -143,8 +143,8 @@ fn a_file_beyond_its_limits_costs_itself_only() {
     jobs[4].limits = shared.clone();
     jobs[5].limits = shared.clone();
     let worker = Worker::new(DeviceOptions::default()).expect("a device");
-    let exceeded = |answer: Result<Drawn, SessionError>| match answer {
-        Err(SessionError::Limit(Exceeded { file, work, bound })) => (file, work, bound),
+    let exceeded = |answer: Result<Drawn, JobError>| match answer {
+        Err(JobError::Limit(Exceeded { file, work, bound })) => (file, work, bound),
         Err(error) => panic!("{error}"),
         Ok(_) => panic!("a picture beyond the limits"),
     };
@@ -196,7 +196,7 @@ fn threads_share_a_worker_and_models_outlive_it() {
     let again = answer(&submitted(&other, &jobs[..1])[0]).expect("a picture");
     assert_same(&again, &expected[0], "the picture of another worker");
     other.close();
-    assert!(matches!(other.submit(jobs[0].clone()), Err(SessionError::Closed)));
+    assert!(matches!(other.submit(jobs[0].clone()), Err(JobError::Closed)));
 }
 
 /// A budget for one picture and a quarter of the images of another. One job needs more by itself.
@@ -210,7 +210,7 @@ fn pictures_that_do_not_fit_together_are_drawn_alone() {
     let worker = Worker::new(DeviceOptions { memory_budget: most, ..DeviceOptions::default() }).expect("a device");
     for (nth, (ticket, expected)) in submitted(&worker, &jobs).iter().zip(&expected).enumerate() {
         match (nth, answer(ticket)) {
-            (4, Err(SessionError::Draw(error))) => {
+            (4, Err(JobError::Draw(error))) => {
                 assert!(error.gpu().is_some_and(GpuError::is_out_of_memory), "{error}");
             }
             (4, Ok(_)) => panic!("the large picture was drawn"),

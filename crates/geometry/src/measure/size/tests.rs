@@ -74,6 +74,30 @@ fn holes_are_no_area() {
     near(face(vec![border, hole]).area(), 4.0 * (18.0 * 8.0 - PI * 9.0));
 }
 
+/// Twice as long along v below the knot line v = 5 as above it; a triangle crosses that line off the middle of its
+/// sides. A rule that is halved 14 times only is off by 3e-7 of the area.
+#[test]
+fn a_step_of_the_derivative_is_found() {
+    let net = [0.0, 20.0, 30.0].into_iter().flat_map(|y| [0.0, 40.0].map(|x| DVec4::new(x, y, 0.0, 1.0))).collect();
+    let surface =
+        Surface::new((1, 1), vec![0.0, 0.0, 20.0, 20.0], vec![0.0, 0.0, 5.0, 10.0, 10.0], net).expect("a plane");
+    let corners = [DVec2::new(1.0, 1.0), DVec2::new(19.0, 1.0), DVec2::new(10.0, 8.0)];
+    let sides = (0..3).map(|k| Bezier::<DVec3>::line(corners[k], corners[(k + 1) % 3])).collect();
+    let face = |loops| Face {
+        id: 1,
+        kind: SurfaceKind::BSpline,
+        surface: surface.clone(),
+        loops,
+        same_sense: true,
+        colour: None,
+    };
+    // 8 for each unit of (u, v) below, 4 above
+    near(face(Vec::new()).area(), 8.0 * 100.0 + 4.0 * 100.0);
+    let found = face(vec![TrimLoop::new(sides, DVec2::ZERO).expect("closed")]).area();
+    let expected = (8.0 * 360.0 + 4.0 * 81.0) / 7.0;
+    assert!((found / expected - 1.0).abs() < 1e-7, "{found} in place of {expected}");
+}
+
 #[test]
 fn edges_have_the_length_of_their_circles() {
     let can = cylinder(5.0, 7.0).unwrap().part;

@@ -8,7 +8,7 @@
 //! ```
 
 use crate::directions::Direction;
-use crate::error::SessionError;
+use crate::error::JobError;
 use glam::{DMat3, DVec3};
 use selvedge::model::{Bounds, Camera, CameraError, Model, Projection};
 use serde::Serialize;
@@ -78,8 +78,8 @@ impl Viewpoint {
     /// The camera, its depth range that of the model.
     ///
     /// # Errors
-    /// [`SessionError::Camera`], [`SessionError::Pinhole`].
-    pub fn camera(&self, model: &Model, size: (u32, u32)) -> Result<Camera, SessionError> {
+    /// [`JobError::Camera`], [`JobError::Pinhole`].
+    pub fn camera(&self, model: &Model, size: (u32, u32)) -> Result<Camera, JobError> {
         // a picture without pixels frames nothing
         if size.0 == 0 || size.1 == 0 {
             return Err(CameraError::Size.into());
@@ -100,9 +100,9 @@ impl Viewpoint {
 }
 
 impl Pinhole {
-    fn camera(&self, size: (u32, u32)) -> Result<Camera, SessionError> {
+    fn camera(&self, size: (u32, u32)) -> Result<Camera, JobError> {
         let Self { intrinsics: k, rotation, translation, first_pixel } = *self;
-        let bad = |why| Err(SessionError::Pinhole(why));
+        let bad = |why| Err(JobError::Pinhole(why));
         if !(k.is_finite() && rotation.is_finite() && translation.is_finite() && first_pixel.is_finite()) {
             return bad("a camera matrix has an entry that is not a number");
         }

@@ -1,6 +1,6 @@
 //! Points of a model to snap to, for callers without a picture.
 
-use crate::error::{SessionError, guarded};
+use crate::error::{JobError, guarded};
 use glam::DVec2;
 use selvedge::model::{Camera, Edges, Model};
 use selvedge_check::{EdgeTracer, SnapKind, Tracer};
@@ -42,15 +42,15 @@ impl Snapper {
     /// Finds the edges of the model's parts.
     ///
     /// # Errors
-    /// [`SessionError::Boundary`], [`SessionError::Panicked`].
-    pub fn new(model: Arc<Model>) -> Result<Self, SessionError> {
+    /// [`JobError::Boundary`], [`JobError::Panicked`].
+    pub fn new(model: Arc<Model>) -> Result<Self, JobError> {
         guarded(|| {
             let tracer = Tracer::new(&model);
             let edges = model
                 .parts
                 .iter()
                 .enumerate()
-                .map(|(part, p)| p.edges().map_err(|source| SessionError::Boundary { part, source }));
+                .map(|(part, p)| p.edges().map_err(|source| JobError::Boundary { part, source }));
             let parts = edges.collect::<Result<_, _>>()?;
             Ok(Self { model, tracer, parts })
         })
@@ -59,7 +59,7 @@ impl Snapper {
     /// The preferred visible point of these kinds within `radius_px` of `pixel`, by [`EdgeTracer::snap`].
     ///
     /// # Errors
-    /// [`SessionError::Camera`]; [`SessionError::Snap`] if the place is not finite or the radius is not a number above
+    /// [`JobError::Camera`]; [`JobError::Snap`] if the place is not finite or the radius is not a number above
     /// 0.
     pub fn snap(
         &self,
@@ -67,10 +67,10 @@ impl Snapper {
         pixel: [f64; 2],
         radius_px: f64,
         kinds: &[SnapKind],
-    ) -> Result<Option<Snapped>, SessionError> {
+    ) -> Result<Option<Snapped>, JobError> {
         camera.check()?;
         if !(radius_px > 0.0 && radius_px.is_finite() && pixel.iter().all(|x| x.is_finite())) {
-            return Err(SessionError::Snap);
+            return Err(JobError::Snap);
         }
         let edges = EdgeTracer::with(&self.model, &self.tracer, &self.parts);
         let Some(found) = edges.snap(camera, DVec2::from(pixel), radius_px, kinds) else { return Ok(None) };

@@ -220,7 +220,7 @@ fn measured(processes: ProcessesToUpdate<'_>) -> System {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{SessionError, guarded};
+    use crate::{JobError, guarded};
     use std::thread;
 
     const HOUR: Duration = Duration::from_secs(3600);
@@ -249,10 +249,10 @@ mod tests {
     #[test]
     fn a_check_unwinds_to_the_guard() {
         let step = Limits::new("a.step", Some(Duration::ZERO), None).begin(Work::Reading);
-        let ended: Result<(), SessionError> = guarded(|| {
+        let ended: Result<(), JobError> = guarded(|| {
             step.check();
             Ok(())
         });
-        assert!(matches!(ended, Err(SessionError::Limit(Exceeded { work: Work::Reading, .. }))));
+        assert!(matches!(ended, Err(JobError::Limit(Exceeded { work: Work::Reading, .. }))));
     }
 }

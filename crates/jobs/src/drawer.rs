@@ -7,7 +7,7 @@
 //! ```
 
 use crate::backdrop::Backdrop;
-use crate::error::{SessionError, Stop};
+use crate::error::{JobError, Stop};
 use crate::limits::{Limits, Step, Work};
 use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer, Watch};
 use selvedge::model::{Camera, Model};
@@ -95,9 +95,9 @@ impl Drawer {
     /// Opens the device.
     ///
     /// # Errors
-    /// [`SessionError::Device`].
-    pub fn new(options: &DeviceOptions) -> Result<Self, SessionError> {
-        let renderer = HeadlessRenderer::new(options).map_err(SessionError::Device)?;
+    /// [`JobError::Device`].
+    pub fn new(options: &DeviceOptions) -> Result<Self, JobError> {
+        let renderer = HeadlessRenderer::new(options).map_err(JobError::Device)?;
         // messages of the layer name no picture: what is said while one is drawn alone is about that one
         let most_in_flight = if options.validation { 0 } else { MOST_IN_FLIGHT };
         Ok(Self { renderer, loaded: None, told: 0, most_in_flight })
@@ -108,11 +108,11 @@ impl Drawer {
     /// error.
     ///
     /// # Errors
-    /// [`SessionError`]; the next job is drawn all the same.
-    pub fn draw(&mut self, job: &Job, stop: &Stop) -> Result<Drawn, SessionError> {
+    /// [`JobError`]; the next job is drawn all the same.
+    pub fn draw(&mut self, job: &Job, stop: &Stop) -> Result<Drawn, JobError> {
         job.camera.check()?;
         if stop.is_set() {
-            return Err(SessionError::Stopped);
+            return Err(JobError::Stopped);
         }
         let upload_s = self.load(job, stop)?;
         let step = Arc::new(job.limits.begin(Work::Drawing));
@@ -126,7 +126,7 @@ impl Drawer {
         let messages = self.renderer.messages();
         let new = messages.get(self.told..).filter(|new| !new.is_empty()).map(|new| new.join("; "));
         self.told = messages.len();
-        new.map_or(Ok(drawn), |new| Err(SessionError::Validation(new)))
+        new.map_or(Ok(drawn), |new| Err(JobError::Validation(new)))
     }
 
     /// Lets a picture unwind to [`guarded`](crate::guarded) between two of its frames.
@@ -142,8 +142,8 @@ impl Drawer {
     /// Uploads the job's model, if it is not there; returns the seconds that its upload took.
     ///
     /// # Errors
-    /// [`SessionError::Draw`], [`SessionError::Limit`].
-    pub(crate) fn load(&mut self, job: &Job, stop: &Stop) -> Result<f64, SessionError> {
+    /// [`JobError::Draw`], [`JobError::Limit`].
+    pub(crate) fn load(&mut self, job: &Job, stop: &Stop) -> Result<f64, JobError> {
         self.renderer.set_watch(None); // that of the picture before
         let scene = job.scene_settings();
         let is_there = |loaded: &&Uploaded| Arc::ptr_eq(&loaded.model, &job.model) && loaded.scene == scene;
@@ -179,14 +179,14 @@ impl Drawer {
     /// picture.
     ///
     /// # Errors
-    /// [`SessionError::Draw`]; pictures in flight are not taken.
+    /// [`JobError::Draw`]; pictures in flight are not taken.
     pub(crate) fn draw_stream(
         &mut self,
         (job, upload_s): (&Job, f64),
         watch: Watch,
         next: impl FnMut() -> Option<Camera>,
         mut take: impl FnMut(Drawn),
-    ) -> Result<(), SessionError> {
+    ) -> Result<(), JobError> {
         self.renderer.set_watch(Some(watch));
         let mut begun = Instant::now();
         self.renderer.render_stream(&job.frame_settings(), job.outputs, next, |_, view| {

@@ -11,7 +11,7 @@ use selvedge_io::import::{ImportError, Summary, Unwound, caught};
 /// Why a file gives no model, or a job no picture.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum SessionError {
+pub enum JobError {
     /// The file cannot be read, or is not of a known format.
     #[error(transparent)]
     Import(#[from] ImportError),
@@ -72,17 +72,17 @@ pub enum SessionError {
 /// The objects of the work may be half done: the caller discards them.
 ///
 /// # Errors
-/// Those of the work, [`SessionError::Stopped`], [`SessionError::Limit`], [`SessionError::Panicked`].
-pub fn guarded<T>(work: impl FnOnce() -> Result<T, SessionError>) -> Result<T, SessionError> {
+/// Those of the work, [`JobError::Stopped`], [`JobError::Limit`], [`JobError::Panicked`].
+pub fn guarded<T>(work: impl FnOnce() -> Result<T, JobError>) -> Result<T, JobError> {
     caught(work).unwrap_or_else(|unwound| Err(failed(&unwound)))
 }
 
-fn failed(unwound: &Unwound) -> SessionError {
+fn failed(unwound: &Unwound) -> JobError {
     match unwound {
-        Unwound::Stopped => SessionError::Stopped,
+        Unwound::Stopped => JobError::Stopped,
         Unwound::Cause(cause) => match cause.downcast_ref::<Exceeded>() {
-            Some(exceeded) => SessionError::Limit(exceeded.clone()),
-            None => SessionError::Panicked(unwound.message().unwrap_or_else(|| "no message".to_owned())),
+            Some(exceeded) => JobError::Limit(exceeded.clone()),
+            None => JobError::Panicked(unwound.message().unwrap_or_else(|| "no message".to_owned())),
         },
     }
 }
@@ -94,20 +94,20 @@ mod tests {
     #[test]
     fn panics_are_reported_by_their_cause() {
         let stop = Stop::default();
-        let done: Result<u8, SessionError> = guarded(|| {
+        let done: Result<u8, JobError> = guarded(|| {
             stop.check();
             Ok(7)
         });
         assert!(matches!(done, Ok(7)));
         stop.clone().set();
         assert!(stop.is_set());
-        let stopped: Result<(), SessionError> = guarded(|| {
+        let stopped: Result<(), JobError> = guarded(|| {
             stop.check();
             Ok(())
         });
-        assert!(matches!(stopped, Err(SessionError::Stopped)));
+        assert!(matches!(stopped, Err(JobError::Stopped)));
         let number = 3;
-        let broken: Result<(), SessionError> = guarded(|| panic!("{number} is no invariant"));
+        let broken: Result<(), JobError> = guarded(|| panic!("{number} is no invariant"));
         assert_eq!(broken.expect_err("a panic").to_string(), "internal error: 3 is no invariant");
     }
 }

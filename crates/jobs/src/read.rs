@@ -1,6 +1,6 @@
 //! Files and bytes to models that have something to draw.
 
-use crate::error::{SessionError, Stop, guarded};
+use crate::error::{JobError, Stop, guarded};
 use crate::limits::{Limits, Step, Work};
 use selvedge::model::Model;
 use selvedge_io::import::{
@@ -58,13 +58,13 @@ pub struct Loaded {
 /// Reads a model that has something to draw. `progress` as in [`Options::progress`].
 ///
 /// # Errors
-/// [`SessionError::Import`], [`SessionError::Nothing`], [`SessionError::Stopped`], [`SessionError::Limit`].
+/// [`JobError::Import`], [`JobError::Nothing`], [`JobError::Stopped`], [`JobError::Limit`].
 pub fn read(
     source: Source<'_>,
     how: &ReadOptions,
     stop: &Stop,
     progress: &(dyn Fn(Stage) + Sync),
-) -> Result<Loaded, SessionError> {
+) -> Result<Loaded, JobError> {
     let file = match source {
         Source::Path(path) => path.display().to_string(),
         Source::Bytes { name, .. } => name.to_owned(),
@@ -91,13 +91,13 @@ pub fn read(
 /// the flag where it reports progress. `import` gets the options with a progress callback that does so.
 ///
 /// # Errors
-/// [`SessionError::Import`], [`SessionError::Stopped`], [`SessionError::Limit`], [`SessionError::Panicked`].
+/// [`JobError::Import`], [`JobError::Stopped`], [`JobError::Limit`], [`JobError::Panicked`].
 pub fn import_within(
     step: &Step,
     stop: &Stop,
     options: &Options<'_>,
     import: impl FnOnce(&Options<'_>) -> Result<Import, ImportError>,
-) -> Result<Import, SessionError> {
+) -> Result<Import, JobError> {
     let progress = options.progress;
     let tell = |stage: Stage| {
         stop.check();
@@ -115,11 +115,11 @@ impl Loaded {
     /// From an import.
     ///
     /// # Errors
-    /// [`SessionError::Nothing`].
-    pub fn new(file: String, import: Import) -> Result<Self, SessionError> {
+    /// [`JobError::Nothing`].
+    pub fn new(file: String, import: Import) -> Result<Self, JobError> {
         let summary = import.summary();
         if summary.draws_nothing() {
-            return Err(SessionError::Nothing { file, summary: Box::new(summary) });
+            return Err(JobError::Nothing { file, summary: Box::new(summary) });
         }
         let Import { model, warnings, report, cameras, picture } = import;
         Ok(Self { file, model: Arc::new(model), summary, warnings, cameras, picture, report })
@@ -141,7 +141,7 @@ mod tests {
 
     const BRACKET: &[u8] = include_bytes!("../../../samples/bracket.step");
 
-    fn bytes<'a>(bytes: &'a [u8], name: &'a str) -> Result<Loaded, SessionError> {
+    fn bytes<'a>(bytes: &'a [u8], name: &'a str) -> Result<Loaded, JobError> {
         read(Source::Bytes { bytes, name }, &ReadOptions::default(), &Stop::default(), &|_| ())
     }
 
@@ -160,17 +160,14 @@ mod tests {
         let missing = read(path, &ReadOptions::default(), &Stop::default(), &|_| ()).expect_err("no file");
         assert!(missing.to_string().contains("no/such/file.step"), "{missing}");
         let kind = match &missing {
-            SessionError::Import(ImportError::Read { source, .. }) => Some(source.kind()),
+            JobError::Import(ImportError::Read { source, .. }) => Some(source.kind()),
             _ => None,
         };
         assert_eq!(kind, Some(ErrorKind::NotFound));
         let damaged = bytes(b"ISO-10303-21;", "cut.step").expect_err("no data");
-        assert!(
-            matches!(damaged, SessionError::Import(_)) && damaged.to_string().starts_with("cut.step:"),
-            "{damaged}"
-        );
+        assert!(matches!(damaged, JobError::Import(_)) && damaged.to_string().starts_with("cut.step:"), "{damaged}");
         let empty = bytes(b"group();", "none.csg").expect_err("nothing");
-        assert!(matches!(empty, SessionError::Nothing { .. }), "{empty}");
+        assert!(matches!(empty, JobError::Nothing { .. }), "{empty}");
         assert!(empty.to_string().starts_with("none.csg: nothing of it can be drawn"), "{empty}");
         let few = ReadOptions { most_bytes: Some(100), ..ReadOptions::default() };
         let source = Source::Bytes { bytes: BRACKET, name: "bracket.step" };
@@ -189,7 +186,7 @@ mod tests {
         };
         let source = Source::Bytes { bytes: BRACKET, name: "bracket.step" };
         let ended = read(source, &ReadOptions::default(), &stop, &at_a_face).expect_err("stopped");
-        assert!(matches!(ended, SessionError::Stopped), "{ended}");
+        assert!(matches!(ended, JobError::Stopped), "{ended}");
     }
 
     #[test]
@@ -199,7 +196,7 @@ mod tests {
             read(Source::Bytes { bytes: BRACKET, name: "bracket.step" }, &how, &Stop::default(), &|_| ())
         };
         let late = within(Duration::from_nanos(1)).expect_err("too late");
-        assert!(matches!(late, SessionError::Limit(_)), "{late}");
+        assert!(matches!(late, JobError::Limit(_)), "{late}");
         assert_eq!(late.to_string(), "bracket.step: reading it takes longer than the limit of 1ns");
         assert!(within(Duration::MAX).is_ok());
     }

@@ -5,7 +5,7 @@
 //! hits against the exact trim curves in double precision, and shares no code with the GPU passes.
 
 use crate::camera::CameraFile;
-use crate::error::{SessionError, Stop, guarded};
+use crate::error::{JobError, Stop, guarded};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::Picture;
 use selvedge_check::{JudgeOptions, Judgement, Tracer, judge};
@@ -49,7 +49,7 @@ impl Verdict {
     /// face changes.
     ///
     /// # Errors
-    /// [`SessionError::Stopped`].
+    /// [`JobError::Stopped`].
     pub fn new(
         model: &Model,
         camera: &Camera,
@@ -57,7 +57,7 @@ impl Verdict {
         samples: usize,
         tolerance_px: f64,
         stop: &Stop,
-    ) -> Result<Self, SessionError> {
+    ) -> Result<Self, JobError> {
         let progress = |_| stop.check();
         let options = JudgeOptions {
             samples: Some(samples),

@@ -1,0 +1,109 @@
+//! Lines where a Boolean solid meets a face or mesh that is of no solid: circles, in closed form.
+
+use crate::shapes::solids::{ball, block, solid};
+use crate::shapes::{SPHERE_RADIUS, block_mesh, one, placed, sphere, whole_mesh};
+use crate::solid_lines::{HALF, OFF, SIZE, SOLID, draw, lines, with};
+use crate::support::orthographic;
+use glam::{DAffine3, DVec2, DVec3, DVec4};
+use selvedge::model::{Camera, Face, Model, Projection, SurfaceKind};
+use selvedge::picture::{EdgeChoice, EdgeSettings};
+use selvedge::spline::Surface;
+use selvedge_check::Tracer;
+use selvedge_check::drawing::{DrawingSettings, LineImage, judge_lines};
+use std::f64::consts::TAU;
+
+/// Beyond the picture.
+const FAR: f64 = 20.0;
+const RADIUS: f64 = 0.8;
+/// Of the plane that cuts the ball.
+const HEIGHT: f64 = 0.2;
+/// Points of the circle are seen where the ball's normal is turned to the eye by more than the first share, and hidden
+/// where it is turned away by more than the second: within a pixel of the outline neither is tested.
+const SEEN: f64 = 0.15;
+const HIDDEN: f64 = -0.15;
+
+/// A plane of one patch.
+fn floor() -> Model {
+    let at = |x: f64, y: f64| DVec4::new(x * FAR, y * FAR, HEIGHT, 1.0);
+    let points = vec![at(-1.0, -1.0), at(1.0, -1.0), at(-1.0, 1.0), at(1.0, 1.0)];
+    let knots = || vec![0.0, 0.0, 1.0, 1.0];
+    let surface = Surface::new((1, 1), knots(), knots(), points).unwrap();
+    let face = Face { id: 9, kind: SurfaceKind::Plane, surface, loops: Vec::new(), same_sense: true, colour: None };
+    one("floor", false, vec![face])
+}
+
+/// The solids of one model and the parts of another.
+fn both(solids: Model, parts: Model) -> Model {
+    Model { solids: solids.solids, ..parts }
+}
+
+/// The ball by an equation in a floor of a patch, and of triangles; and a block around a ball of patches.
+fn models() -> [(&'static str, Model); 3] {
+    let round = placed(DAffine3::from_scale(DVec3::splat(RADIUS / SPHERE_RADIUS)), None);
+    let by_equation = || solid("A", vec![ball(RADIUS, 0.0)]);
+    let mesh = block_mesh(DVec3::new(-FAR, -FAR, -0.3), DVec3::new(FAR, FAR, HEIGHT), 9);
+    let block = solid("A", vec![block([-FAR, -FAR, -1.5], [FAR, FAR, HEIGHT])]);
+    [
+        ("a patch", both(by_equation(), floor())),
+        ("a mesh", both(by_equation(), whole_mesh("floor", mesh))),
+        ("a ball of patches", both(block, Model { instances: vec![round], ..sphere() })),
+    ]
+}
+
+/// The ball fills most of the picture.
+fn camera_of(model: &Model) -> Camera {
+    let camera = orthographic(model, SIZE);
+    let middle = camera.target;
+    let projection = Projection::Orthographic { height: 2.2 };
+    Camera { eye: camera.eye - middle, target: DVec3::ZERO, projection, ..camera }
+}
+
+/// Points of the circle, and the share of the ball's normal that is turned to the eye.
+fn circle(camera: &Camera) -> Vec<(DVec2, f64)> {
+    let to_eye = (camera.eye - camera.target).normalize();
+    let round = (RADIUS * RADIUS - HEIGHT * HEIGHT).sqrt();
+    let point = |k: u32| {
+        let (sin, cos) = (f64::from(k) * TAU / 4000.0).sin_cos();
+        DVec3::new(round * cos, round * sin, HEIGHT)
+    };
+    (0..4000).map(point).map(|p| (camera.project(p).unwrap().0, p.dot(to_eye) / RADIUS)).collect()
+}
+
+#[test]
+fn lines_are_where_solids_meet_faces() {
+    for (name, model) in models() {
+        let camera = camera_of(&model);
+        let settings = EdgeSettings { which: EdgeChoice::Sharp, silhouettes: false, ..lines() };
+        let picture = draw(&model, with(settings), &camera);
+        let at = |k: usize| DVec2::new((k % SIZE.0 as usize) as f64, (k / SIZE.0 as usize) as f64) + 0.5;
+        let marked: Vec<DVec2> = (0..picture.edge.len()).filter(|k| picture.edge[*k] != 0).map(at).collect();
+        assert!(picture.edge.iter().all(|edge| [0, SOLID].contains(edge)), "{name}: a line of another kind");
+        let circle = circle(&camera);
+        let of = |least: f64| circle.iter().filter(move |(_, turned)| *turned > least).map(|(p, _)| *p);
+        let (seen, may): (Vec<DVec2>, Vec<DVec2>) = (of(SEEN).collect(), of(HIDDEN).collect());
+        let away = |p: DVec2, all: &[DVec2]| all.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
+        let bare = seen.iter().filter(|p| away(**p, &marked) > HALF + 0.5).count();
+        let stray = marked.iter().filter(|p| away(**p, &may) > HALF + 0.5 + OFF).count();
+        assert!(seen.len() > 1500 && marked.len() > 80, "{name}: {} points, {} pixels", seen.len(), marked.len());
+        assert_eq!((bare, stray), (0, 0), "{name}: of {} points and {} pixels", seen.len(), marked.len());
+    }
+}
+
+/// `selvedge check --edges` asks for these lines, and sees it if they are not there.
+#[test]
+fn the_programs_judge_sees_them() {
+    for (name, model) in models() {
+        let camera = camera_of(&model);
+        let picture = draw(&model, with(EdgeSettings { silhouettes: false, ..lines() }), &camera);
+        let settings = DrawingSettings { silhouettes: false, ..DrawingSettings::default() };
+        let tracer = Tracer::new(&model);
+        let judged = |lines: &[u32]| {
+            let image = LineImage { lines, width: 2.0 * HALF, section_width: 4.0 * HALF };
+            judge_lines(&model, &tracer, &camera, &settings, image).unwrap()
+        };
+        let found = judged(&picture.edge);
+        assert!(found.visible > 50 && (found.missing, found.stray) == (0, 0), "{name}: {found:?}");
+        let without = judged(&vec![0; picture.edge.len()]);
+        assert!(without.missing > 50 && without.stray == 0, "{name}: {without:?}");
+    }
+}
