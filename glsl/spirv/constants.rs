@@ -109,6 +109,7 @@ pub mod edge_line {
     pub const GAP: f32 = 6.0;
     pub const ROUNDED_PX: f32 = 0.0625;
     pub const SEED_ROUNDED: f32 = 1e-4;
+    pub const TURN_SHEET_PX: f32 = 2.0;
 }
 pub mod edge_seen {
     pub const ARRIVED_PX: f32 = 0.05;
@@ -127,6 +128,7 @@ pub mod edges {
     pub const EDGE_SEEDS: u32 = 4;
     pub const EDGE_STYLE: u32 = 3;
     pub const EDGE_THIN: u32 = 1;
+    pub const EDGE_TURNS: u32 = 64;
     pub const EDGE_UNDRAWN: u32 = 8;
     pub const FOLD_NUMBER: u32 = 0xffffffff;
     pub const LINES_FOLDS: u32 = 8;
@@ -162,6 +164,12 @@ pub mod face_point {
     pub const BEYOND: f32 = 1e-4;
     pub const MAX_HOPS: u32 = 8;
     pub const ROUNDED: f32 = 1e-5;
+}
+pub mod face_sheet {
+    pub const FACE_AT_PX: f32 = 0.05;
+    pub const FACE_PLANES: u32 = 3;
+    pub const FACING: f32 = 0.35;
+    pub const SHARE_ROUNDING: f32 = 1e-3;
 }
 pub mod factor {
     pub const SPARE: f32 = 0.125;
@@ -205,6 +213,11 @@ pub mod gap_radius {
 pub mod gap_surface {
     pub const RADIUS_OF_INSIDE: u32 = 1;
     pub const RADIUS_OF_OUTSIDE: u32 = 2;
+}
+pub mod layer_words {
+    pub const HIGH_BITS: u32 = 8;
+    pub const LOW_BITS: u32 = 24;
+    pub const UV_BITS: u32 = 16;
 }
 pub mod mesh_walk {
     pub const MOST_CROSSED: u32 = 32;
@@ -325,8 +338,10 @@ pub mod solid_events {
 pub mod solid_layers {
     pub const BOX: f32 = 1e-6;
     pub const ENTERED: u32 = 0x80000000;
+    pub const FOR_BACK: u32 = 4;
     pub const FOR_COLOUR: u32 = 0;
     pub const FOR_FIRST: u32 = 1;
+    pub const FOR_FRONT: u32 = 3;
     pub const FOR_THICKNESS: u32 = 2;
     pub const KEPT: u32 = 12;
     pub const NOBODY: u32 = 0xffffffff;

@@ -170,10 +170,8 @@ fn outlines_of_meshes_are_few_of_their_sides_and_a_difference_is_seen() {
     let piece = (0..chords.len()).find(|nth| is_drawn(*nth)).map(|nth| given.piece_instances[nth].piece).unwrap();
     let first = given.pieces[piece as usize].first as usize;
     // the second triangle is turned over to the other side
-    let points = &mut other.data.edges.as_mut().unwrap().points;
-    for axis in 0..3 {
-        points[first + 3][axis] = points[first][axis] + points[first + 1][axis] - points[first + 2][axis];
-    }
+    let points = &mut other.data.edges.as_mut().unwrap().points[first..];
+    points[3] = std::array::from_fn(|axis| points[0][axis] + points[1][axis] - points[2][axis]);
     let gpu = Gpu::new();
     assert!(compare(&gpu, &other, &view).is_err());
     gpu.finish();
