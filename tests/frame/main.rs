@@ -40,6 +40,7 @@ mod off_centre;
 mod operands;
 mod picks;
 mod pieces;
+mod poles;
 mod real_solids;
 mod regular;
 mod reuse;
