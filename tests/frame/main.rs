@@ -18,6 +18,7 @@ mod edge_lines;
 mod edges;
 mod errors;
 mod every_shape;
+mod fold_lines;
 mod hard;
 mod hard_solids;
 mod hard_trims;
