@@ -224,7 +224,8 @@ void main() {
             int texel = int(piece.first + piece.degree + 1u + SEED_TEXELS * (k - 1u));
             vec4 beside = texelFetch(edge_points, texel);
             vec4 ends = texelFetch(edge_points, texel + 1);
-            covered = fold_beside(beside, ends, t, e, piece_instance.placement, p);
+            uint instance = beside.w > 0.0 ? uint(beside.w) - 1u : piece_instance.placement;
+            covered = fold_beside(beside, ends, t, e, instance, p);
         }
         uint steps = uint(covered * LINE_STEPS + 0.5);
         uint what = is_edge ? chord : LINE_FOLD;

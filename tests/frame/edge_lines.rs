@@ -78,7 +78,7 @@ fn faults(model: &Model, camera: &Camera, picture: &Picture) -> (usize, usize, u
 
 /// Points of an outline, a pixel or more within the picture, without a line pixel within half its width and half a
 /// pixel; and line pixels that are farther than that from the outline.
-fn faults_of_outline(picture: &Picture, outline: &[DVec2]) -> (usize, usize) {
+pub fn faults_of_outline(picture: &Picture, outline: &[DVec2]) -> (usize, usize) {
     let marked: Vec<DVec2> = centres(picture).map(|(at, _)| at).collect();
     let last = DVec2::new(f64::from(picture.size.0), f64::from(picture.size.1)) - 1.0;
     let inside = |p: &&DVec2| p.cmpge(DVec2::ONE).all() && p.cmple(last).all();
