@@ -296,6 +296,7 @@ impl Renderer {
             patch_instances_in_sight: slot.patch_instances_in_sight,
             parts_in_sight: slot.parts_in_sight.as_ref().map(|parts| (parts, slot.part_count)),
             samples: &slot.samples,
+            draws_centres: slot.counted > slot.samples.len(),
             table_view: slot.table.as_ref(),
             centres: slot.centres.solids(),
             near,

@@ -36,6 +36,9 @@ layout(scalar, binding = 11) buffer SeenPoints { BorderPoint seen_points[]; };
 // No pass has asked before: there are no patches.
 layout(constant_id = 38) const bool ASKS_FIRST = false;
 
+// Less than JUMP_PX, at which a walk ends at once: what differs by rounding alone is left to the walk.
+const float LEADS_NOWHERE_PX = 1.5;
+
 #include "facet.glsl"
 #include "mesh_walk.glsl"
 
@@ -62,8 +65,8 @@ bool is_shown(float depth, vec2 pixel) {
 }
 
 // Depths of less before another are not told from it by planes that go on beyond their triangles.
-float before(float depth) {
-    return depth >= UNSEEN ? depth : depth - JUMP_PX * (frame.perspective != 0u ? depth : 1.0) / frame.focal;
+float before(float depth, float jump_px) {
+    return depth >= UNSEEN ? depth : depth - jump_px * (frame.perspective != 0u ? depth : 1.0) / frame.focal;
 }
 
 void main() {
@@ -108,8 +111,20 @@ void main() {
             shown[k] = starts[i].from;
         }
         starts[i].walks = walks;
-        starts[i].n = unit_normal(word.y);
     }
+    // at a crease the triangles around cover all points: planes that pass close to what is known there lead nowhere,
+    // which their depths tell sooner than a walk
+    uint walking = 0u; // bits of points
+    for (uint i = 0u; i < start_count; ++i) {
+        uvec2 word = starts[i].word;
+        Facing f = facing_at(word.y, views[mesh_instances[seen_mesh_instance(word.x)].instance], middle);
+        for (uint left = starts[i].walks; left != 0u; left &= left - 1u) {
+            uint k = uint(findLSB(left));
+            if (weights_of(f, point_of(k)).w >= before(depths[k], LEADS_NOWHERE_PX)) starts[i].walks ^= 1u << k;
+        }
+        walking |= starts[i].walks;
+    }
+    for (uint i = 0u; i < start_count && walking != 0u; ++i) starts[i].n = unit_normal(starts[i].word.y);
     // and what they lead to
     for (uint i = 0u; i < start_count; ++i) {
         Start start = starts[i];
@@ -117,7 +132,7 @@ void main() {
         for (uint walks = start.walks; walks != 0u; walks &= walks - 1u) {
             uint k = uint(findLSB(walks));
             vec2 pixel = middle + point_of(k);
-            Met there = walk_to(start.word.y, view, pixel, before(depths[k]));
+            Met there = walk_to(start.word.y, view, pixel, before(depths[k], JUMP_PX));
             bool is = there.end == WALK_MET || there.end == WALK_TOO_FAR && start.from == OWN;
             if (!is || !(there.depth < depths[k]) || !is_shown(there.depth, pixel)) continue;
             depths[k] = there.depth;

@@ -13,7 +13,9 @@
 //
 //     q(u, v) ≈ q + u qu + v qv + (u² quu + 2 u v quv + v² qvv) / 2      homogeneous pixels, from the middle on
 //
-// A plane is exact. The trim test is that of one way (trim.glsl).
+// A plane is exact. Where the terms do not reach (border_reach.glsl), near a pole, a tip, or on a sheet that is seen
+// nearly edge-on, the exact surface is followed instead, from the nearest other pixel that sees the face. The trim test
+// is that of one way (trim.glsl).
 #include "scene.glsl"
 #include "view.glsl"
 
@@ -42,14 +44,13 @@ layout(scalar, binding = 10) readonly buffer Grids { BorderGrids grids; };
 #include "unmixed.glsl"
 
 #include "border_seen.glsl"
+#include "border_reach.glsl"
 // BORDER_POINTS a pixel of the list: where others than patches are asked, too
 layout(scalar, binding = 11) writeonly buffer SeenPoints { BorderPoint seen_points[]; };
 
 const uint MOST_SHEETS = 4u;
 // Required distance of a sheet's middle to the pixel's centre, in pixels: far less than a sixteenth.
 const float CLOSE_PX = 0.02;
-// From the middle to where the derivatives are taken again, of the patch: its second derivatives are differences.
-const float ASIDE = 1.0 / 64.0;
 // Two are enough, but for what is narrower than a pixel (steps are at most MAX_STEP) and beside folds, where each step
 // leaves a quarter of the distance.
 const uint POINT_STEPS = 8u;
@@ -68,6 +69,7 @@ struct Sheet {
     vec4 quu;
     vec4 quv;
     vec4 qvv;
+    vec3 third; // of what these leave out
 };
 
 // The sheet that is visible in the pixel `at`, near another pixel's centre.
@@ -88,21 +90,46 @@ Sheet sheet_at(ivec2 at, vec2 centre) {
     Net net = net_of(s.patch_);
     vec4 du[2];
     vec4 dv[2];
+    vec4 ends[2];
     for (uint k = 0u; k < 2u; ++k) {
         vec2 step_ = k == 0u ? vec2(ASIDE, 0.0) : vec2(0.0, ASIDE);
         Sample beside = sample_at(s.patch_, net, view, s.middle + step_, centre);
         du[k] = (to_pixel(view, vec4(beside.jet.du, 0.0)) - s.qu) / ASIDE;
         dv[k] = (to_pixel(view, vec4(beside.jet.dv, 0.0)) - s.qv) / ASIDE;
+        // the mean of the derivatives at both ends
+        vec4 run = k == 0u ? s.qu + 0.5 * ASIDE * du[0] : s.qv + 0.5 * ASIDE * dv[1];
+        ends[k] = to_pixel(view, vec4(beside.jet.point - middle.jet.point, 0.0)) - ASIDE * run;
     }
     s.quu = du[0];
     s.quv = 0.5 * (dv[0] + du[1]);
     s.qvv = dv[1];
+    bool plane = s.patch_.bend == vec3(0.0);
+    s.third = plane ? vec3(0.0) : third_order(s.q, ends[0], ends[1], dv[0] - du[1]);
     return s;
 }
 
-// Depth of a sheet at a point of the picture; UNSEEN if it is not there.
-float depth_at(Sheet s, vec2 pixel) {
+// Whether the face is there at (u, v) of a patch, or where its surface goes on over a seam.
+bool is_in_face(Sheet s, uint patch_instance, Patch patch_, vec2 uv) {
+    vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
+    vec2 there = over_seams(s.face.flags, at);
+    if (there == at) return is_there(s.fi, s.face, patch_instance, patch_, uv);
+    if (clamp(there, 0.0, 1.0) != there) return false;
+    ivec2 count = ivec2(s.face.count_u, s.face.count_v);
+    ivec2 way = mix(ivec2(0), way_beyond(uv, 0.0), notEqual(there, at));
+    ivec2 place = (place_of(s.face, int(patch_instance - s.fi.first_patch_instance)) + way + count) % count;
+    uint side = side_of(patch_at(patch_in(s.face, place)).shape);
+    if ((s.face.flags & FACE_TRIMMED) == 0u || side != SIDE_BOUNDARY) return side != SIDE_OUTSIDE;
+#ifdef TRIM_BY_TABLE
+    if (!table_covers(s.fi.first_bin, s.face.strips, there)) return false;
+#endif
+    return trim_inside(s.fi, s.face, there);
+}
+
+// Depth of a sheet at a point of the picture; UNSEEN if it is not there. `is_open`: its terms do not tell.
+float depth_at(Sheet s, vec2 pixel, out bool is_open) {
     vec2 uv = s.seen;
+    vec2 nearest = uv;
+    float least = UNSEEN;
     vec2 miss;
     vec4 q;
     for (uint i = 0u; i < POINT_STEPS; ++i) {
@@ -110,16 +137,38 @@ float depth_at(Sheet s, vec2 pixel) {
         vec4 qv = s.qv + uv.x * s.quv + uv.y * s.qvv;
         q = s.q + 0.5 * (uv.x * (s.qu + qu) + uv.y * (s.qv + qv));
         miss = q.xy / q.w - pixel;
+        bool nearer = dot(miss, miss) < least;
+        if (nearer) nearest = uv;
+        if (nearer) least = dot(miss, miss);
         vec2 step_;
         if (newton_step(pixels_along(q, qu, qv), miss, s.patch_, step_)) uv -= step_;
     }
     // a paraboloid also meets the ray behind the eye
-    bool is = q.w > 0.0 && length(miss) <= ON_PIXEL_PX;
-    is = is && is_there(s.fi, s.face, s.patch_instance, s.patch_, s.middle + uv);
+    bool meets = q.w > 0.0 && length(miss) <= ON_PIXEL_PX;
+    is_open = !is_in_reach(s.third, s.middle, meets ? uv : nearest);
+    vec2 at = s.middle + uv;
+    bool over = is_over_pole(s.face.flags, s.patch_.domain.xy + at * s.patch_.domain.zw);
+    is_open = is_open || meets && over;
+    bool is = meets && !is_open && is_in_face(s, s.patch_instance, s.patch_, at);
 #ifdef WITHIN_VOLUME
     is = is && in_volume(q, ON_PX);
 #endif
     return is ? q.z : UNSEEN;
+}
+
+// The same by the exact surface, followed from where a pixel sees the face.
+float exact_depth_at(Sheet s, ivec2 from, vec2 pixel) {
+    uvec2 seen = imageLoad(visibility, from).xy;
+    uint patch_instance = seen_patch_instance(seen.x);
+    View view = view_at(s.fi.instance);
+    Sample there = refine_across(s.fi, s.face, view, patch_instance, unpack_uv(seen.y), pixel);
+    Patch patch_ = patch_at(s.face.first_patch + patch_instance - s.fi.first_patch_instance);
+    bool is = there.q.w > 0.0 && length(there.miss) <= ON_PIXEL_PX;
+    is = is && is_in_face(s, patch_instance, patch_, there.uv);
+#ifdef WITHIN_VOLUME
+    is = is && in_volume(there.q, ON_PX);
+#endif
+    return is ? there.q.z : UNSEEN;
 }
 
 // Whether the face's depth jumps between the pixel and the one at `step_`: by more than to the other side.
@@ -147,6 +196,8 @@ void main() {
     uint met[MOST_SHEETS]; // face, and pixel around
     uint met_from[MOST_SHEETS];
     uint met_count = 0u;
+    uint placed[AROUND]; // the placed face of each pixel around, from 1 on
+    for (uint n = 0u; n < AROUND; ++n) placed[n] = 0u;
     for (uint k = 0u; k < AROUND; ++k) {
         uint from = (k + OWN) % AROUND; // the pixel itself first
         ivec2 beside = around(at, from);
@@ -157,6 +208,7 @@ void main() {
             continue;
         }
         uint face = face_instance_of(seen_patch_instance(seen)) << 1;
+        placed[from] = (face >> 1) + 1u;
         // a second sheet of the pixel's own face
         if (own_patch && k > 0u && face == met[0] && jumps_to(at, beside - at, own_depth)) face |= 1u;
         bool known = met_count == MOST_SHEETS;
@@ -168,11 +220,28 @@ void main() {
     // a separate loop: threads that run together find their sheets at different pixels
     for (uint n = 0u; n < met_count; ++n) {
         Sheet s = sheet_at(around(at, met_from[n]), vec2(at) + 0.5);
+        uint open = 0u; // bits of points
         for (uint i = 0u; i < BORDER_POINTS; ++i) {
-            float depth = depth_at(s, vec2(at) + 0.5 + point_of(i));
+            bool is_open;
+            float depth = depth_at(s, vec2(at) + 0.5 + point_of(i), is_open);
+            if (is_open) open |= 1u << i;
             if (!(depth < depths[i])) continue;
             depths[i] = depth;
             shown[i] = met_from[n];
+        }
+        // from another pixel: beyond a pole or a tip the surface is not the one that goes on from here
+        uint others = 0u;
+        for (uint k = 0u; k < AROUND; ++k) {
+            if (k != met_from[n] && placed[k] == (met[n] >> 1) + 1u) others |= 1u << k;
+        }
+        for (; open != 0u; open &= open - 1u) {
+            uint i = uint(findLSB(open));
+            uint from = nearest_of(others, point_of(i));
+            if (from == NOBODY) from = met_from[n];
+            float depth = exact_depth_at(s, around(at, from), vec2(at) + 0.5 + point_of(i));
+            if (!(depth < depths[i])) continue;
+            depths[i] = depth;
+            shown[i] = from;
         }
     }
     if (SCENE_HAS_MESHES_OR_SOLIDS) {

@@ -58,10 +58,6 @@ const float FOLD_REACH_PX = 1.5;
 // Neighbours whose (u, v) differ by no more, of the patch, are on one sheet.
 const float SAME_PLACE = 0.05;
 
-// Where a face ends in a fold, rounding decides on which side of its end the fold is. So the place is tested that is a
-// hundredth of a pixel before it: this share of the way back, of which the picture shows the square.
-const float BEFORE_FOLD = 1.0 / 16.0;
-
 // Whether a face reaches a fold, of its domain, where a pixel beside it sees the face at (u, v) of a patch. Only faces
 // without trims are marked closed: beyond the seams of others, pass `edge_line` draws the folds.
 bool reaches(FaceInstance fi, Face face, uint patch_instance, Patch patch_, vec2 fold, vec2 uv) {

@@ -89,6 +89,9 @@ const bool OWN_PATCHES_HIDE = false;
 
 // Of a piece: single precision.
 const float SEED_ROUNDED = 1e-4;
+// From the edge to the fold on the surface: so far from it the edge's own trim curve, which is right to half a pixel,
+// does not decide.
+const float TRIMS_TELL_PX = 1.0;
 
 // Outlines of curved faces are drawn.
 layout(constant_id = 43) const bool DRAWS_FOLDS = false;
@@ -148,9 +151,30 @@ bool is_near_own(EdgePoint e) {
     return near;
 }
 
+// Whether the trims of a placed face leave a place of its domain, in scenes that tell: the table is known of faces that
+// a pixel around sees, and has rows only where the picture shows a patch that a trim curve crosses.
+bool is_left(uint number, Face face, uint instance, vec2 place) {
+    if ((face.flags & FACE_TRIMMED) == 0u) return true;
+    FaceInstance fi = FaceInstance(number, instance, 0u, 0u, 0u, 0u, uvec2(0u));
+#ifdef TRIM_BY_TABLE
+    bool found = false;
+    for (int k = 0; k < 9 && !found; ++k) {
+        ivec2 at = ivec2(gl_FragCoord.xy) + ivec2(k % 3 - 1, k / 3 - 1);
+        uint seen = imageLoad(visibility, clamp(at, ivec2(0), ivec2(frame.size) - 1)).x;
+        if (sees_nothing(seen) || sees_other(seen)) continue;
+        FaceInstance there = face_instance_at(face_instance_of(seen_patch_instance(seen)));
+        found = there.face == number && there.instance == instance;
+        if (found) fi = there;
+    }
+    if (!found || !table_covers(fi.first_bin, face.strips, place)) return true;
+#endif
+    return trim_inside(fi, face, place);
+}
+
 // The fold of a curved face so close to the smooth edge or seam `e` that no pixel's centre may see the face between
 // them: the share of the pixel that its line covers, and its point next to the pixel.
-float fold_beside(vec4 face_beside, vec4 ends, float t, EdgePoint e, View view, out EdgePoint point) {
+float fold_beside(vec4 face_beside, vec4 ends, float t, EdgePoint e, uint instance, out EdgePoint point) {
+    View view = view_at(instance);
     Face face = face_at(uint(face_beside.x));
     ivec2 count = ivec2(face.count_u, face.count_v);
     ivec2 place = place_of(face, int(face_beside.y));
@@ -178,7 +202,12 @@ float fold_beside(vec4 face_beside, vec4 ends, float t, EdgePoint e, View view, 
     float ahead = dot(fold - ends.xy, run) / dot(run, run) * (1.0 - 2.0 * SEED_END) + SEED_END;
     is_in_face = is_in_face && abs(ahead - 0.5) <= 0.5 + SEED_ROUNDED;
     bool is_close = distance(point.pixel, e.pixel) <= SEED_REACH_PX;
-    return is_in_face && is_close ? line_coverage(length(s.miss), push.half_px.x) : 0.0;
+    if (!is_in_face || !is_close) return 0.0;
+    // other trims may end the face before the fold; closer to the edge they are not exact enough to tell
+    float way = length(point.place - e.place) * frame.focal / (frame.perspective != 0u ? point.place.z : 1.0);
+    vec2 before = mix(fold, beside, BEFORE_FOLD);
+    if (way > TRIMS_TELL_PX && !is_left(uint(face_beside.x), face, instance, before)) return 0.0;
+    return line_coverage(length(s.miss), push.half_px.x);
 }
 
 void main() {
@@ -202,7 +231,10 @@ void main() {
         EdgePoint p = e;
         if (!is_edge) {
             int texel = int(piece.first + piece.degree + 1u + SEED_TEXELS * (k - 1u));
-            covered = fold_beside(texelFetch(edge_points, texel), texelFetch(edge_points, texel + 1), t, e, view, p);
+            vec4 beside = texelFetch(edge_points, texel);
+            vec4 ends = texelFetch(edge_points, texel + 1);
+            uint instance = beside.w > 0.0 ? uint(beside.w) - 1u : piece_instance.placement;
+            covered = fold_beside(beside, ends, t, e, instance, p);
         }
         uint steps = uint(covered * LINE_STEPS + 0.5);
         uint what = is_edge ? chord : LINE_FOLD;

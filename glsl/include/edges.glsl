@@ -50,7 +50,8 @@ const uint EDGE_MOST_SEEDS = 3u;
 
 // Behind the control points of a piece of such an edge, two texels a face: its number in the scene, a patch of it, 1
 // if it lies left of the piece in (u, v) and else -1; (u, v) of the domain beside the piece, SEED_END from its ends: at
-// the ends themselves a closed edge is in two places of the face.
+// the ends themselves a closed edge is in two places of the face. Last of the first texel: the instance that places the
+// face, from 1 on; 0: that of the piece.
 const uint SEED_TEXELS = 2u;
 const float SEED_END = 0.015625;
 // So far from its edge a fold is drawn from there. Farther away a pixel's centre sees the face between them.

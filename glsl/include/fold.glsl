@@ -21,6 +21,10 @@ const float FOLD_COSINE = 0.2;
 // distance on the surface, so a step is twice as long as the way that is left.
 const float FOLD_FAR_PX = 16.0;
 
+// Where a face ends in a fold, rounding decides on which side of its end the fold is. So the place is tested that is a
+// hundredth of a pixel before it: this share of the way back, of which the picture shows the square.
+const float BEFORE_FOLD = 1.0 / 16.0;
+
 float fold_at(Sample s, View view) {
     mat2 along = pixels_along(s, view);
     return along[0].x * along[1].y - along[0].y * along[1].x;

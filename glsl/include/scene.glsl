@@ -60,6 +60,9 @@ const uint FACE_SAME_SENSE = 4u; // outward normal is S_u x S_v
 const uint FACE_SOLID = 8u;      // the part is closed: back faces are never seen
 const uint FACE_TRIMMED = 16u;   // some patch meets a trim curve
 const uint FACE_OPERAND = 32u;   // belongs to a Boolean solid: drawn only as its fragments
+const uint FACE_MEETS_U = 64u;   // the sides u = 0 and u = 1 of the surface meet, whatever the trims
+const uint FACE_MEETS_V = 128u;
+const uint FACE_POINTS = 8u;     // from this bit on: BORDER_* of the sides that are points
 
 // Members that every pixel reads are whole texels; members read together are in one.
 struct Face {

@@ -11,6 +11,7 @@
 //! compares whole frames with the chain. Every file also gives the GPU one changed number and asserts that the
 //! comparison names its place.
 
+mod border_reach;
 #[path = "../../tests/shapes/cages.rs"]
 pub(crate) mod cages;
 mod chain;

@@ -128,11 +128,12 @@ impl Slot {
         self.write_samples(device, loaded, (input.camera, &in_sight), centre)?;
         self.write_table(device, loaded, (input.camera, history), centre)?;
         // one drawing a sample, and one at the centre for the images that are no mean of samples
-        let loaded_has = loaded.counts.thickness || loaded.counts.lines;
+        let lines = loaded.counts.lines && !input.settings.without.lines;
         let beside = formats.outputs.has_points()
             || formats.outputs.has_numbers()
             || formats.depth.is_some()
-            || loaded_has
+            || loaded.counts.thickness
+            || lines
             || self.samples.is_empty();
         self.counted = self.samples.len() + usize::from(beside);
         if self.counter_room < self.counted {

@@ -209,7 +209,7 @@ impl EdgeData {
 
 /// A curved surface goes on across the edge, and its fold may lie so close to the edge that no pixel's centre sees the
 /// face between them. Across the seam of a face without trims `edge_fold` itself goes on.
-fn goes_on(edge: &Edge) -> bool {
+pub(super) fn goes_on(edge: &Edge) -> bool {
     match edge.kind {
         EdgeKind::Smooth => true,
         EdgeKind::Seam => edge.uses.iter().any(|used| used.trim_loop.is_some()),

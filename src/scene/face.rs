@@ -7,6 +7,7 @@ use super::exact::exact_trim;
 use super::fine::fine_net;
 pub(super) use super::flatten::Cuts;
 use super::flatten::flattened;
+use super::sides::side_flags;
 use super::sub_patches::{SubPatches, sub_patches};
 use crate::abi;
 use crate::abi::Side;
@@ -123,9 +124,12 @@ impl FaceData {
             fine: false,
         };
         let flag = |on: bool, bit: u32| if on { bit } else { 0 };
+        let (lo, hi) = face.surface.bounds();
+        let size = (hi - lo).length();
         data.face.flags = flag(face.same_sense, abi::FACE_SAME_SENSE)
             | flag(body != Body::Open, abi::FACE_SOLID)
-            | flag(trimmed, abi::FACE_TRIMMED);
+            | flag(trimmed, abi::FACE_TRIMMED)
+            | side_flags(&flat, size);
         for (n, (patch, side)) in grid.patches.iter().zip(&sides).enumerate() {
             data.push_patch(&grid, n, patch, (*side, editable), origin, &domain);
             let shares = [shares[0][n % grid.count_u], shares[1][n / grid.count_u]];
@@ -383,7 +387,7 @@ fn outside(grid: &PatchGrid, sides: &[Side], loops: Option<&LoopIndex>) -> Vec<[
 }
 
 /// Border bits of the sides that are points, within [`POINT`] of the patch's size.
-fn poles(patch: &Patch) -> u32 {
+pub(super) fn poles(patch: &Patch) -> u32 {
     let (lo, hi) = patch.bounds();
     let near = POINT * (hi - lo).length();
     let (n, k) = (patch.degree_u, patch.degree_v);

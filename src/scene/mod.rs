@@ -38,6 +38,7 @@ mod operand_edges;
 mod parts;
 mod picking;
 mod request;
+mod sides;
 mod solids;
 mod sub_patches;
 mod sun;

@@ -12,6 +12,7 @@
 //! higher or lower.
 
 pub mod border_cells;
+pub mod border_reach;
 pub mod bound;
 pub mod carry;
 pub mod cone;

@@ -22,7 +22,7 @@ const ALL: Outputs = Outputs { edge: true, part: true, instance: true, ..Outputs
 const OUTLINE: u32 = u32::MAX;
 
 /// Lines as wide as at a height of 1080.
-fn lines() -> EdgeSettings {
+pub fn lines() -> EdgeSettings {
     let usual = EdgeSettings::default();
     let width = usual.width * EdgeSettings::HEIGHT / f64::from(SIZE.1);
     EdgeSettings { width, thin_width: width, tangent: TangentEdges::Full, ..usual }
@@ -33,7 +33,7 @@ pub const WIDTH: f64 = 1.25;
 /// Half of it.
 const HALF: f64 = 0.5 * WIDTH;
 
-fn with(edges: EdgeSettings) -> SceneSettings {
+pub fn with(edges: EdgeSettings) -> SceneSettings {
     SceneSettings { edges: Some(edges), ..SceneSettings::default() }
 }
 
@@ -42,14 +42,14 @@ pub fn draw_lines(model: &Model, camera: &Camera) -> Picture {
     draw(model, with(lines()), camera)
 }
 
-fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
+pub fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
     let mut renderer = watched_with(model, settings);
     let picture = renderer.render(camera, &FrameSettings::default(), ALL).unwrap();
     assert_silent(renderer);
     picture
 }
 
-fn centres(picture: &Picture) -> impl Iterator<Item = (DVec2, u32)> + '_ {
+pub fn centres(picture: &Picture) -> impl Iterator<Item = (DVec2, u32)> + '_ {
     let width = picture.size.0 as usize;
     let centre = move |at: usize| DVec2::new((at % width) as f64 + 0.5, (at / width) as f64 + 0.5);
     picture.edge.iter().enumerate().filter(|(_, edge)| **edge != 0).map(move |(at, edge)| (centre(at), *edge))
@@ -78,7 +78,7 @@ fn faults(model: &Model, camera: &Camera, picture: &Picture) -> (usize, usize, u
 
 /// Points of an outline, a pixel or more within the picture, without a line pixel within half its width and half a
 /// pixel; and line pixels that are farther than that from the outline.
-fn faults_of_outline(picture: &Picture, outline: &[DVec2]) -> (usize, usize) {
+pub fn faults_of_outline(picture: &Picture, outline: &[DVec2]) -> (usize, usize) {
     let marked: Vec<DVec2> = centres(picture).map(|(at, _)| at).collect();
     let last = DVec2::new(f64::from(picture.size.0), f64::from(picture.size.1)) - 1.0;
     let inside = |p: &&DVec2| p.cmpge(DVec2::ONE).all() && p.cmple(last).all();
@@ -231,7 +231,7 @@ fn an_outline_before_many_patches_is_whole() {
 }
 
 /// A block of which one edge is rounded.
-fn rounded_block(radius: f64) -> Model {
+pub fn rounded_block(radius: f64) -> Model {
     let point = |x: f64, y: f64, w: f64| DVec3::new(x * w, y * w, w);
     let line = |a, b| BSpline::new(1, vec![0.0, 0.0, 1.0, 1.0], vec![a, b]).unwrap();
     let corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0 - radius), (2.0 - radius, 2.0), (0.0, 2.0)];
@@ -269,7 +269,7 @@ fn a_fold_that_few_centres_see_is_a_line() {
 }
 
 /// The fillet of [`rounded_block`] as a part of a cylinder that goes on by thirty degrees at both sides.
-fn of_wider_cylinder(fillet: &mut Face, radius: f64) {
+pub fn of_wider_cylinder(fillet: &mut Face, radius: f64) {
     let half = 75f64.to_radians();
     let at = |angle: f64, away: f64, w: f64| {
         let place = DVec2::splat(2.0 - radius) + DVec2::from_angle(angle) * away;

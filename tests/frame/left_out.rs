@@ -5,7 +5,9 @@ use crate::layers::in_glass;
 use crate::shapes::solids::{block, folded};
 use crate::support::{assert_identical, assert_silent, perspective, watched_with};
 use selvedge::csg::Op;
-use selvedge::picture::{EdgeSettings, Effects, FrameSettings, Outputs, Picture, SceneSettings, Smooth, TrimWay};
+use selvedge::picture::{
+    EdgeSettings, Effects, FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, TrimWay,
+};
 
 const SIZE: (u32, u32) = (160, 120);
 const OUTPUTS: Outputs = Outputs { edge: true, ..Outputs::ALL };
@@ -93,4 +95,36 @@ fn what_is_left_out_behind_glass_is_as_if_the_scene_had_it_not() {
         assert_identical(&picture, &expected, &format!("without {pass}"));
     }
     assert_silent(renderer);
+}
+
+/// With several samples the pixels' centres are drawn for lines, and for images; for a colour without lines they are not.
+#[test]
+fn without_lines_several_samples_draw_no_centres() {
+    let model = crowd();
+    let camera = perspective(&model, SIZE);
+    let plain = SceneSettings { trim: TrimWay::Exact, samples: Samples::Four, ..SceneSettings::default() };
+    let edges = EdgeSettings { width: 9.0, thin_width: 9.0, ..EdgeSettings::default() };
+    let mut renderer = watched_with(&model, SceneSettings { edges: Some(edges), ..plain });
+    let mut fresh = watched_with(&model, plain);
+    let without = Effects { lines: true, ..Effects::NONE };
+    // twice, so that a view is reused both ways
+    for (without, outputs, draws) in [
+        (Effects::NONE, Outputs::default(), true),
+        (without, Outputs::default(), false),
+        (without, OUTPUTS, true),
+        (without, Outputs::default(), false),
+        (Effects::NONE, Outputs::default(), true),
+    ] {
+        let settings = FrameSettings { without, ..FrameSettings::default() };
+        let picture = renderer.render(&camera, &settings, outputs).unwrap();
+        assert_eq!(passes(&picture).contains(&"centre sample"), draws, "{without:?}, {outputs:?}");
+        let expected = fresh.render(&camera, &FrameSettings::default(), outputs).unwrap();
+        if without.lines {
+            assert_identical(&picture, &expected, "several samples without lines");
+        } else {
+            assert!(picture.colour != expected.colour, "no line");
+        }
+    }
+    assert_silent(renderer);
+    assert_silent(fresh);
 }

@@ -93,7 +93,7 @@ impl MoreSamples {
         Ok(Self { passes: Arc::clone(passes), sum })
     }
 
-    /// Every sample, their mean, and what the centres see.
+    /// Every sample, their mean, and what the centres see, if something is made of it.
     pub(crate) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, times: &mut Timestamps) {
         let Self { passes, sum } = self;
         barrier::images(cmd, &[(sum, Access::FRAGMENT_READ.discarded(), Access::COLOUR_WRITE)]);
@@ -119,7 +119,7 @@ impl MoreSamples {
         times.scope(cmd, "average", || {
             passes.average.record(cmd, &average::Bindings { frame: frame.constants, sum }, colour);
         });
-        if let Some(resolve) = frame.stages.shading.resolve() {
+        if let Some(resolve) = frame.stages.shading.resolve().filter(|_| frame.draws_centres) {
             // the colour is there already
             let mut colour = frame.colour.to_vec();
             colour[0].load = Load::Keep;

@@ -4,14 +4,16 @@
 //!   edge of the whole model ─▶ outside the view? left out ─▶ wider than a window? halved ─▶ a piece with its own placement
 //! ```
 //! Edges refer to faces by their numbers in the whole model, so all windows of a face count as that face.
-//! Own faces have the numbers of the whole model's, so windows of one face are one face to an edge.
+//! Own faces have the numbers of the whole model's, so windows of one face are one face to an edge. Folds beside a piece
+//! of a smooth edge or a seam are looked for from the windows that its middle lies in, as `scene/fold_seeds.rs` has it.
 
 use super::{Cut, MOST_DEPTH, Sight, WINDOW_PX};
 use crate::abi;
 use crate::model::{Bounds, Edges, Model};
-use crate::picture::EdgeSettings;
+use crate::picture::{EdgeSettings, LineStyle};
 use crate::scene::SceneData;
-use crate::scene::edges::{EdgeData, UndrawnEdges, edges_of};
+use crate::scene::edges::{EdgeData, UndrawnEdges, edges_of, goes_on};
+use crate::scene::fold_seeds::{ShownFace, seeds_of_cut};
 use crate::spline::{Bezier, Control};
 use glam::{DAffine3, DVec4};
 use std::collections::BTreeMap;
@@ -42,6 +44,9 @@ impl KnownEdges {
         self.0.get_or_init(|| edges_of(model)).as_deref().map_err(Clone::clone)
     }
 }
+
+/// How many faces the folds beside a piece are looked for on, and their texels.
+type Seeds = (u32, Vec<[f32; 4]>);
 
 /// The sums of all earlier numbers, starting at `first`.
 fn sums(numbers: impl Iterator<Item = usize>, first: usize) -> Vec<usize> {
@@ -83,10 +88,19 @@ impl SceneData {
         let mut data = EdgeData::new(settings, self.faces.len(), cut.edges.clone());
         // for each visible instance: the part of the cut with its meshes
         let mut seen: BTreeMap<usize, Option<usize>> = BTreeMap::new();
+        // of each face of an instance of the whole model
+        let mut windows: BTreeMap<(usize, usize), Vec<ShownFace>> = BTreeMap::new();
+        let mut placed = vec![None; self.faces.len()];
+        self.face_instances.iter().for_each(|fi| placed[fi.face as usize] = Some(fi.instance));
         for (nth, (source, &(_, first))) in cut.sources.iter().zip(&self.parts).enumerate() {
             let part = whole.instances[source.instance].part;
             for (key, face) in data.face_keys[first..].iter_mut().zip(&source.faces) {
                 *key = (first_faces[part] + face) as u32;
+            }
+            let faces = source.faces.iter().zip(&cut.model.parts[nth].faces);
+            for (number, (face, shown)) in (first..).zip(faces) {
+                let shown = ShownFace { number, domain: shown.surface.domain(), instance: placed[number] };
+                windows.entry((source.instance, *face)).or_default().push(shown);
             }
             let meshes = seen.entry(source.instance).or_default();
             if !cut.model.parts[nth].meshes.is_empty() {
@@ -97,24 +111,41 @@ impl SceneData {
             let instance = &whole.instances[nth];
             let sight = Sight::new(&cut.camera, instance);
             let (first_face, first_number) = (first_faces[instance.part], numbers[instance.part] as u32);
-            let Edges { edges, of_meshes, deviation, .. } = &edges[instance.part];
+            let Edges { edges, of_meshes, deviation, reach, .. } = &edges[instance.part];
             let key = nth as u32 + 1;
-            let mut push = |number, kind, own: &mut dyn Iterator<Item = u32>, pieces: Vec<Bezier<DVec4>>| {
-                let Some(style) = settings.style(kind).filter(|_| !pieces.is_empty()) else { return };
-                data.push_line(number, style, own.collect(), *deviation, 0);
-                for piece in pieces {
+            let mut push = |number, kind, own: Vec<u32>, pieces: Vec<Bezier<DVec4>>, seeds: &[Seeds]| {
+                let style = settings.style(kind);
+                let mut line = None;
+                for (nth, piece) in pieces.iter().enumerate() {
+                    let (count, texels) =
+                        seeds.get(nth).map_or((0, &[] as &[_]), |(count, texels)| (*count, texels.as_slice()));
+                    if style.is_none() && count == 0 {
+                        continue;
+                    }
+                    let flags = count << abi::EDGE_SEEDS | if style.is_none() { abi::EDGE_UNDRAWN } else { 0 };
+                    // the pieces of a line have as many seeds
+                    if line.replace(flags) != Some(flags) {
+                        data.push_line(number, style.unwrap_or(LineStyle::Full), own.clone(), *deviation, flags);
+                    }
                     let bounds = piece.points.iter().fold(Bounds::EMPTY, |all, p| all.with(p.point()));
                     let origin = bounds.centre();
                     self.placements.push(instance.transform * DAffine3::from_translation(origin));
                     let placement = self.placements.len() as u32 - 1;
                     let piece = data.push_piece(&piece.points, origin);
+                    data.points.extend(texels);
                     data.piece_instances.push(abi::PieceInstance { piece, placement, instance: key });
                 }
             };
+            let shown = |face: usize| windows.get(&(nth, face)).map_or(&[] as &[_], Vec::as_slice);
             for (edge, number) in edges.iter().zip(first_number..) {
                 let mut pieces = Vec::new();
                 edge.curve.iter().for_each(|span| halve(&span.piece, &sight, MOST_DEPTH, &mut pieces));
-                push(number, edge.kind, &mut edge.uses.iter().map(|u| (first_face + u.face) as u32), pieces);
+                let may_fold = settings.silhouettes && goes_on(edge) && !pieces.is_empty();
+                let of = (edge, &whole.parts[instance.part], *reach);
+                let arrays = (self.faces.as_slice(), self.patches.as_slice());
+                let seeds = if may_fold { seeds_of_cut(of, &pieces, shown, arrays) } else { Vec::new() };
+                let own = edge.uses.iter().map(|u| (first_face + u.face) as u32).collect();
+                push(number, edge.kind, own, pieces, &seeds);
             }
             let Some(first_triangles) = meshes.map(|part| &self.meshes.first_triangles[part]) else { continue };
             for (edge, number) in of_meshes.iter().zip(first_number + edges.len() as u32..) {
@@ -123,7 +154,7 @@ impl SceneData {
                 halve(&Bezier { points }, &sight, MOST_DEPTH, &mut pieces);
                 let own =
                     |&(mesh, triangle): &(usize, usize)| abi::OWN_TRIANGLE | (first_triangles[mesh] + triangle as u32);
-                push(number, edge.kind, &mut edge.triangles.iter().map(own), pieces);
+                push(number, edge.kind, edge.triangles.iter().map(own).collect(), pieces, &[]);
             }
         }
         self.edges = Some(data);

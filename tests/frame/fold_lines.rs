@@ -1,0 +1,84 @@
+//! Outlines where a face is narrow beside a smooth edge or a seam: no pixel's centre leads to the fold, and it counts only
+//! where the face's trims leave it.
+
+use crate::edge_lines::{centres, draw, faults_of_outline, lines, of_wider_cylinder, rounded_block, with};
+use crate::shapes;
+use crate::support::orthographic;
+use glam::{DVec2, DVec3};
+use selvedge::model::{Camera, Model, Projection};
+use selvedge::picture::{EdgeChoice, EdgeSettings, SceneSettings, TrimWay};
+use std::f64::consts::FRAC_PI_2;
+
+const SIZE: (u32, u32) = (160, 120);
+
+/// [`rounded_block`] whose fillet is left so far from the top, in degrees of its arc.
+fn cut_fillet(radius: f64, degrees: f64) -> Model {
+    let mut model = rounded_block(radius);
+    let part = &mut model.parts[0];
+    part.closed = false;
+    let fillet = &mut part.faces[2];
+    of_wider_cylinder(fillet, radius);
+    let angle = |u: f64| {
+        let place = fillet.surface.point(u, 0.0).truncate() - DVec2::splat(2.0 - radius);
+        place.y.atan2(place.x)
+    };
+    // angles grow with u
+    let at = |degrees: f64| {
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..60 {
+            let u = 0.5 * (low + high);
+            if angle(u) < degrees.to_radians() { low = u } else { high = u }
+        }
+        low
+    };
+    let (from, to) = (at(90.0 - degrees), at(90.0));
+    fillet.loops = vec![shapes::rectangle(DVec2::new(from, 0.0), DVec2::new(to, 1.0))];
+    model
+}
+
+/// The fillet would fold a third of a pixel beyond its smooth edge, 1.5 px away on the surface; another trim ends it
+/// before. The whole one has the outline.
+#[test]
+fn a_fold_beyond_another_trim_is_no_line() {
+    let radius = 0.12;
+    let steep = 25f64.to_radians();
+    for (model, is_line) in [(rounded_block(radius), true), (cut_fillet(radius, 8.0), false)] {
+        let from = DVec3::new(-steep.cos(), steep.sin(), 0.3);
+        let projection = orthographic(&model, SIZE).projection;
+        let camera = Camera { projection, ..Camera::around(model.control_bounds(), from, DVec3::Y, 0.6, SIZE) };
+        let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
+        let picture = draw(&model, SceneSettings { trim: TrimWay::Exact, ..with(settings) }, &camera);
+        let count = centres(&picture).count();
+        assert_eq!(count > 30, is_line, "{count} pixels");
+        assert!(is_line || count == 0, "{count} pixels");
+    }
+}
+
+/// A cylinder so near that windows are cut out of it, of which half a pixel beyond its seam is seen, between the centres
+/// of pixels: the seam leads to the outline.
+#[test]
+fn an_outline_close_beyond_a_seam_is_a_line_in_a_deep_zoom() {
+    let model = shapes::cylinder();
+    let (radius, height) = shapes::CYLINDER;
+    // the outline at 80.2 px, the seam at 79.7 px
+    let (round_px, beyond_px) = (2e5_f64, 0.5);
+    let beyond = (1.0 - beyond_px / round_px).acos();
+    let px = radius / round_px;
+    let at = |away: f64, z: f64| (DVec2::from_angle(beyond) * away).extend(z);
+    let target = at(radius - 0.2 * px, 0.4 * height);
+    let view_height = f64::from(SIZE.1) * px;
+    let camera = Camera {
+        eye: target + DVec2::from_angle(beyond - FRAC_PI_2).extend(0.0) * 10.0,
+        target,
+        up: DVec3::Z,
+        projection: Projection::Orthographic { height: view_height },
+        depth_range: (1.0, 20.0),
+        size: SIZE,
+    };
+    let along = (0..=400).map(|k| target.z + (f64::from(k) / 400.0 - 0.5) * 1.2 * view_height);
+    let outline: Vec<DVec2> = along.map(|z| camera.project(at(radius, z)).unwrap().0).collect();
+    assert!((outline[0].x - 80.2).abs() < 1e-6, "{}", outline[0]);
+    let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
+    let picture = draw(&model, with(settings), &camera);
+    assert_eq!(faults_of_outline(&picture, &outline), (0, 0), "of {} pixels", centres(&picture).count());
+}
