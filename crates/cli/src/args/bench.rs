@@ -30,7 +30,7 @@ pub struct BenchArgs {
     /// and whether pictures equal those of a fresh upload
     #[arg(long, conflicts_with_all = ["section", "trim_by"])]
     pub edit: bool,
-    /// How the camera moves from frame to frame
+    /// What moves from frame to frame
     #[arg(long, value_enum, default_value_t = Motion::Path, conflicts_with = "edit")]
     pub motion: Motion,
     /// Also draw the frames with several in flight: pictures per second, and wall clock over passes
@@ -44,14 +44,17 @@ pub struct BenchArgs {
     pub out: Option<PathBuf>,
 }
 
-/// How the camera of `bench` moves.
+/// What moves in `bench`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Motion {
-    /// Once around the model, nearer and back twice
+    /// The camera, once around the model, nearer and back twice
     Path,
-    /// By three degrees a frame, all of the model in view
+    /// The camera, by three degrees a frame, all of the model in view
     Turn,
-    /// Not at all. Each frame twice: with every pass recorded, and as a viewer draws it, which reuses the visible
+    /// Nothing. Each frame twice: with every pass recorded, and as a viewer draws it, which reuses the visible
     /// surface of each pixel
     Still,
+    /// The last placed part, by a thousandth of the model's diagonal a frame: the time that the step takes of the thread
+    /// that records, and the bytes copied
+    Step,
 }
