@@ -446,9 +446,6 @@ pub struct FrameStats {
     /// of the `tiles`; `crossings` with operands; images of `layers`; `resume_points`, where rays resume. Only existing
     /// ones are listed; [`SceneSettings::solid_budget`] bounds `tiles` and `crossings` together.
     pub solid_bytes: Vec<PoolBytes>,
-    /// Wall clock, milliseconds, of the call that recorded the frame: the time that it takes of the host's thread. With
-    /// `retries`, that of the last call.
-    pub record_ms: f64,
     /// Times that the frame was recorded again because a buffer was too small, or rays needed more segments.
     pub retries: u32,
     /// Bytes copied for edits of trim loops since the previous frame.

@@ -59,7 +59,6 @@ use slot::Slot;
 use source::Source;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Instant;
 pub use targets::{Aovs, TargetFormats, Targets};
 use viewport::Viewport;
 
@@ -220,7 +219,6 @@ impl Renderer {
     /// the frame recorded before into the same slot has finished on the GPU; frames are submitted in
     /// the order in which they are recorded, to one queue.
     pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, input: &FrameInput<'_>) -> Result<(), RenderError> {
-        let begin = Instant::now();
         input.camera.check()?;
         let tolerance = input.settings.tolerance_px;
         if !(tolerance >= FrameSettings::LEAST_TOLERANCE_PX && tolerance.is_finite()) {
@@ -232,9 +230,7 @@ impl Renderer {
         assert!(wanted || !self.formats.outputs.thickness, "the model is uploaded with SceneSettings::thickness");
         // SAFETY: the caller's promise.
         let recorded = unsafe { self.record_checked(cmd, input) };
-        self.noting(recorded)?;
-        self.slots[input.slot].record_ms = begin.elapsed().as_secs_f64() * 1e3;
-        Ok(())
+        self.noting(recorded)
     }
 
     /// [`Self::record`] of an input that was checked.

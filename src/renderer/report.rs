@@ -64,7 +64,6 @@ impl Renderer {
             layers: u64::from(c.layers),
             bands: slot.bands,
             solid_bytes: slot.solid_bytes.clone(),
-            record_ms: slot.record_ms,
             retries: 0,
             edit_bytes: slot.edit_bytes,
             pools: self.device.pool_bytes().map(|(p, bytes)| PoolBytes { name: p.name().to_owned(), bytes }).to_vec(),

@@ -49,8 +49,6 @@ pub(super) struct Slot {
     pub(super) recorded: bool,
     /// The frame reused the visibility of the one before.
     pub(super) reused: bool,
-    /// Milliseconds of the call that recorded the frame.
-    pub(super) record_ms: f64,
     /// Copied for edits at the beginning of the frame.
     pub(super) edit_bytes: u64,
     /// The frame copied arrays of the scene and drew nothing of it: the bytes that waited still. `None`: it was drawn.
@@ -87,7 +85,6 @@ impl Slot {
             retired: Vec::new(),
             recorded: false,
             reused: false,
-            record_ms: 0.0,
             edit_bytes: 0,
             copies: None,
             capacities: None,

@@ -39,10 +39,7 @@ impl From<SessionError> for Failure {
         let status = match &error {
             SessionError::Import(_) | SessionError::Nothing { .. } | SessionError::Limit(_) => SelvedgeStatus::File,
             SessionError::Device(_) => SelvedgeStatus::Device,
-            SessionError::Draw(_)
-            | SessionError::Boundary { .. }
-            | SessionError::Validation(_)
-            | SessionError::Closed => SelvedgeStatus::Render,
+            SessionError::Draw(_) | SessionError::Validation(_) | SessionError::Closed => SelvedgeStatus::Render,
             SessionError::Camera(_) | SessionError::Pinhole(_) | SessionError::Edges(_) | SessionError::Snap => {
                 SelvedgeStatus::Argument
             }

@@ -4,8 +4,7 @@
 //!
 //! Frames are drawn as a viewer draws them: the warm-up builds the trim table that serves all views from about the same
 //! distance, and later frames reuse it. A standing view (`--motion still`) is drawn in turn with every pass and with the
-//! visibility of the frame before; rows of the latter begin with `reused:`. With `--motion step` a placed part moves and
-//! the camera stands: rows that begin with `step:`.
+//! visibility of the frame before; rows of the latter begin with `reused:`.
 //!
 //! The first frame is not in the table: the driver compiles for it, and its time is reported separately.
 
@@ -15,10 +14,9 @@ use crate::progress::during;
 use crate::series::{Gathered, Row};
 use crate::target::{self, CSV, JSON, Target};
 use crate::{Outcome, camera, edit, output, path, reading, verdict};
-use anyhow::{Context, Result};
+use anyhow::Result;
 use comfy_table::CellAlignment;
-use glam::{DAffine3, DVec3};
-use selvedge::model::{Bounds, Camera, Model};
+use selvedge::model::Camera;
 use selvedge::picture::{FrameStats, Outputs};
 use selvedge_check::{Judgement, Tracer};
 use serde::Serialize;
@@ -28,8 +26,6 @@ use std::time::Instant;
 /// Frames before the first measured one. In them buffers grow and the driver compiles; the report has the first one in a
 /// line of its own.
 const WARM_UP_FRAMES: usize = 3;
-/// What the part of `--motion step` moves by in a frame, as a share of the model's diagonal.
-const STEP: f64 = 1e-3;
 /// Pixels judged in each of them, beside those at which the face changes.
 const JUDGED_SAMPLES: usize = 2_000;
 
@@ -118,36 +114,22 @@ fn measure(args: &BenchArgs, model: &Path, outputs: &[Target]) -> Result<(Report
     let camera = |index| match args.motion {
         Motion::Path => path::camera(bounds, size, index, args.frames),
         Motion::Turn => path::turned(bounds, size, index),
-        Motion::Still | Motion::Step => path::turned(bounds, size, 0),
+        Motion::Still => path::turned(bounds, size, 0),
     };
-    let moved = || {
-        Moved::of(&import.model, bounds).with_context(|| format!("{}: it has no placed part to move", model.display()))
-    };
-    let moved = (args.motion == Motion::Step).then(moved).transpose()?;
     let mut renderer =
         ModelRenderer::smooth(model_renderer::opened(&args.frame, None)?, &args.frame, &import, &args.edges)?;
     let mut stats = FrameStats::default();
     let mut gathered = Gathered::default();
     renderer.record_all(args.motion == Motion::Still);
     during(&format!("{}: {} frames", model.display(), args.frames), || -> Result<()> {
-        for nth in 0..WARM_UP_FRAMES {
-            if let Some(moved) = &moved {
-                moved.step(&mut renderer, nth)?;
-            }
+        for _ in 0..WARM_UP_FRAMES {
             let picture = renderer.render(&camera(0), Outputs::default())?;
             if !renderer.shows(&camera(0), &picture)? {
                 renderer.blank(model, &import.model, size, &args.read)?;
             }
         }
         for index in 0..args.frames {
-            let step = |moved: &Moved| moved.step(&mut renderer, WARM_UP_FRAMES + index);
-            let change_ms = moved.as_ref().map(step).transpose()?;
             stats = timed(&mut renderer, &camera(index), &mut gathered)?;
-            if let Some(change_ms) = change_ms {
-                gathered.push("step: change", "ms", change_ms);
-                gathered.push("step: change and recording", "ms", change_ms + stats.record_ms);
-                gathered.push("step: copied", "bytes", stats.edit_bytes as f64);
-            }
             if args.motion == Motion::Still {
                 renderer.record_all(false);
                 timed(&mut renderer, &camera(index), &mut gathered)?;
@@ -156,9 +138,6 @@ fn measure(args: &BenchArgs, model: &Path, outputs: &[Target]) -> Result<(Report
         }
         Ok(())
     })?;
-    if let Some(moved) = &moved {
-        moved.step(&mut renderer, 0)?; // the judge has the model as it was read
-    }
     let throughput = args.throughput.then(|| {
         // the path is closed: its end warms up for its beginning, and its beginning is drawn on while its end is
         // measured
@@ -195,30 +174,6 @@ fn measure(args: &BenchArgs, model: &Path, outputs: &[Target]) -> Result<(Report
     Ok((report, renderer.complaints()))
 }
 
-/// The last placed part of a model, which goes along x.
-struct Moved {
-    instance: usize,
-    start: DAffine3,
-    step: DVec3,
-}
-
-impl Moved {
-    /// `None` for a model without a placed part.
-    fn of(model: &Model, bounds: Bounds) -> Option<Self> {
-        let instance = model.instances.len().checked_sub(1)?;
-        let step = DVec3::X * (STEP * bounds.diagonal());
-        Some(Self { instance, start: model.instances[instance].transform, step })
-    }
-
-    /// Puts the part where it is after `nth` steps; the milliseconds of the call.
-    fn step(&self, renderer: &mut ModelRenderer, nth: usize) -> Result<f64> {
-        let transform = DAffine3::from_translation(nth as f64 * self.step) * self.start;
-        let begin = Instant::now();
-        renderer.place(self.instance, transform)?;
-        Ok(begin.elapsed().as_secs_f64() * 1e3)
-    }
-}
-
 /// Draws pictures with several frames in flight, and measures all but [`WARM_UP_FRAMES`] at either end: as many frames
 /// are in flight when the clock starts as when it stops. Each picture is copied, as a caller that stores it would.
 fn throughput(renderer: &mut ModelRenderer, cameras: &[Camera]) -> Result<Throughput> {
@@ -252,7 +207,6 @@ fn timed(renderer: &mut ModelRenderer, camera: &Camera, gathered: &mut Gathered)
     let took = start.elapsed().as_secs_f64() * 1e3;
     let row = |name: &str| if stats.reused { format!("reused: {name}") } else { name.to_owned() };
     gathered.push(&row("wall clock, with read-back"), "ms", took);
-    gathered.push(&row("recording"), "ms", stats.record_ms);
     for pass in &stats.passes {
         gathered.push(&row(&format!("pass: {}", pass.name)), "ms", pass.gpu_ms);
     }

@@ -5,7 +5,7 @@ use crate::progress::{advancing, during};
 use crate::reading::{failure, named};
 use crate::{camera, device, output};
 use anyhow::{Error, Result, bail};
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer, PictureView};
 use selvedge::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use selvedge::picture::{EdgeSettings, FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings, Style};
@@ -225,11 +225,6 @@ impl ModelRenderer {
     /// Replaces a loop; the next frame shows it.
     pub fn edit(&mut self, at: LoopAt, new: &TrimLoop) -> Result<()> {
         Ok(self.renderer.edit_loop(at, new)?)
-    }
-
-    /// Places an instance anew; the next frame shows it.
-    pub fn place(&mut self, instance: usize, transform: DAffine3) -> Result<()> {
-        Ok(self.renderer.set_transform(instance, transform)?)
     }
 
     /// Prints the validation layer's messages on standard error; true when there were any.

@@ -30,10 +30,9 @@ pub fn raised(py: Python<'_>, error: &SessionError) -> PyErr {
         }
         SessionError::Device(_) => instance(py, "DeviceError", (text,)),
         SessionError::Closed => instance(py, "ClosedError", (text,)),
-        SessionError::Draw(_)
-        | SessionError::Boundary { .. }
-        | SessionError::Validation(_)
-        | SessionError::Limit(_) => instance(py, "RenderError", (text,)),
+        SessionError::Draw(_) | SessionError::Validation(_) | SessionError::Limit(_) => {
+            instance(py, "RenderError", (text,))
+        }
         _ => PyRuntimeError::new_err(text),
     }
 }

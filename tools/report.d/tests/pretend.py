@@ -83,7 +83,6 @@ class Program:
         self.spend("bench", sum(weight(model) for model in models) * (0.8 + frames * frame), limit_s)
         wall = "wall clock, with read-back"
         of = {wall: 300.0, f"reused: {wall}": 90.0, "all passes": 280.0, "pass: solids": 200.0}
-        of |= {"step: change": 0.01, "step: change and recording": 0.4, "step: copied": 64.0}
         error = {"judged_pixels": 9, "wrong_pixels": 0, "worst_shift_px": 0.1}
         first = {"pipelines_ms": 300.0, "wall_ms": 90.0}
         report = {"of": of, "largest": of, "error": error, "first_frame": first, "face_instances": 1}

@@ -30,7 +30,7 @@ pub struct BenchArgs {
     /// and whether pictures equal those of a fresh upload
     #[arg(long, conflicts_with_all = ["section", "trim_by"])]
     pub edit: bool,
-    /// What moves from frame to frame
+    /// How the camera moves from frame to frame
     #[arg(long, value_enum, default_value_t = Motion::Path, conflicts_with = "edit")]
     pub motion: Motion,
     /// Also draw the frames with several in flight: pictures per second, and wall clock over passes
@@ -44,17 +44,14 @@ pub struct BenchArgs {
     pub out: Option<PathBuf>,
 }
 
-/// What moves in `bench`.
+/// How the camera of `bench` moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Motion {
-    /// The camera, once around the model, nearer and back twice
+    /// Once around the model, nearer and back twice
     Path,
-    /// The camera, by three degrees a frame, all of the model in view
+    /// By three degrees a frame, all of the model in view
     Turn,
-    /// Nothing. Each frame twice: with every pass recorded, and as a viewer draws it, which reuses the visible
+    /// Not at all. Each frame twice: with every pass recorded, and as a viewer draws it, which reuses the visible
     /// surface of each pixel
     Still,
-    /// The last placed part, by a thousandth of the model's diagonal a frame: the time that the step takes of the thread
-    /// that records, and the bytes copied
-    Step,
 }

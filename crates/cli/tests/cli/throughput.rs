@@ -1,4 +1,4 @@
-//! `bench`: what is printed and written of several frames in flight, and of a placed part that moves.
+//! `bench --throughput`: what is printed and written of several frames in flight.
 
 use super::{refused, selvedge, text};
 use std::fs;
@@ -37,35 +37,6 @@ fn pictures_per_second_are_printed_and_written() {
         // the JSON reader is off by an ulp now and then
         assert!((value(row) / told(field) - 1.0).abs() < 1e-12, "{row}: {} and {}", value(row), told(field));
     }
-}
-
-#[test]
-fn a_step_of_a_placed_part_is_measured() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().to_str().unwrap();
-    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/../../samples/assembly.step");
-    let step = ["bench", "--motion", "step", "--size", "64x48", "--frames", "3", "--judged", "1", "--out", out];
-    let output = selvedge(&[&step[..], &[model]].concat());
-    // the judge finds the part where the file has it
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    let reports: serde_json::Value =
-        serde_json::from_str(&fs::read_to_string(folder.path().join("bench.json")).unwrap()).unwrap();
-    let row = |name: &str| {
-        let rows = reports[0]["rows"].as_array().unwrap();
-        let row = rows.iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("no {name} in {reports}"));
-        assert_eq!(row["frames"], 3, "{name}");
-        ["median", "largest"].map(|column| row[column].as_f64().unwrap())
-    };
-    let (change, both, copied) = (row("step: change"), row("step: change and recording"), row("step: copied"));
-    assert!(change[0] > 0.0 && both[0] > change[0], "{reports}");
-    assert_eq!(copied, [64.0; 2], "the record of one instance");
-    assert!(row("recording")[0] > 0.0, "{reports}");
-
-    let solid = folder.path().join("solid.csg");
-    fs::write(&solid, "cube(1);").unwrap();
-    let output = selvedge(&[&step[..], &[solid.to_str().unwrap()]].concat());
-    assert!(!output.status.success());
-    assert!(text(&output.stderr).contains("solid.csg: it has no placed part to move"), "{}", text(&output.stderr));
 }
 
 #[test]
