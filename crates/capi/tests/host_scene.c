@@ -55,40 +55,53 @@ static SelvedgeView above(void)
     };
 }
 
-static SelvedgeTargets targets_of(const Image* image)
+typedef struct {
+    Image colour, instance;
+} Images;
+
+static SelvedgeTarget target(const Image* image)
+{
+    return (SelvedgeTarget){ (uint64_t)(uintptr_t)image->image, (uint64_t)(uintptr_t)image->view };
+}
+
+static SelvedgeTargets targets_of(const Images* images)
 {
     return (SelvedgeTargets){
         .struct_size = sizeof(SelvedgeTargets),
-        .colour = { (uint64_t)(uintptr_t)image->image, (uint64_t)(uintptr_t)image->view },
+        .colour = target(&images->colour),
+        .instance = target(&images->instance),
     };
 }
 
 // Begins a command buffer with the host's black, and records the model over it.
-static int record(const Device* d, const Image* image, const SelvedgeHost* host)
+static int record(const Device* d, const Images* images, const SelvedgeHost* host)
 {
     if (begin_commands(d) != 0) {
         return 1;
     }
-    barrier(d, image, NEW, CLEAR);
+    barrier(d, &images->colour, NEW, CLEAR);
     const VkClearColorValue black = { .float32 = { 0.0f, 0.0f, 0.0f, 1.0f } };
-    vkCmdClearColorImage(d->commands, image->image, CLEAR.layout, &black, 1, &WHOLE);
-    barrier(d, image, CLEAR, DRAW);
+    vkCmdClearColorImage(d->commands, images->colour.image, CLEAR.layout, &black, 1, &WHOLE);
+    barrier(d, &images->colour, CLEAR, DRAW);
+    barrier(d, &images->instance, NEW, DRAW);
     const SelvedgeView view = above();
-    const SelvedgeTargets targets = targets_of(image);
+    const SelvedgeTargets targets = targets_of(images);
     SELVEDGE(selvedge_host_record(host, d->commands, 0, &view, &targets));
     return 0;
 }
 
 // Draws until the frame is whole.
-static int draw(const Device* d, const Image* image, const SelvedgeHost* host)
+static int draw(const Device* d, const Images* images, const SelvedgeHost* host)
 {
     SelvedgeReport report = { .struct_size = sizeof report };
     do {
-        if (record(d, image, host) != 0) {
+        if (record(d, images, host) != 0) {
             return 1;
         }
-        barrier(d, image, DRAW, COPY);
-        read_back(d, image);
+        barrier(d, &images->colour, DRAW, COPY);
+        read_back(d, &images->colour);
+        barrier(d, &images->instance, DRAW, COPY);
+        read_back(d, &images->instance);
         if (submit_and_wait(d) != 0) {
             return 1;
         }
@@ -101,15 +114,16 @@ static int draw(const Device* d, const Image* image, const SelvedgeHost* host)
 typedef struct {
     size_t left, right; // pixels that show a model: the right side begins 2 mm beside the block
     size_t red, green; // those of these colours
+    size_t instances[3]; // pixels of the image of instances with the numbers 0, 1 and 2
 } Seen;
 
-static int look(const Device* d, const Image* image, const SelvedgeHost* host, Seen* seen)
+static int look(const Device* d, const Images* images, const SelvedgeHost* host, Seen* seen)
 {
-    if (draw(d, image, host) != 0) {
+    if (draw(d, images, host) != 0) {
         return 1;
     }
     void* bytes = NULL;
-    VK(vkMapMemory(d->device, image->copy_memory, 0, VK_WHOLE_SIZE, 0, &bytes));
+    VK(vkMapMemory(d->device, images->colour.copy_memory, 0, VK_WHOLE_SIZE, 0, &bytes));
     *seen = (Seen){ 0 };
     for (size_t i = 0; i < WIDTH * HEIGHT; ++i) {
         const unsigned char* p = (const unsigned char*)bytes + 4 * i;
@@ -119,7 +133,14 @@ static int look(const Device* d, const Image* image, const SelvedgeHost* host, S
             seen->green += p[1] > p[0] + 40;
         }
     }
-    vkUnmapMemory(d->device, image->copy_memory);
+    vkUnmapMemory(d->device, images->colour.copy_memory);
+    VK(vkMapMemory(d->device, images->instance.copy_memory, 0, VK_WHOLE_SIZE, 0, &bytes));
+    for (size_t i = 0; i < WIDTH * HEIGHT; ++i) {
+        const uint32_t number = ((const uint32_t*)bytes)[i];
+        HOLDS(number < 3);
+        seen->instances[number] += 1;
+    }
+    vkUnmapMemory(d->device, images->instance.copy_memory);
     return 0;
 }
 
@@ -129,13 +150,13 @@ static int is_block(size_t pixels)
     return pixels >= 24 && pixels <= 44;
 }
 
-#define LOOK() HOLDS(look(d, image, host, &seen) == 0)
+#define LOOK() HOLDS(look(d, images, host, &seen) == 0)
 
-static int mistakes_before_an_upload(const Device* d, const Image* image, const SelvedgeHost* host,
+static int mistakes_before_an_upload(const Device* d, const Images* images, const SelvedgeHost* host,
                                      const SelvedgeModel* model)
 {
     SelvedgeView view = above();
-    const SelvedgeTargets targets = targets_of(image);
+    const SelvedgeTargets targets = targets_of(images);
     SelvedgeReport report = { .struct_size = sizeof report, .recorded = 7 };
     WANT(OK, selvedge_host_report(host, 0, &report), "");
     HOLDS(report.recorded == 0 && report.complete == 0);
@@ -153,10 +174,10 @@ static int mistakes_before_an_upload(const Device* d, const Image* image, const 
     return 0;
 }
 
-static int mistakes_of_frames(const Device* d, const Image* image, const SelvedgeHost* host)
+static int mistakes_of_frames(const Device* d, const Images* images, const SelvedgeHost* host)
 {
     const SelvedgeView view = above();
-    const SelvedgeTargets targets = targets_of(image);
+    const SelvedgeTargets targets = targets_of(images);
     WANT(ARGUMENT, selvedge_host_record(host, NULL, 0, &view, &targets), "command buffer is a null handle");
     WANT(ARGUMENT, selvedge_host_record(host, d->commands, 1, &view, &targets), "slot 1 of 1");
 #define BAD(of, what, change, status, words)                                                       \
@@ -172,16 +193,18 @@ static int mistakes_of_frames(const Device* d, const Image* image, const Selvedg
     BAD(targets, colour.image, 0, ARGUMENT, "lacks its image of colour");
     BAD(targets, colour.view, 0, ARGUMENT, "has no view");
     BAD(targets, depth.image, 1, ARGUMENT, "without an image of depth");
+    BAD(targets, instance.image, 0, ARGUMENT, "lacks its image of instance");
     BAD(targets, x, 1, RENDER, "is not within it");
     BAD(targets, struct_size, 2, ARGUMENT, "struct_size");
     return 0;
 }
 
-static int changes(const Device* d, const Image* image, const SelvedgeHost* host)
+static int changes(const Device* d, const Images* images, const SelvedgeHost* host)
 {
     Seen seen;
     LOOK();
     HOLDS(is_block(seen.left) && seen.right == 0 && seen.red == 0 && seen.green == 0);
+    HOLDS(seen.instances[1] == 24 && seen.instances[2] == 0);
 
     double moved[12] = { 1, 0, 0, 0, 1, 0, 0, 0, 1, 6, 0, 0 };
     WANT(OK, selvedge_host_set_transform(host, 0, moved), "");
@@ -216,7 +239,7 @@ static int changes(const Device* d, const Image* image, const SelvedgeHost* host
     return 0;
 }
 
-static int models(const Device* d, const Image* image, const SelvedgeHost* host, const SelvedgeModel* model)
+static int models(const Device* d, const Images* images, const SelvedgeHost* host, const SelvedgeModel* model)
 {
     Seen seen;
     uint64_t added = 0, first = 7, count = 7;
@@ -232,6 +255,7 @@ static int models(const Device* d, const Image* image, const SelvedgeHost* host,
     WANT(OK, selvedge_host_pick(host, WIDTH / 2, HEIGHT / 2), "");
     LOOK();
     HOLDS(is_block(seen.left) && is_block(seen.right));
+    HOLDS(seen.instances[1] == 24 && seen.instances[2] == 24);
     WANT(OK, selvedge_host_picked(host, 0, &hit), "");
     HOLDS(hit.face > 0 && hit.part == 2 && hit.instance == 2 && hit.edge_of_part == 0);
     HOLDS(fabs(hit.point[0] - 1.25) < 1e-6 && fabs(hit.point[1] - 1.25) < 1e-6 && fabs(hit.point[2] - 5.0) < 1e-6);
@@ -264,12 +288,12 @@ static int models(const Device* d, const Image* image, const SelvedgeHost* host,
 }
 
 // A frame that the host drops, and then a device that is lost.
-static int losses(const Device* d, const Image* image, const SelvedgeHost* host)
+static int losses(const Device* d, const Images* images, const SelvedgeHost* host)
 {
     Seen seen;
     const double moved[12] = { 1, 0, 0, 0, 1, 0, 0, 0, 1, 6, 0, 0 };
     WANT(OK, selvedge_host_set_transform(host, 0, moved), "");
-    HOLDS(record(d, image, host) == 0);
+    HOLDS(record(d, images, host) == 0);
     VK(vkEndCommandBuffer(d->commands));
     WANT(ARGUMENT, selvedge_host_discard(host, 1), "slot 1 of 1");
     WANT(OK, selvedge_host_discard(host, 0), "");
@@ -281,14 +305,15 @@ static int losses(const Device* d, const Image* image, const SelvedgeHost* host)
 
     WANT(OK, selvedge_host_device_lost(host), "");
     const SelvedgeView view = above();
-    const SelvedgeTargets targets = targets_of(image);
+    const SelvedgeTargets targets = targets_of(images);
     WANT(RENDER, selvedge_host_record(host, d->commands, 0, &view, &targets), "lost");
     return 0;
 }
 
-static int run(Device* d, Image* image, const SelvedgeModel* model, SelvedgeHost** host)
+static int run(Device* d, Images* images, const SelvedgeModel* model, SelvedgeHost** host)
 {
-    if (make_device(d) != 0 || make_commands(d) != 0 || make_image(d, image) != 0) {
+    if (make_device(d) != 0 || make_commands(d) != 0 || make_image(d, &images->colour) != 0
+        || make_image(d, &images->instance) != 0) {
         return 1;
     }
     SelvedgeVulkan vulkan = lent(d);
@@ -301,28 +326,31 @@ static int run(Device* d, Image* image, const SelvedgeModel* model, SelvedgeHost
     vulkan.colour_format = 0;
     WANT(ARGUMENT, selvedge_host_new(&vulkan, host), "VK_FORMAT_UNDEFINED");
     vulkan = lent(d);
+    vulkan.outputs = SELVEDGE_INSTANCE;
     WANT(OK, selvedge_host_new(&vulkan, host), "");
-    if (mistakes_before_an_upload(d, image, *host, model) != 0) {
+    if (mistakes_before_an_upload(d, images, *host, model) != 0) {
         return 1;
     }
     const SelvedgeView view = above();
     WANT(OK, selvedge_host_upload(*host, model, &view), "");
-    return mistakes_of_frames(d, image, *host) != 0 || changes(d, image, *host) != 0
-        || models(d, image, *host, model) != 0 || losses(d, image, *host) != 0;
+    return mistakes_of_frames(d, images, *host) != 0 || changes(d, images, *host) != 0
+        || models(d, images, *host, model) != 0 || losses(d, images, *host) != 0;
 }
 
 int main(void)
 {
     SelvedgeModel* model = NULL;
     WANT(OK, selvedge_open_bytes(BLOCK, sizeof BLOCK - 1, "block.obj", NULL, &model), "");
-    Image image = { .width = WIDTH, .height = HEIGHT };
+    Images images = { .colour = { .width = WIDTH, .height = HEIGHT, .format = FORMAT },
+                      .instance = { .width = WIDTH, .height = HEIGHT, .format = VK_FORMAT_R32_UINT } };
     Device device = { 0 };
     SelvedgeHost* host = NULL;
-    const int bad = run(&device, &image, model, &host);
+    const int bad = run(&device, &images, model, &host);
     selvedge_host_free(host);
     selvedge_model_free(model);
     if (device.device != NULL) {
-        free_image(&device, &image);
+        free_image(&device, &images.colour);
+        free_image(&device, &images.instance);
     }
     free_device(&device);
     return bad;
