@@ -94,7 +94,7 @@ static int run(Device* d, Image* image, const SelvedgeModel* model, SelvedgeHost
 
 int main(int argument_count, char** arguments)
 {
-    Image image = { 0 };
+    Image image = { .format = FORMAT };
     if (argument_count == 4) {
         image.width = (uint32_t)atoi(arguments[2]);
         image.height = (uint32_t)atoi(arguments[3]);

@@ -7,6 +7,7 @@
 
 typedef struct {
     uint32_t width, height;
+    VkFormat format; // of 4 bytes a pixel
     VkImage image;
     VkDeviceMemory memory;
     VkImageView view;
@@ -39,7 +40,7 @@ static int make_image(const Device* d, Image* image)
     const VkImageCreateInfo create = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
         .imageType = VK_IMAGE_TYPE_2D,
-        .format = FORMAT,
+        .format = image->format,
         .extent = { image->width, image->height, 1 },
         .mipLevels = 1,
         .arrayLayers = 1,
@@ -57,7 +58,7 @@ static int make_image(const Device* d, Image* image)
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
         .image = image->image,
         .viewType = VK_IMAGE_VIEW_TYPE_2D,
-        .format = FORMAT,
+        .format = image->format,
         .subresourceRange = WHOLE,
     };
     VK(vkCreateImageView(d->device, &view, NULL, &image->view));

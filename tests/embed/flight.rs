@@ -5,10 +5,10 @@ use crate::picture::renderer;
 use crate::shapes;
 use crate::targets::Targets;
 use ash::vk;
-use glam::{DAffine3, DVec3};
-use selvedge::model::{Camera, Colour, Model, Projection};
+use glam::{DAffine3, DVec2, DVec3};
+use selvedge::model::{Camera, Colour, FaceError, LoopAt, Model, Projection};
 use selvedge::picture::{FrameSettings, SceneSettings};
-use selvedge::renderer::{FrameInput, RenderError, Renderer, Targets as Into};
+use selvedge::renderer::{EditError, FrameInput, RenderError, Renderer, Targets as Into};
 
 const FORMAT: vk::Format = vk::Format::R8G8B8A8_UNORM;
 
@@ -209,6 +209,55 @@ fn a_part_moves_while_frames_are_in_flight() {
         model
     });
     assert_uploaded(&host, &targets[0], &camera, &seen, models);
+    targets.into_iter().for_each(|targets| targets.destroy(&host));
+    assert_eq!(host.shutdown(), [""; 0]);
+}
+
+/// A point of a plate's hole moves, one place a frame, while the other slot's frame is in flight: each frame has the loop
+/// as it was when that frame was recorded, as an upload has it. Places that are none leave it.
+#[test]
+fn a_control_point_moves_while_frames_are_in_flight() {
+    let host = Host::new();
+    let model = shapes::plate();
+    let at = LoopAt { part: 0, face: 0, trim_loop: 1 };
+    let starts: Vec<DVec2> =
+        model.parts[0].faces[0].loops[1].curves().map(|curve| curve.points[0].truncate() / curve.points[0].z).collect();
+    let centre = starts.iter().sum::<DVec2>() / starts.len() as f64;
+    let size = (120, 60);
+    let camera = Camera { eye: DVec3::new(1.0, -2.0, 14.0), up: DVec3::Y, ..from_the_front(size) };
+    let editable = SceneSettings { editable: true, ..SceneSettings::default() };
+    let targets = [(); SLOTS].map(|()| Targets::new(&host, size, FORMAT));
+    let (mut seen, mut models) = (Vec::new(), Vec::new());
+    let mut live = renderer(&host, &model, FORMAT);
+    assert_eq!(live.edit_trim(at, 0, 0, centre), Err(EditError::NotEditable));
+    live.upload_with(&model, editable).unwrap();
+    for frame in 0..7 {
+        let slot = frame % SLOTS;
+        host.wait(slot);
+        if frame >= SLOTS {
+            seen.push(targets[slot].values());
+        }
+        live.edit_trim(at, 0, 0, starts[0].lerp(centre, 0.1 * frame as f64)).unwrap();
+        let none = EditError::Loop(FaceError::NoPoint { curve: 0, point: 99 });
+        assert_eq!(live.edit_trim(at, 0, 99, centre), Err(none));
+        assert!(matches!(live.edit_trim(at, 0, 0, DVec2::NAN), Err(EditError::Loop(FaceError::ControlPoint { .. }))));
+        models.push((**live.model().unwrap()).clone());
+        record(&host, &mut live, slot, &targets[slot], &camera, 0.5);
+    }
+    (7 - SLOTS..7).for_each(|frame| {
+        host.wait(frame % SLOTS);
+        seen.push(targets[frame % SLOTS].values());
+    });
+    drop(live);
+    assert!(seen.windows(2).all(|pair| pair[0] != pair[1]), "the hole changes in each frame");
+    let mut fresh = renderer(&host, &model, FORMAT);
+    for (frame, (seen, model)) in seen.iter().zip(&models).enumerate() {
+        fresh.upload_with(model, editable).unwrap();
+        record(&host, &mut fresh, 0, &targets[0], &camera, 0.5);
+        host.wait(0);
+        assert!(*seen == targets[0].values(), "frame {frame}");
+    }
+    drop(fresh);
     targets.into_iter().for_each(|targets| targets.destroy(&host));
     assert_eq!(host.shutdown(), [""; 0]);
 }

@@ -6,7 +6,7 @@ use glam::DVec3;
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::{Camera, CameraError, Model, Projection};
 use selvedge::picture::{FrameSettings, Outputs};
-use selvedge::renderer::RenderError;
+use selvedge::renderer::{RenderError, UndrawnSolid};
 
 fn refusal(renderer: &mut HeadlessRenderer, camera: &Camera, tolerance_px: f64) -> RenderError {
     let settings = FrameSettings { tolerance_px, ..FrameSettings::default() };
@@ -102,5 +102,22 @@ fn a_model_that_is_none() {
         assert!(!model.bounds().diagonal().is_nan(), "{sentence}"); // framing it must not panic, either
     }
     assert_identical(&before, &render(&mut renderer, &camera), "after errors");
+    assert_silent(renderer);
+}
+
+#[test]
+fn a_volume_without_equations() {
+    let model = shapes::plate();
+    let mut renderer = watched(&model);
+    let camera = perspective(&model, (64, 48));
+    let before = render(&mut renderer, &camera);
+    let ball = shapes::operands::mesh(shapes::ball_mesh(1));
+    let volume = shapes::solids::solid("A", vec![ball]).solids.remove(0);
+    match renderer.upload(&Model { trim: Some(volume), ..model }) {
+        Err(HeadlessError::Render(RenderError::Solid(error))) => assert_eq!(error, UndrawnSolid::Volume),
+        Err(error) => panic!("another error: {error}"),
+        Ok(()) => panic!("uploaded"),
+    }
+    assert_identical(&before, &render(&mut renderer, &camera), "after the error");
     assert_silent(renderer);
 }

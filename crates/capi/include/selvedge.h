@@ -218,6 +218,28 @@ typedef struct SelvedgeReport {
     uint64_t clamps;
 } SelvedgeReport;
 
+// What a frame shows at a pixel. Numbers are those of the images, counted from 1; 0 is none.
+typedef struct SelvedgeHit {
+    // sizeof(SelvedgeHit)
+    size_t struct_size;
+    // Number in the image of faces. 0: the pixel shows no model, or no pixel was read back; the other fields are 0.
+    uint32_t face;
+    // Number of the part; 0 for Boolean solids.
+    uint32_t part;
+    // Number of the instance; 0 for Boolean solids.
+    uint32_t instance;
+    // Number of the edge, among those of the part, whose line covers the pixel; 0 without one.
+    uint32_t edge_of_part;
+    // Parameters in the face's domain; of a triangle, the weights of its second and third corner.
+    double uv[2];
+    // Millimetres.
+    double point[3];
+    // Unit outward normal in model axes; zeros where there is none.
+    double normal[3];
+    // Distance from the eye along the view axis, millimetres.
+    double depth;
+} SelvedgeHit;
+
 // How to read. Zeros are the defaults.
 typedef struct SelvedgeReadOptions {
     // sizeof(SelvedgeReadOptions)
@@ -363,7 +385,8 @@ enum SelvedgeStatus selvedge_host_upload(const struct SelvedgeHost *host,
 
 // Records a frame into a VkCommandBuffer of the host's. Only size, camera, style, curvature_range (which a host sets:
 // where it is 0, the whole model is sampled), background and tolerance of `view` are read. With a null background the
-// host's picture stays where no model is drawn. The frame that was recorded into the slot before has finished.
+// host's picture stays where no model is drawn. A standard view shows all of the scene as it is then. The frame that was
+// recorded into the slot before has finished.
 //
 // # Safety
 // Pointers are null or point to what they say. `commands` is recording, outside rendering, on the host's queue family,
@@ -382,6 +405,12 @@ enum SelvedgeStatus selvedge_host_record(const struct SelvedgeHost *host,
 // Pointers are null or point to what they say.
 enum SelvedgeStatus selvedge_host_report(const struct SelvedgeHost *host, uint32_t slot, struct SelvedgeReport *report);
 
+// Frees the renderer, and leaves the host's device as it is; null is allowed. The GPU has finished all frames.
+//
+// # Safety
+// This library made it, and no other call uses it at the same time.
+void selvedge_host_free(struct SelvedgeHost *host);
+
 // Moves an instance, counted from 0. `columns` takes part to model coordinates: the columns x, y, z and the
 // translation, millimetres. The next frame shows the new place; the model is not uploaded again.
 //
@@ -397,11 +426,71 @@ enum SelvedgeStatus selvedge_host_set_transform(const struct SelvedgeHost *host,
 // The pointer is null or points to a value of its type.
 enum SelvedgeStatus selvedge_host_set_visible(const struct SelvedgeHost *host, uint64_t instance, uint32_t visible);
 
-// Frees the renderer, and leaves the host's device as it is; null is allowed. The GPU has finished all frames.
+// Gives an instance, counted from 0, a colour in place of those of its faces: red, green, blue and opacity, from 0 to 1
+// in linear light. The opacity must be 1. Null: the colours of its faces.
 //
 // # Safety
-// This library made it, and no other call uses it at the same time.
-void selvedge_host_free(struct SelvedgeHost *host);
+// Pointers are null or point to what they say; `colour` to 4 numbers.
+enum SelvedgeStatus selvedge_host_set_colour(const struct SelvedgeHost *host, uint64_t instance, const float *colour);
+
+// Marks an instance, counted from 0, by a colour over its own, as strong as its opacity; numbers as in
+// selvedge_host_set_colour. Null: no mark.
+//
+// # Safety
+// Pointers are null or point to what they say; `colour` to 4 numbers.
+enum SelvedgeStatus selvedge_host_set_selected(const struct SelvedgeHost *host, uint64_t instance, const float *colour);
+
+// Adds a model to the uploaded one, without an upload of the rest where the scene allows that: docs/embedding.md. The
+// next frame shows it. `added` gets its number, above 0. Frames in flight draw the scene as it was; nothing waits.
+//
+// # Safety
+// Pointers are null or point to what they say.
+enum SelvedgeStatus selvedge_host_add(const struct SelvedgeHost *host,
+                                      const struct SelvedgeModel *model,
+                                      uint64_t *added);
+
+// Removes a model that was added; the next frame does not show it. The instances of others keep their numbers.
+//
+// # Safety
+// The pointer is null or points to a value of its type.
+enum SelvedgeStatus selvedge_host_remove(const struct SelvedgeHost *host, uint64_t added);
+
+// Says which instances are those of an added model: `count` of them from `first` on, counted from 0.
+//
+// # Safety
+// Pointers are null or point to what they say.
+enum SelvedgeStatus selvedge_host_instances(const struct SelvedgeHost *host,
+                                            uint64_t added,
+                                            uint64_t *first,
+                                            uint64_t *count);
+
+// Lets the next frame recorded read back what it shows at a pixel: column and row, from the upper left corner of the
+// picture. The last call before the frame counts.
+//
+// # Safety
+// The pointer is null or points to a value of its type.
+enum SelvedgeStatus selvedge_host_pick(const struct SelvedgeHost *host, uint32_t x, uint32_t y);
+
+// Fills `hit`, whose struct_size is set, with what the frame recorded last into the slot shows at the pixel of
+// selvedge_host_pick. That frame has finished.
+//
+// # Safety
+// Pointers are null or point to what they say.
+enum SelvedgeStatus selvedge_host_picked(const struct SelvedgeHost *host, uint32_t slot, struct SelvedgeHit *hit);
+
+// The frame recorded last, into this slot, never reached the GPU: the host reset its command buffer, or the submission
+// failed. The next frame copies again what it would have copied.
+//
+// # Safety
+// The pointer is null or points to a value of its type.
+enum SelvedgeStatus selvedge_host_discard(const struct SelvedgeHost *host, uint32_t slot);
+
+// A call of the host's own returned VK_ERROR_DEVICE_LOST: from now on frames are refused with SELVEDGE_STATUS_RENDER,
+// and selvedge_host_free frees handles alone.
+//
+// # Safety
+// The pointer is null or points to a value of its type.
+enum SelvedgeStatus selvedge_host_device_lost(const struct SelvedgeHost *host);
 
 // Reads a file: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, .csg and others, by its content. `options`
 // may be null.

@@ -5,11 +5,13 @@
 //!       each frame, per slot:  selvedge_host_record(commands, view, targets) ─▶ the host submits, waits for its fence
 //!                              selvedge_host_report(slot) ─▶ complete?
 //! ```
+//!
+//! What changes between frames is in `scene.rs`.
 
 use crate::border::{Failure, SelvedgeStatus, Sized, argument, border, free, given, handle, place, taken};
 use crate::model::SelvedgeModel;
 use crate::renderer::{NO_VIEW, SelvedgeView};
-use glam::{DAffine3, DVec3};
+use crate::scene::Added;
 use selvedge::ash::vk;
 use selvedge::ash::vk::Handle;
 use selvedge::gpu::{HostDevice, Image, RawDevice, Requirements, load_instance};
@@ -17,7 +19,7 @@ use selvedge::model::Model;
 use selvedge::picture::Outputs;
 use selvedge::renderer::{Aovs, FrameInput, Renderer, TargetFormats, Targets};
 use std::ffi::{c_char, c_void};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// vkGetInstanceProcAddr.
 pub type SelvedgeGetInstanceProcAddr =
@@ -114,7 +116,7 @@ pub struct SelvedgeReport {
 /// A renderer on the host's device. One thread uses it at a time.
 pub struct SelvedgeHost {
     renderer: Mutex<Renderer>,
-    model: Mutex<Option<Arc<Model>>>,
+    added: Mutex<Added>,
     formats: TargetFormats,
     slots: usize,
 }
@@ -158,7 +160,7 @@ unsafe impl Sized for SelvedgeTargets {}
 // SAFETY: as above
 unsafe impl Sized for SelvedgeReport {}
 
-fn render(error: impl std::fmt::Display) -> Failure {
+pub(crate) fn render(error: impl std::fmt::Display) -> Failure {
     Failure(SelvedgeStatus::Render, error.to_string())
 }
 
@@ -262,8 +264,8 @@ pub unsafe extern "C" fn selvedge_host_new(
         let slots = if vulkan.slots == 0 { 2 } else { vulkan.slots as usize };
         // SAFETY: as the caller promises
         let renderer = unsafe { Renderer::new(lent, formats, slots) }.map_err(render)?;
-        let (renderer, model) = (Mutex::new(renderer), Mutex::default());
-        *place = Box::into_raw(Box::new(SelvedgeHost { renderer, model, formats, slots }));
+        let (renderer, added) = (Mutex::new(renderer), Mutex::default());
+        *place = Box::into_raw(Box::new(SelvedgeHost { renderer, added, formats, slots }));
         Ok(())
     })
 }
@@ -278,18 +280,22 @@ fn outputs(bits: u32) -> Result<Outputs, Failure> {
 }
 
 impl SelvedgeHost {
-    fn renderer(&self) -> std::sync::MutexGuard<'_, Renderer> {
+    pub(crate) fn renderer(&self) -> MutexGuard<'_, Renderer> {
         self.renderer.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn slot(&self, slot: u32) -> Result<usize, Failure> {
+    pub(crate) fn added(&self) -> MutexGuard<'_, Added> {
+        self.added.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(crate) fn slot(&self, slot: u32) -> Result<usize, Failure> {
         let all = self.slots;
         usize::try_from(slot).ok().filter(|slot| *slot < all).ok_or_else(|| argument(format!("slot {slot} of {all}")))
     }
 
-    fn model(&self) -> Result<Arc<Model>, Failure> {
-        let model = self.model.lock().unwrap_or_else(PoisonError::into_inner);
-        model.clone().ok_or_else(|| argument("no model was uploaded"))
+    /// All models of the scene, as changes have made them.
+    pub(crate) fn model(&self) -> Result<Arc<Model>, Failure> {
+        self.renderer().model().cloned().ok_or_else(|| argument("no model was uploaded"))
     }
 }
 
@@ -310,16 +316,16 @@ pub unsafe extern "C" fn selvedge_host_upload(
         let (host, model, view) = unsafe { (handle("host", host)?, handle("model", model)?, taken(view, NO_VIEW)?) };
         // SAFETY: as the caller promises
         let scene = unsafe { view.scene(host.formats.outputs.edge, &model.loaded.model) }?;
-        let shared = Arc::clone(&model.loaded.model);
-        host.renderer().upload_shared(Arc::clone(&shared), scene, &|_| ()).map_err(render)?;
-        *host.model.lock().unwrap_or_else(PoisonError::into_inner) = Some(shared);
+        host.renderer().upload_shared(Arc::clone(&model.loaded.model), scene, &|_| ()).map_err(render)?;
+        host.added().clear();
         Ok(())
     })
 }
 
 /// Records a frame into a VkCommandBuffer of the host's. Only size, camera, style, curvature_range (which a host sets:
 /// where it is 0, the whole model is sampled), background and tolerance of `view` are read. With a null background the
-/// host's picture stays where no model is drawn. The frame that was recorded into the slot before has finished.
+/// host's picture stays where no model is drawn. A standard view shows all of the scene as it is then. The frame that was
+/// recorded into the slot before has finished.
 ///
 /// # Safety
 /// Pointers are null or point to what they say. `commands` is recording, outside rendering, on the host's queue family,
@@ -411,48 +417,6 @@ pub unsafe extern "C" fn selvedge_host_report(
         };
         // SAFETY: as the caller promises
         unsafe { given(report, value) }
-    })
-}
-
-/// Moves an instance, counted from 0. `columns` takes part to model coordinates: the columns x, y, z and the
-/// translation, millimetres. The next frame shows the new place; the model is not uploaded again.
-///
-/// # Safety
-/// Pointers are null or point to what they say; `columns` to 12 numbers.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn selvedge_host_set_transform(
-    host: *const SelvedgeHost,
-    instance: u64,
-    columns: *const f64,
-) -> SelvedgeStatus {
-    border(|| {
-        // SAFETY: as the caller promises
-        let (host, columns) = unsafe { (handle("host", host)?, columns.cast::<[f64; 12]>().as_ref()) };
-        let columns = columns.ok_or_else(|| argument("the transform is a null pointer"))?;
-        host.model()?;
-        let [x, y, z, t] = [0, 3, 6, 9].map(|k| DVec3::from_slice(&columns[k..k + 3]));
-        let instance = usize::try_from(instance).unwrap_or(usize::MAX);
-        let changed = host.renderer().set_transform(instance, DAffine3::from_cols(x, y, z, t));
-        changed.map_err(|error| argument(error.to_string()))
-    })
-}
-
-/// Shows (not 0) or hides an instance, counted from 0.
-///
-/// # Safety
-/// The pointer is null or points to a value of its type.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn selvedge_host_set_visible(
-    host: *const SelvedgeHost,
-    instance: u64,
-    visible: u32,
-) -> SelvedgeStatus {
-    border(|| {
-        // SAFETY: as the caller promises
-        let host = unsafe { handle("host", host) }?;
-        host.model()?;
-        let instance = usize::try_from(instance).unwrap_or(usize::MAX);
-        host.renderer().set_visible(instance, visible != 0).map_err(|error| argument(error.to_string()))
     })
 }
 

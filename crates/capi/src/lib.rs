@@ -17,4 +17,5 @@ mod host;
 mod model;
 mod picture;
 mod renderer;
+mod scene;
 mod snap;

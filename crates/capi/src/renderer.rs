@@ -229,7 +229,14 @@ impl SelvedgeView {
         let samples = self.samples.max(1).to_string();
         let samples: Samples =
             samples.parse().map_err(|error: selvedge::picture::UnknownSamples| argument(error.to_string()))?;
-        let sun = Some(DVec3::from(self.sun)).filter(|sun| *sun != DVec3::ZERO);
+        let sun = DVec3::from(self.sun);
+        if !sun.is_finite() {
+            return Err(argument(format!("the direction towards the sun must be three finite numbers, not {sun}")));
+        }
+        let sun = Some(sun).filter(|sun| *sun != DVec3::ZERO);
+        if !self.ambient.is_finite() {
+            return Err(argument(format!("the radius of ambient occlusion must be finite, not {}", self.ambient)));
+        }
         let smooth = smooth(None, samples);
         let ambient = match self.ambient {
             radius if radius < 0.0 => Some(Ambient::None),

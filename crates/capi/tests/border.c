@@ -107,6 +107,9 @@ static int views(const SelvedgeRenderer* renderer, const SelvedgeModel* model)
     BAD((bad.edges = "all", bad.line_width = -1.0), "width");
     BAD(bad.samples = 3, "1, 4 or 8");
     BAD(bad.tolerance = NAN, "0.1");
+    BAD(bad.sun[1] = NAN, "towards the sun");
+    BAD(bad.ambient = INFINITY, "ambient occlusion");
+    BAD((bad.style = "mean-curvature", bad.curvature_range = -1.0), "above 0");
     BAD(bad.eye[0] = INFINITY, "not a number");
     BAD((bad.eye[2] = 9.0, bad.up[2] = 1.0), "up direction");
     BAD((bad.eye[0] = 9.0, bad.fov = 20.0, bad.ortho = 2.0), "exclude");

@@ -126,6 +126,15 @@ fn the_host_records_into_its_own_command_buffer() {
     assert!(String::from_utf8_lossy(&refused.stderr).contains("none.step"));
 }
 
+/// On a device of the host's: mistakes are refused, instances change, models come and go, and a pixel is read back.
+/// Needs Vulkan's header, too.
+#[test]
+fn the_hosts_scene_lives() {
+    let into = tempfile::tempdir().expect("a folder");
+    let program = linked(&folder().join("tests/host_scene.c"), into.path(), &["-lvulkan"]);
+    good(&watched(&program).output().expect("it runs"));
+}
+
 /// Null handles, null pointers and wrong sizes are refused; no device is made.
 #[test]
 fn a_hosts_mistakes_are_refused() {

@@ -8,8 +8,8 @@ use std::path::Path;
 fn the_header_is_that_of_the_sources() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(folder.join("cbindgen.toml")).expect("a configuration");
-    let sources =
-        ["border", "host", "model", "picture", "renderer", "snap"].map(|name| folder.join(format!("src/{name}.rs")));
+    let sources = ["border", "host", "scene", "model", "picture", "renderer", "snap"]
+        .map(|name| folder.join(format!("src/{name}.rs")));
     let builder = sources.iter().fold(cbindgen::Builder::new().with_config(config), |b, path| b.with_src(path));
     let mut made = Vec::new();
     builder.generate().expect("a header").write(&mut made);

@@ -52,6 +52,18 @@ int main(void)
     WANT(selvedge_host_report(NULL, 0, &report), "host is a null pointer");
     WANT(selvedge_host_set_transform(NULL, 0, columns), "host is a null pointer");
     WANT(selvedge_host_set_visible(NULL, 0, 1), "host is a null pointer");
+    const float colour[4] = { 0 };
+    WANT(selvedge_host_set_colour(NULL, 0, colour), "host is a null pointer");
+    WANT(selvedge_host_set_selected(NULL, 0, colour), "host is a null pointer");
+    uint64_t number = 0;
+    WANT(selvedge_host_add(NULL, NULL, &number), "host is a null pointer");
+    WANT(selvedge_host_remove(NULL, 1), "host is a null pointer");
+    WANT(selvedge_host_instances(NULL, 1, &number, &number), "host is a null pointer");
+    SelvedgeHit hit = { .struct_size = sizeof hit };
+    WANT(selvedge_host_pick(NULL, 0, 0), "host is a null pointer");
+    WANT(selvedge_host_picked(NULL, 0, &hit), "host is a null pointer");
+    WANT(selvedge_host_discard(NULL, 0), "host is a null pointer");
+    WANT(selvedge_host_device_lost(NULL), "host is a null pointer");
     selvedge_host_free(NULL);
     return 0;
 }

@@ -95,6 +95,10 @@ impl Settings<'_> {
                 self.tolerance
             )));
         }
+        let sun = self.sun.map(DVec3::from);
+        if let Some(sun) = sun.filter(|sun| !sun.is_finite() || *sun == DVec3::ZERO) {
+            return Err(PyValueError::new_err(format!("sun must be a direction: finite and not 0, not {sun}")));
+        }
         let samples: Samples = word(&self.samples.to_string())?;
         let style = word::<Style>(&self.style)?;
         if let Some(range) = self.curvature_range.filter(|range| !(range.is_finite() && *range > 0.0))
@@ -110,7 +114,7 @@ impl Settings<'_> {
             samples,
             smooth: smooth(self.smooth.as_deref().map(word::<Smooth>).transpose()?, samples),
             ambient: self.ao.as_ref().map(|said| word::<Ambient>(&said.str()?.to_string())).transpose()?,
-            sun: self.sun.map(DVec3::from),
+            sun,
             style,
             curvature_range: self.curvature_range,
             tolerance: self.tolerance,

@@ -191,6 +191,12 @@ def test_cameras_that_show_nothing_are_refused(renderer, block):
         ({"tolerance": 0.0}, ValueError, "0.1"),
         ({"tolerance": float("nan")}, ValueError, "0.1"),
         ({"camera": "iso"}, TypeError, "camera"),
+        ({"sun": (0.0, 0.0, 0.0)}, ValueError, "sun must"),
+        ({"sun": (0.0, float("nan"), 1.0)}, ValueError, "sun must"),
+        ({"sun": "up"}, TypeError, "sun"),
+        ({"ao": "some"}, ValueError, "no radius"),
+        ({"ao": -1.0}, ValueError, "no radius"),
+        ({"style": "mean-curvature", "curvature_range": 0.0}, ValueError, "above 0"),
     ],
 )
 def test_wrong_arguments_are_typed_errors(renderer, block, arguments, error, told):
@@ -224,6 +230,23 @@ def test_a_picture_beyond_the_devices_memory(block):
     for wrong in (0, -1.0, float("nan")):
         with pytest.raises(ValueError, match="limit_mib must be above 0"):
             selvedge.Renderer(limit_mib=wrong)
+
+
+def test_a_model_outlives_the_renderers_that_drew_it(block):
+    drawn = []
+    for _ in range(2):
+        with selvedge.Renderer() as renderer:
+            drawn.append(renderer.render(block, size=SIZE, outputs=["depth"]))
+    assert drawn[0].depth.tobytes() == drawn[1].depth.tobytes()
+    for call in (
+        lambda: renderer.render(block, size=SIZE),
+        lambda: list(renderer.render_many([{"model": block, "size": SIZE}])),
+        lambda: selvedge.check(block, size=SIZE, renderer=renderer),
+    ):
+        with pytest.raises(selvedge.ClosedError):
+            call()
+    with pytest.raises(ValueError, match="judged"):
+        selvedge.check(block, size=SIZE, judged=0)
 
 
 def test_no_such_device():

@@ -119,7 +119,7 @@ pub(super) fn read(
         count: 0,
         root: None,
         triangles: twist::MOST_TRIANGLES,
-        budget: Budget::default(),
+        budget: Budget::whole(),
         muted: 0,
         again: MOST_AGAIN,
     };

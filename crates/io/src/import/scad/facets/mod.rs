@@ -39,13 +39,11 @@ pub(super) enum Shape {
 #[derive(Debug)]
 pub(super) struct Budget(usize);
 
-impl Default for Budget {
-    fn default() -> Self {
+impl Budget {
+    pub fn whole() -> Self {
         Self(50_000_000)
     }
-}
 
-impl Budget {
     /// Takes a share; fails when nothing is left.
     fn spend(&mut self, share: usize) -> Result<(), String> {
         self.0 = self.0.saturating_sub(share);

@@ -66,7 +66,7 @@ fn hulls_hold_all_points_and_no_more() {
 
 #[test]
 fn differences_and_intersections_of_solids() {
-    let budget = &mut Budget::default();
+    let budget = &mut Budget::whole();
     let (big, small) = (block([0.0; 3], [3.0; 3]), block([1.0; 3], [2.0; 3]));
     near(big.clone().without(small.clone(), budget).unwrap().volume(), 26.0);
     near(small.clone().without(big.clone(), budget).unwrap().volume(), 0.0);
@@ -98,7 +98,7 @@ fn meshes_become_convex_cells() {
     let mesh = ell();
     assert!(mesh.is_closed());
     near(mesh.volume(), 10.0);
-    let cells = cells::of_mesh(&mesh.points, &mesh.triangles, &mut Budget::default()).unwrap();
+    let cells = cells::of_mesh(&mesh.points, &mesh.triangles, &mut Budget::whole()).unwrap();
     near(cells.iter().map(Cell::volume).sum(), 10.0);
     let inner = |p: DVec3| cells.iter().any(|c| c.planes().iter().all(|(n, d)| n.dot(p) <= *d));
     for p in scattered(4000).into_iter().map(|p| 2.0 * p + 1.5) {
@@ -110,13 +110,13 @@ fn meshes_become_convex_cells() {
     assert!(error.contains("more facets"), "{error}");
     // a mesh that does not close has no inside
     let open = Triangles { triangles: mesh.triangles[1..].to_vec(), ..mesh };
-    let error = Body::mesh(open).without(block([0.0; 3], [1.0; 3]), &mut Budget::default()).unwrap_err();
+    let error = Body::mesh(open).without(block([0.0; 3], [1.0; 3]), &mut Budget::whole()).unwrap_err();
     assert!(error.contains("do not close"), "{error}");
 }
 
 #[test]
 fn minkowski_sums() {
-    let budget = &mut Budget::default();
+    let budget = &mut Budget::whole();
     let sum = block([0.0; 3], [1.0, 2.0, 3.0]).minkowski(block([-1.0; 3], [1.0; 3]), budget).unwrap();
     near(sum.volume(), 3.0 * 4.0 * 5.0);
     let bounds = sum.bounds();
@@ -179,7 +179,7 @@ fn shadows_and_cuts() {
     let tilted = DAffine3::from_rotation_x(0.6_f64.asin());
     near(block([0.0; 3], [10.0; 3]).moved(&tilted).shadow().area(), 140.0);
     near(Body::mesh(ell()).shadow().area(), 5.0);
-    let budget = &mut Budget::default();
+    let budget = &mut Budget::whole();
     let at = |z: f64| DAffine3::from_translation(DVec3::Z * -z);
     near(Body::mesh(ell()).moved(&at(1.0)).cut(budget).unwrap().area(), 5.0);
     near(block([0.0; 3], [2.0, 3.0, 4.0]).cut(budget).unwrap().area(), 6.0); // the plane holds its bottom

@@ -1,0 +1,357 @@
+// A scene that lives on a host's device: what is refused, instances that change, models that come and go, a pixel that is
+// read back, a frame that is discarded, a device that is lost.
+
+#include <math.h>
+#include <string.h>
+
+#include "../../../examples/c/commands.h"
+
+#define WANT(status, call, words)                                                                            \
+    do {                                                                                                     \
+        SelvedgeStatus got = (call);                                                                         \
+        const char* said = selvedge_last_error();                                                            \
+        if (got != (status) || strstr(said, (words)) == NULL || ((status) == SELVEDGE_STATUS_OK) != !*said) { \
+            fprintf(stderr, "line %d: status %d: \"%s\"\n", __LINE__, (int)got, said);                       \
+            return 1;                                                                                        \
+        }                                                                                                    \
+    } while (0)
+#define HOLDS(what)                                                       \
+    do {                                                                  \
+        if (!(what)) {                                                    \
+            return fprintf(stderr, "line %d: %s\n", __LINE__, #what), 1;  \
+        }                                                                 \
+    } while (0)
+
+#define OK SELVEDGE_STATUS_OK
+#define ARGUMENT SELVEDGE_STATUS_ARGUMENT
+#define RENDER SELVEDGE_STATUS_RENDER
+
+enum { WIDTH = 64, HEIGHT = 48 };
+
+static const char BLOCK[] = "v 0 0 0\nv 0 0 5\nv 0 3 0\nv 0 3 5\nv 2 0 0\nv 2 0 5\nv 2 3 0\nv 2 3 5\n"
+                            "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
+
+static const Use NEW = { VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, 0, VK_IMAGE_LAYOUT_UNDEFINED };
+static const Use CLEAR = { VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL };
+static const Use DRAW = { VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+                          VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
+                          VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL };
+static const Use COPY = { VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT,
+                          VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL };
+
+// From above, two pixels a millimetre: the top of the block is 4 x 6 pixels in the middle, 45 mm away.
+static SelvedgeView above(void)
+{
+    return (SelvedgeView){
+        .struct_size = sizeof(SelvedgeView),
+        .width = WIDTH,
+        .height = HEIGHT,
+        .eye = { 1.0, 1.5, 50.0 },
+        .target = { 1.0, 1.5, 0.0 },
+        .up = { 0.0, 1.0, 0.0 },
+        .ortho = HEIGHT / 2.0,
+        .ambient = -1.0,
+    };
+}
+
+typedef struct {
+    Image colour, instance;
+} Images;
+
+static SelvedgeTarget target(const Image* image)
+{
+    return (SelvedgeTarget){ (uint64_t)(uintptr_t)image->image, (uint64_t)(uintptr_t)image->view };
+}
+
+static SelvedgeTargets targets_of(const Images* images)
+{
+    return (SelvedgeTargets){
+        .struct_size = sizeof(SelvedgeTargets),
+        .colour = target(&images->colour),
+        .instance = target(&images->instance),
+    };
+}
+
+// Begins a command buffer with the host's black, and records the model over it.
+static int record(const Device* d, const Images* images, const SelvedgeHost* host)
+{
+    if (begin_commands(d) != 0) {
+        return 1;
+    }
+    barrier(d, &images->colour, NEW, CLEAR);
+    const VkClearColorValue black = { .float32 = { 0.0f, 0.0f, 0.0f, 1.0f } };
+    vkCmdClearColorImage(d->commands, images->colour.image, CLEAR.layout, &black, 1, &WHOLE);
+    barrier(d, &images->colour, CLEAR, DRAW);
+    barrier(d, &images->instance, NEW, DRAW);
+    const SelvedgeView view = above();
+    const SelvedgeTargets targets = targets_of(images);
+    SELVEDGE(selvedge_host_record(host, d->commands, 0, &view, &targets));
+    return 0;
+}
+
+// Draws until the frame is whole.
+static int draw(const Device* d, const Images* images, const SelvedgeHost* host)
+{
+    SelvedgeReport report = { .struct_size = sizeof report };
+    do {
+        if (record(d, images, host) != 0) {
+            return 1;
+        }
+        barrier(d, &images->colour, DRAW, COPY);
+        read_back(d, &images->colour);
+        barrier(d, &images->instance, DRAW, COPY);
+        read_back(d, &images->instance);
+        if (submit_and_wait(d) != 0) {
+            return 1;
+        }
+        SELVEDGE(selvedge_host_report(host, 0, &report));
+        HOLDS(report.recorded == 1 && report.clamps == 0);
+    } while (!report.complete);
+    return 0;
+}
+
+typedef struct {
+    size_t left, right; // pixels that show a model: the right side begins 2 mm beside the block
+    size_t red, green; // those of these colours
+    size_t instances[3]; // pixels of the image of instances with the numbers 0, 1 and 2
+} Seen;
+
+static int look(const Device* d, const Images* images, const SelvedgeHost* host, Seen* seen)
+{
+    if (draw(d, images, host) != 0) {
+        return 1;
+    }
+    void* bytes = NULL;
+    VK(vkMapMemory(d->device, images->colour.copy_memory, 0, VK_WHOLE_SIZE, 0, &bytes));
+    *seen = (Seen){ 0 };
+    for (size_t i = 0; i < WIDTH * HEIGHT; ++i) {
+        const unsigned char* p = (const unsigned char*)bytes + 4 * i;
+        if (p[0] > 40 || p[1] > 40 || p[2] > 40) {
+            *(i % WIDTH < WIDTH / 2 + 6 ? &seen->left : &seen->right) += 1;
+            seen->red += p[0] > p[1] + 40;
+            seen->green += p[1] > p[0] + 40;
+        }
+    }
+    vkUnmapMemory(d->device, images->colour.copy_memory);
+    VK(vkMapMemory(d->device, images->instance.copy_memory, 0, VK_WHOLE_SIZE, 0, &bytes));
+    for (size_t i = 0; i < WIDTH * HEIGHT; ++i) {
+        const uint32_t number = ((const uint32_t*)bytes)[i];
+        HOLDS(number < 3);
+        seen->instances[number] += 1;
+    }
+    vkUnmapMemory(d->device, images->instance.copy_memory);
+    return 0;
+}
+
+// The border of a block is at borders of pixels: smooth edges may show in those beside it.
+static int is_block(size_t pixels)
+{
+    return pixels >= 24 && pixels <= 44;
+}
+
+#define LOOK() HOLDS(look(d, images, host, &seen) == 0)
+
+static int mistakes_before_an_upload(const Device* d, const Images* images, const SelvedgeHost* host,
+                                     const SelvedgeModel* model)
+{
+    SelvedgeView view = above();
+    const SelvedgeTargets targets = targets_of(images);
+    SelvedgeReport report = { .struct_size = sizeof report, .recorded = 7 };
+    WANT(OK, selvedge_host_report(host, 0, &report), "");
+    HOLDS(report.recorded == 0 && report.complete == 0);
+    WANT(ARGUMENT, selvedge_host_report(host, 1, &report), "slot 1 of 1");
+    WANT(ARGUMENT, selvedge_host_report(host, 0, NULL), "null pointer");
+    WANT(ARGUMENT, selvedge_host_record(host, d->commands, 0, &view, &targets), "no model was uploaded");
+    WANT(ARGUMENT, selvedge_host_set_visible(host, 0, 1), "no model was uploaded");
+    WANT(ARGUMENT, selvedge_host_pick(host, 0, 0), "no model was uploaded");
+    uint64_t added = 7;
+    WANT(ARGUMENT, selvedge_host_add(host, model, &added), "no model was uploaded");
+    HOLDS(added == 0);
+    WANT(ARGUMENT, selvedge_host_upload(host, NULL, &view), "model is a null pointer");
+    view.samples = 3;
+    WANT(ARGUMENT, selvedge_host_upload(host, model, &view), "1, 4 or 8");
+    return 0;
+}
+
+static int mistakes_of_frames(const Device* d, const Images* images, const SelvedgeHost* host)
+{
+    const SelvedgeView view = above();
+    const SelvedgeTargets targets = targets_of(images);
+    WANT(ARGUMENT, selvedge_host_record(host, NULL, 0, &view, &targets), "command buffer is a null handle");
+    WANT(ARGUMENT, selvedge_host_record(host, d->commands, 1, &view, &targets), "slot 1 of 1");
+#define BAD(of, what, change, status, words)                                                       \
+    do {                                                                                           \
+        SelvedgeView bad_view = view;                                                              \
+        SelvedgeTargets bad_targets = targets;                                                     \
+        bad_##of.what = (change);                                                                  \
+        WANT(status, selvedge_host_record(host, d->commands, 0, &bad_view, &bad_targets), words);  \
+    } while (0)
+    BAD(view, width, 0, ARGUMENT, "no pixels");
+    BAD(view, tolerance, NAN, ARGUMENT, "0.1");
+    BAD(view, background, "whitish", ARGUMENT, "CSS colour");
+    BAD(targets, colour.image, 0, ARGUMENT, "lacks its image of colour");
+    BAD(targets, colour.view, 0, ARGUMENT, "has no view");
+    BAD(targets, depth.image, 1, ARGUMENT, "without an image of depth");
+    BAD(targets, instance.image, 0, ARGUMENT, "lacks its image of instance");
+    BAD(targets, x, 1, RENDER, "is not within it");
+    BAD(targets, struct_size, 2, ARGUMENT, "struct_size");
+    return 0;
+}
+
+static int changes(const Device* d, const Images* images, const SelvedgeHost* host)
+{
+    Seen seen;
+    LOOK();
+    HOLDS(is_block(seen.left) && seen.right == 0 && seen.red == 0 && seen.green == 0);
+    HOLDS(seen.instances[1] == 24 && seen.instances[2] == 0);
+
+    double moved[12] = { 1, 0, 0, 0, 1, 0, 0, 0, 1, 6, 0, 0 };
+    WANT(OK, selvedge_host_set_transform(host, 0, moved), "");
+    LOOK();
+    HOLDS(seen.left == 0 && is_block(seen.right));
+    WANT(ARGUMENT, selvedge_host_set_transform(host, 1, moved), "no instance 1");
+    WANT(ARGUMENT, selvedge_host_set_transform(host, UINT64_MAX, moved), "no instance");
+    WANT(ARGUMENT, selvedge_host_set_transform(host, 0, NULL), "transform is a null pointer");
+    moved[9] = NAN;
+    WANT(ARGUMENT, selvedge_host_set_transform(host, 0, moved), "is not finite");
+
+    WANT(OK, selvedge_host_set_visible(host, 0, 0), "");
+    LOOK();
+    HOLDS(seen.left == 0 && seen.right == 0);
+    WANT(ARGUMENT, selvedge_host_set_visible(host, 1, 0), "no instance 1");
+    WANT(OK, selvedge_host_set_visible(host, 0, 1), "");
+
+    const float red[4] = { 1, 0, 0, 1 }, green[4] = { 0, 1, 0, 1 }, no_colour[4] = { 2, 0, 0, 1 };
+    WANT(OK, selvedge_host_set_colour(host, 0, red), "");
+    LOOK();
+    HOLDS(is_block(seen.right) && is_block(seen.red));
+    WANT(ARGUMENT, selvedge_host_set_colour(host, 1, red), "no instance 1");
+    WANT(ARGUMENT, selvedge_host_set_colour(host, 0, no_colour), "not between 0 and 1");
+    WANT(OK, selvedge_host_set_selected(host, 0, green), "");
+    LOOK();
+    HOLDS(seen.red == 0 && is_block(seen.green));
+    WANT(ARGUMENT, selvedge_host_set_selected(host, 0, no_colour), "not between 0 and 1");
+    WANT(OK, selvedge_host_set_selected(host, 0, NULL), "");
+    WANT(OK, selvedge_host_set_colour(host, 0, NULL), "");
+    LOOK();
+    HOLDS(is_block(seen.right) && seen.red == 0 && seen.green == 0);
+    return 0;
+}
+
+static int models(const Device* d, const Images* images, const SelvedgeHost* host, const SelvedgeModel* model)
+{
+    Seen seen;
+    uint64_t added = 0, first = 7, count = 7;
+    WANT(ARGUMENT, selvedge_host_add(host, NULL, &added), "model is a null pointer");
+    WANT(ARGUMENT, selvedge_host_add(host, model, NULL), "null pointer");
+    WANT(OK, selvedge_host_add(host, model, &added), "");
+    WANT(OK, selvedge_host_instances(host, added, &first, &count), "");
+    HOLDS(added != 0 && first == 1 && count == 1);
+    WANT(ARGUMENT, selvedge_host_instances(host, added, NULL, &count), "null pointer");
+    WANT(ARGUMENT, selvedge_host_instances(host, added + 1, &first, &count), "no added model has the number");
+
+    SelvedgeHit hit = { .struct_size = sizeof hit, .face = 7 };
+    WANT(OK, selvedge_host_pick(host, WIDTH / 2, HEIGHT / 2), "");
+    LOOK();
+    HOLDS(is_block(seen.left) && is_block(seen.right));
+    HOLDS(seen.instances[1] == 24 && seen.instances[2] == 24);
+    WANT(OK, selvedge_host_picked(host, 0, &hit), "");
+    HOLDS(hit.face > 0 && hit.part == 2 && hit.instance == 2 && hit.edge_of_part == 0);
+    HOLDS(fabs(hit.point[0] - 1.25) < 1e-6 && fabs(hit.point[1] - 1.25) < 1e-6 && fabs(hit.point[2] - 5.0) < 1e-6);
+    HOLDS(fabs(hit.normal[2] - 1.0) < 1e-9 && fabs(hit.depth - 45.0) < 1e-6);
+    WANT(OK, selvedge_host_pick(host, 0, 0), "");
+    LOOK();
+    WANT(OK, selvedge_host_picked(host, 0, &hit), "");
+    HOLDS(hit.face == 0 && hit.instance == 0 && hit.depth == 0.0);
+    WANT(ARGUMENT, selvedge_host_picked(host, 1, &hit), "slot 1 of 1");
+    WANT(ARGUMENT, selvedge_host_picked(host, 0, NULL), "null pointer");
+
+    WANT(OK, selvedge_host_remove(host, added), "");
+    LOOK();
+    HOLDS(seen.left == 0 && is_block(seen.right));
+    WANT(ARGUMENT, selvedge_host_remove(host, added), "no added model has the number");
+    WANT(ARGUMENT, selvedge_host_set_visible(host, first, 1), "no instance 1");
+
+    // an upload takes the place of all, and no number comes back
+    uint64_t gone = 0, again = 0;
+    const SelvedgeView view = above();
+    WANT(OK, selvedge_host_add(host, model, &gone), "");
+    WANT(OK, selvedge_host_upload(host, model, &view), "");
+    WANT(ARGUMENT, selvedge_host_remove(host, gone), "no added model has the number");
+    WANT(OK, selvedge_host_add(host, model, &again), "");
+    HOLDS(again != gone && again != added);
+    WANT(OK, selvedge_host_remove(host, again), "");
+    LOOK();
+    HOLDS(is_block(seen.left) && seen.right == 0);
+    return 0;
+}
+
+// A frame that the host drops, and then a device that is lost.
+static int losses(const Device* d, const Images* images, const SelvedgeHost* host)
+{
+    Seen seen;
+    const double moved[12] = { 1, 0, 0, 0, 1, 0, 0, 0, 1, 6, 0, 0 };
+    WANT(OK, selvedge_host_set_transform(host, 0, moved), "");
+    HOLDS(record(d, images, host) == 0);
+    VK(vkEndCommandBuffer(d->commands));
+    WANT(ARGUMENT, selvedge_host_discard(host, 1), "slot 1 of 1");
+    WANT(OK, selvedge_host_discard(host, 0), "");
+    SelvedgeReport report = { .struct_size = sizeof report };
+    WANT(OK, selvedge_host_report(host, 0, &report), "");
+    HOLDS(report.recorded == 0);
+    LOOK();
+    HOLDS(seen.left == 0 && is_block(seen.right));
+
+    WANT(OK, selvedge_host_device_lost(host), "");
+    const SelvedgeView view = above();
+    const SelvedgeTargets targets = targets_of(images);
+    WANT(RENDER, selvedge_host_record(host, d->commands, 0, &view, &targets), "lost");
+    return 0;
+}
+
+static int run(Device* d, Images* images, const SelvedgeModel* model, SelvedgeHost** host)
+{
+    if (make_device(d) != 0 || make_commands(d) != 0 || make_image(d, &images->colour) != 0
+        || make_image(d, &images->instance) != 0) {
+        return 1;
+    }
+    SelvedgeVulkan vulkan = lent(d);
+    vulkan.outputs = SELVEDGE_THICKNESS;
+    WANT(ARGUMENT, selvedge_host_new(&vulkan, host), "thickness");
+    vulkan = lent(d);
+    vulkan.queue_family = 99;
+    WANT(ARGUMENT, selvedge_host_new(&vulkan, host), "queue family 99");
+    vulkan = lent(d);
+    vulkan.colour_format = 0;
+    WANT(ARGUMENT, selvedge_host_new(&vulkan, host), "VK_FORMAT_UNDEFINED");
+    vulkan = lent(d);
+    vulkan.outputs = SELVEDGE_INSTANCE;
+    WANT(OK, selvedge_host_new(&vulkan, host), "");
+    if (mistakes_before_an_upload(d, images, *host, model) != 0) {
+        return 1;
+    }
+    const SelvedgeView view = above();
+    WANT(OK, selvedge_host_upload(*host, model, &view), "");
+    return mistakes_of_frames(d, images, *host) != 0 || changes(d, images, *host) != 0
+        || models(d, images, *host, model) != 0 || losses(d, images, *host) != 0;
+}
+
+int main(void)
+{
+    SelvedgeModel* model = NULL;
+    WANT(OK, selvedge_open_bytes(BLOCK, sizeof BLOCK - 1, "block.obj", NULL, &model), "");
+    Images images = { .colour = { .width = WIDTH, .height = HEIGHT, .format = FORMAT },
+                      .instance = { .width = WIDTH, .height = HEIGHT, .format = VK_FORMAT_R32_UINT } };
+    Device device = { 0 };
+    SelvedgeHost* host = NULL;
+    const int bad = run(&device, &images, model, &host);
+    selvedge_host_free(host);
+    selvedge_model_free(model);
+    if (device.device != NULL) {
+        free_image(&device, &images.colour);
+        free_image(&device, &images.instance);
+    }
+    free_device(&device);
+    return bad;
+}
