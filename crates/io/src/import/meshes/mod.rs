@@ -23,13 +23,15 @@ use super::source::OtherFiles;
 use super::{Import, ImportError, ImportReport, Place, Warnings, stem};
 use crate::model::{Colour, Instance, Mesh, Model, Part};
 use glam::{DAffine3, DVec3};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 
 /// Colours of one object, each of which is a mesh of its own.
 const MOST_COLOURS: usize = 256;
 /// Objects that a file may place: components of components multiply.
 const MOST_PLACED: usize = 1 << 16;
+/// Notes that the refusal of a file without triangles has.
+const MOST_TOLD: usize = 3;
 
 /// One object of a file.
 #[derive(Debug, Default)]
@@ -41,6 +43,8 @@ struct Piece {
     normals: Vec<[DVec3; 3]>,
     /// Of each triangle, or none.
     colours: Vec<Option<Colour>>,
+    /// Polygons of fewer than three corners, which are no triangles.
+    few: usize,
 }
 
 /// Where an object stands.
@@ -50,6 +54,9 @@ struct Placement {
     transform: DAffine3,
     name: String,
 }
+
+/// A kind of warning, and what it says.
+type Note = (&'static str, String);
 
 /// The objects of a file.
 #[derive(Debug, Default)]
@@ -61,7 +68,7 @@ struct Found {
     /// Every piece once, where there are none.
     placements: Vec<Placement>,
     /// Things left out, by kind.
-    notes: Vec<(&'static str, String)>,
+    notes: Vec<Note>,
     /// Files that were read, too.
     files: Vec<PathBuf>,
 }
@@ -93,6 +100,7 @@ impl Piece {
         if corners.len() > super::facets::MAX_CORNERS {
             return Err(format!("{} corners", corners.len()));
         }
+        self.few += usize::from(corners.len() < 3);
         for t in triangulate(&corners) {
             self.triangles.push(t.map(|i| face[i as usize]));
             self.colours.push(colour);
@@ -101,7 +109,7 @@ impl Piece {
     }
 
     /// Triangles of one colour each, numbered from `id`.
-    fn meshes(self, id: u32, notes: &mut Vec<(&'static str, String)>) -> Result<Vec<Mesh>, Wrong> {
+    fn meshes(self, id: u32, notes: &mut Vec<Note>) -> Result<Vec<Mesh>, Wrong> {
         let wrong = |e: crate::model::MeshError| Wrong::new(e.to_string());
         let key = |c: &Option<Colour>| c.map(|c| c.map(f32::to_bits));
         let mut places: HashMap<Option<[u32; 4]>, usize> = HashMap::new();
@@ -199,8 +207,14 @@ pub(super) fn read(bytes: &[u8], name: &str, ending: &str, files: OtherFiles<'_>
     };
     let Found { format, unit, pieces, mut placements, mut notes, files } =
         found(bytes, ending, files).map_err(wrong)?;
+    let few: usize = pieces.iter().map(|p| p.few).sum();
+    if few > 0 {
+        notes.push(("polygons left out", format!("{few} of fewer than three corners")));
+    }
     if pieces.iter().all(|p| p.triangles.is_empty()) {
-        return Err(ImportError::Mesh { file: name.to_owned(), message: format!("{format} without a triangle") });
+        let beside: String = notes.iter().take(MOST_TOLD).map(|(kind, note)| format!("; {kind}: {note}")).collect();
+        let message = format!("{format} without a triangle{beside}");
+        return Err(ImportError::Mesh { file: name.to_owned(), message });
     }
     let mut model = Model { name: stem(name), unit: unit.clone(), ..Model::default() };
     let units = if unit.is_empty() { Vec::new() } else { vec![unit] };
@@ -209,6 +223,11 @@ pub(super) fn read(bytes: &[u8], name: &str, ending: &str, files: OtherFiles<'_>
         let all =
             |(piece, p): (usize, &Piece)| Placement { piece, transform: DAffine3::IDENTITY, name: p.name.clone() };
         placements = pieces.iter().enumerate().map(all).collect();
+    }
+    let placed: HashSet<usize> = placements.iter().map(|p| p.piece).collect();
+    for (k, piece) in pieces.iter().enumerate().filter(|(k, p)| !placed.contains(k) && !p.triangles.is_empty()) {
+        let called = if piece.name.is_empty() { format!("object {} of the file", k + 1) } else { piece.name.clone() };
+        notes.push(("object not placed", called));
     }
     let mut id = 1;
     let mut places = Vec::with_capacity(pieces.len());
