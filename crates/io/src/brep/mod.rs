@@ -44,6 +44,7 @@ mod loops;
 mod map;
 mod nest;
 mod order;
+mod outline;
 mod pieces;
 mod preimage;
 mod rims;
