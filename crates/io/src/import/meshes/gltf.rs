@@ -163,7 +163,7 @@ fn piece(primitive: &Primitive<'_>, buffers: &[Vec<u8>]) -> Result<Piece, String
     if let Some(far) = corners.iter().find(|i| **i as usize >= points.len()) {
         return Err(format!("vertex {far} of {}", points.len()));
     }
-    let few = usize::from(primitive.mode() == Mode::Triangles && corners.len() % 3 != 0);
+    let few = usize::from(primitive.mode() == Mode::Triangles && !corners.len().is_multiple_of(3));
     let triangles: Vec<[u32; 3]> = match primitive.mode() {
         Mode::TriangleStrip => {
             let turned = |(k, w): (usize, &[u32])| if k % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] };

@@ -114,7 +114,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Found, Wrong> {
         let corners: Option<Vec<u32>> = strip.iter().map(|i| u32::try_from(*i).ok()).collect();
         let corners = corners.ok_or_else(|| Wrong::new(format!("strip {k}: a corner that is no vertex")))?;
         for (turn, w) in corners.windows(3).enumerate().filter(|(_, w)| w[0] != w[1] && w[1] != w[2] && w[2] != w[0]) {
-            let triangle = if turn % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] };
+            let triangle = if turn.is_multiple_of(2) { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] };
             let colour = own.filter(|_| !varies);
             piece.polygon(&triangle, colour).map_err(|what| Wrong::new(format!("strip {k}: {what}")))?;
         }
