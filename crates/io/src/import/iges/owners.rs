@@ -18,8 +18,14 @@ pub(super) struct Unreached {
 }
 
 /// The entities that are not reached from `roots`. `pairs`: owner and member, in any order; `placeable`: the subfigures.
-/// Cost: that of sorting the pairs.
+/// Cost: that of sorting the pairs, or one pass where no circle is possible.
 pub(super) fn unreached(roots: &[u32], mut pairs: Vec<(u32, u32)>, placeable: &[u32]) -> Unreached {
+    // most writers put every owner behind its members, or every one before
+    let ordered =
+        pairs.iter().all(|(owner, member)| member < owner) || pairs.iter().all(|(owner, member)| owner < member);
+    if ordered && placeable.is_empty() {
+        return Unreached::default();
+    }
     pairs.sort_unstable();
     let members = |owner: u32| {
         let first = pairs.partition_point(|(o, _)| *o < owner);
