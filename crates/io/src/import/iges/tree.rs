@@ -332,8 +332,10 @@ impl<'g, 'a> Tree<'g, 'a> {
                     self.sheet(entity, body);
                 }
                 100..=106 | 110 | 112 | 116 | 126 | 130 | 142 => self.not_drawn(entity, "a curve or a point"),
-                182 => self.geometry.note("entity left out", id, entity.unsupported().to_string()),
-                _ => {}
+                182 | 420 => self.geometry.note("entity left out", id, entity.unsupported().to_string()),
+                // definitions, annotation, finite elements; what is drawn elsewhere, or blanked
+                0 | 100..=148 | 150..=230 | 302..=322 | 402..=430 | 502..=514 => {}
+                kind => self.geometry.note("entity of an unknown type not drawn", id, format!("type {kind}")),
             }
         }
         (first..self.bodies.len()).filter(|i| !self.bodies[*i].operand).collect()

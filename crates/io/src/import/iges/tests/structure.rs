@@ -133,6 +133,16 @@ fn what_nothing_draws_is_reported() {
     assert!(i.model.instances.is_empty());
 }
 
+/// A type of a writer's own, and the instance of a network subfigure, whose definition is not read.
+#[test]
+fn types_that_are_not_read_are_reported() {
+    let i = import(&[e(SQUARE), e("5001,1.,2.;"), e("420,9,0.,0.,0.,1.,1.,1.,0,,0,0;"), e("410,1,1.;")]);
+    let told: Vec<_> = i.warnings.iter().map(|w| w.message.clone()).collect();
+    let network = "entity left out: type 420 form 0 is not supported (#5)";
+    assert_eq!(told, ["entity of an unknown type not drawn: type 5001", network]);
+    assert_eq!(i.model.instances.len(), 1);
+}
+
 /// A mark of byte order moves no column.
 #[test]
 fn a_mark_of_byte_order_is_no_column() {
