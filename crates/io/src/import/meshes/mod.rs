@@ -181,6 +181,12 @@ fn found(bytes: &[u8], ending: &str, files: OtherFiles<'_>) -> Result<Found, Wro
     }
 }
 
+/// A note on polygons that are no triangles, if there are any.
+fn polygons_left_out(pieces: &[Piece]) -> Option<Note> {
+    let few: usize = pieces.iter().map(|p| p.few).sum();
+    (few > 0).then(|| ("polygons left out", format!("{few} of fewer than three corners")))
+}
+
 /// The format of the bytes, if they begin as one of these files does.
 pub(super) fn recognise(bytes: &[u8]) -> Option<&'static str> {
     let start = bytes.trim_ascii_start();
@@ -207,10 +213,7 @@ pub(super) fn read(bytes: &[u8], name: &str, ending: &str, files: OtherFiles<'_>
     };
     let Found { format, unit, pieces, mut placements, mut notes, files } =
         found(bytes, ending, files).map_err(wrong)?;
-    let few: usize = pieces.iter().map(|p| p.few).sum();
-    if few > 0 {
-        notes.push(("polygons left out", format!("{few} of fewer than three corners")));
-    }
+    notes.extend(polygons_left_out(&pieces));
     if pieces.iter().all(|p| p.triangles.is_empty()) {
         let beside: String = notes.iter().take(MOST_TOLD).map(|(kind, note)| format!("; {kind}: {note}")).collect();
         let message = format!("{format} without a triangle{beside}");
@@ -260,20 +263,23 @@ pub(super) fn read(bytes: &[u8], name: &str, ending: &str, files: OtherFiles<'_>
 #[cfg(feature = "scad-facets")]
 pub(super) type Triangles = (Vec<DVec3>, Vec<[u32; 3]>);
 
-/// The triangles of a file, each object where it stands.
+/// The triangles of a file, each object where it stands, and what is left out but colours.
 #[cfg(feature = "scad-facets")]
-pub(super) fn pieces(bytes: &[u8], ending: &str) -> Result<Vec<Triangles>, String> {
+pub(super) fn pieces(bytes: &[u8], ending: &str) -> Result<(Vec<Triangles>, Vec<String>), String> {
     let wrong = |w: Wrong| match w.line {
         Some(line) => format!("line {line}: {}", w.message),
         None => w.message,
     };
     let alone = OtherFiles { folder: None, most: 0 };
-    let Found { pieces, placements, .. } = found(bytes, ending, alone).map_err(wrong)?;
+    let Found { pieces, placements, mut notes, .. } = found(bytes, ending, alone).map_err(wrong)?;
+    notes.extend(polygons_left_out(&pieces));
+    let lost = notes.into_iter().filter(|(kind, _)| kind.ends_with("left out") && !kind.starts_with("colours"));
+    let lost = lost.map(|(kind, note)| format!("{kind}: {note}")).collect();
     if let Some(piece) = pieces.iter().find(|p| p.points.iter().any(|x| !x.is_finite())) {
         return Err(format!("{}: a coordinate is not finite", piece.name));
     }
     if placements.is_empty() {
-        return Ok(pieces.into_iter().map(|p| (p.points, p.triangles)).collect());
+        return Ok((pieces.into_iter().map(|p| (p.points, p.triangles)).collect(), lost));
     }
     let placed = |p: &Placement| {
         let piece = &pieces[p.piece];
@@ -281,5 +287,5 @@ pub(super) fn pieces(bytes: &[u8], ending: &str) -> Result<Vec<Triangles>, Strin
         let points = piece.points.iter().map(|x| p.transform.transform_point3(*x)).collect();
         (points, piece.triangles.iter().map(turn).collect())
     };
-    Ok(placements.iter().map(placed).collect())
+    Ok((placements.iter().map(placed).collect(), lost))
 }
