@@ -20,9 +20,10 @@ mod xml;
 
 use super::facets::{closed, triangulate};
 use super::source::OtherFiles;
-use super::{Import, ImportError, ImportReport, Place, Warnings, stem};
+use super::{Import, ImportError, ImportReport, Place, Warnings, stem, text};
 use crate::model::{Colour, Instance, Mesh, Model, Part};
 use glam::{DAffine3, DVec3};
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 
@@ -169,14 +170,29 @@ impl Shared {
     }
 }
 
+/// The bytes as UTF-8 without a mark of byte order, where the text within has this word at its beginning; else the bytes,
+/// which may be no text.
+fn utf8<'b>(bytes: &'b [u8], word: &str) -> Cow<'b, [u8]> {
+    let begins = |text: &[u8]| {
+        // a letter before it may say what vertices have: COFF
+        let start = text.trim_ascii_start();
+        start.windows(word.len()).take(2).any(|w| w.eq_ignore_ascii_case(word.as_bytes()))
+    };
+    match text::utf16(bytes) {
+        Some((text, _)) if begins(text.as_bytes()) => Cow::Owned(text.into_bytes()),
+        _ if begins(text::without_mark(bytes)) => Cow::Borrowed(text::without_mark(bytes)),
+        _ => Cow::Borrowed(bytes),
+    }
+}
+
 /// The objects in the bytes, and in other files that they name. `ending` gives the format.
 fn found(bytes: &[u8], ending: &str, files: OtherFiles<'_>) -> Result<Found, Wrong> {
     match ending {
-        "stl" => stl::read(bytes),
-        "off" => off::read(bytes),
-        "ply" => ply::read(bytes),
+        "stl" => stl::read(&utf8(bytes, "solid")),
+        "off" => off::read(&utf8(bytes, "off")),
+        "ply" => ply::read(&utf8(bytes, "ply")),
         "3mf" => threemf::read(bytes),
-        "amf" => amf::read(bytes),
+        "amf" => amf::read(&utf8(bytes, "<")),
         _ => gltf::read(bytes, files),
     }
 }
@@ -189,6 +205,7 @@ fn polygons_left_out(pieces: &[Piece]) -> Option<Note> {
 
 /// The format of the bytes, if they begin as one of these files does.
 pub(super) fn recognise(bytes: &[u8]) -> Option<&'static str> {
+    let bytes = text::without_mark(bytes);
     let start = bytes.trim_ascii_start();
     if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") {
         return Some("ply");

@@ -150,7 +150,7 @@ fn damaged_3mf() {
     assert!(refusal(&zipped(&[("3D/3dmodel.model", &many)]), "3mf").contains("more than 65536 objects"));
 }
 
-const AMF: &str = r#"<?xml version="1.0"?>
+pub(super) const AMF: &str = r#"<?xml version="1.0"?>
 <amf unit="inch"><material id="3"><color><r>0</r><g>1</g><b>0</b></color></material>
 <object id="a"><metadata type="name">tetra</metadata><mesh><vertices>
 <vertex><coordinates><x>0</x><y>0</y><z>0</z></coordinates></vertex>

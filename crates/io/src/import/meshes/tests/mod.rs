@@ -201,6 +201,28 @@ fn what_is_lost_of_triangles_is_reported() {
     assert!(unnamed.ends_with("polygons left out: 4 of fewer than three corners"), "{unnamed}");
 }
 
+/// Text with a mark of byte order, and text in UTF-16 of either order.
+#[test]
+fn texts_of_other_encodings() {
+    let ply = ply("ascii", b"0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+    let coff = OFF.replacen("OFF", "COFF", 1);
+    for (text, ending) in [
+        (text_stl(), "stl"),
+        (OFF.to_owned(), "off"),
+        (coff, "off"),
+        (String::from_utf8(ply).unwrap(), "ply"),
+        (archives::AMF.to_owned(), "amf"),
+    ] {
+        let whole = volume(&import(text.as_bytes(), ending).model);
+        let marked = format!("\u{feff}{text}");
+        let little: Vec<u8> = marked.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = marked.encode_utf16().flat_map(u16::to_be_bytes).collect();
+        for bytes in [marked.into_bytes(), little, big] {
+            assert_eq!(volume(&import(&bytes, ending).model), whole, "{ending}");
+        }
+    }
+}
+
 /// Colours of OFF's vertices: one for all, several, entries of a table; the same for faces.
 #[test]
 fn colours_of_off() {
