@@ -1,7 +1,7 @@
 //! OpenSCAD's flattened solids, the output of `openscad -o x.csg`.
 //!
 //! ```text
-//!   text ──lex──▶ words ──args──▶ node(name, arguments) ──one frame a node on a stack──▶ Assembly ──▶ Solid
+//!   text ──lex──▶ words ──args, names──▶ node(name, arguments) ──one frame a node on a stack──▶ Assembly ──▶ Solid
 //!
 //!   difference() {        Frame { Difference, placed }      first child minus the rest
 //!     cube(size = 2);       flat, body: leaves              a node without solids below it is skipped
