@@ -17,8 +17,8 @@ pub(super) struct Unreached {
     pub unplaced: Vec<u32>,
 }
 
-/// The entities that are not reached from `roots`. `pairs`: owner and member, in any order; `placeable`: the subfigures.
-/// Cost: that of sorting the pairs, or one pass where no circle is possible.
+/// The entities that are not reached from `roots`. `pairs`: owner and member, in any order; `placeable`: the
+/// subfigures. Cost: that of sorting the pairs, or one pass where no circle is possible.
 pub(super) fn unreached(roots: &[u32], mut pairs: Vec<(u32, u32)>, placeable: &[u32]) -> Unreached {
     // most writers put every owner behind its members, or every one before
     let ordered =

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Metres become millimetres, and y, which points up, becomes z. Points and lines, textures, colours of vertices, morph
-//! targets, animations and skins are left out, with a warning; extensions are named. Every access to a buffer is checked:
-//! a file may state any offset.
+//! targets, animations and skins are left out, with a warning; extensions are named. Every access to a buffer is
+//! checked: a file may state any offset.
 //!
 //! Source: Khronos Group, *glTF 2.0 Specification*.
 

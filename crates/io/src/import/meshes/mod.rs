@@ -170,8 +170,8 @@ impl Shared {
     }
 }
 
-/// The bytes as UTF-8 without a mark of byte order, where the text within has this word at its beginning; else the bytes,
-/// which may be no text.
+/// The bytes as UTF-8 without a mark of byte order, where the text within has this word at its beginning; else the
+/// bytes, which may be no text.
 fn utf8<'b>(bytes: &'b [u8], word: &str) -> Cow<'b, [u8]> {
     let begins = |text: &[u8]| {
         // a letter before it may say what vertices have: COFF

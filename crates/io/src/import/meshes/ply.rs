@@ -4,8 +4,8 @@
 //!   element vertex: x y z [red green blue [alpha]]     element face: a list of corners [red green blue [alpha]]
 //! ```
 //!
-//! Triangles may stand in strips (`tristrips`), which -1 ends. Colours of vertices would vary over a triangle: where they
-//! differ they are left out, with a warning.
+//! Triangles may stand in strips (`tristrips`), which -1 ends. Colours of vertices would vary over a triangle: where
+//! they differ they are left out, with a warning.
 //!
 //! Source: G. Turk, *The PLY Polygon File Format*, 1994.
 

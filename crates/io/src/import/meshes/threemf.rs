@@ -9,8 +9,8 @@
 //!       <build>      <item objectid transform p:path/>
 //! ```
 //!
-//! Triangles have one colour, that of their first corner. Textures and composite materials have none here, and beams are
-//! not drawn. Warnings say so, and name extensions that a file calls required and that are not read.
+//! Triangles have one colour, that of their first corner. Textures and composite materials have none here, and beams
+//! are not drawn. Warnings say so, and name extensions that a file calls required and that are not read.
 //!
 //! Source: 3MF Consortium, *3D Manufacturing Format core specification* 1.3; *materials extension* 1.2 (colour groups);
 //! *production extension* 1.1 (paths).

@@ -1,7 +1,7 @@
 //! SVG drawings as regions, through usvg.
 //!
-//! Every path is filled, by odd and even; y runs upwards from the lower edge of the sheet; millimetres. Texts and pictures
-//! are left out.
+//! Every path is filled, by odd and even; y runs upwards from the lower edge of the sheet; millimetres. Texts and
+//! pictures are left out.
 
 use super::Region;
 use glam::DVec2;

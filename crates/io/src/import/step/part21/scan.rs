@@ -139,8 +139,8 @@ pub(super) fn scan<'a>(
 }
 
 impl<'a> Scanner<'a, '_> {
-    /// Reports what stands behind the end: a second file, or anything but a signature, white space and DOS's mark of the
-    /// end.
+    /// Reports what stands behind the end: a second file, or anything but a signature, white space and DOS's mark of
+    /// the end.
     fn after_end(&mut self) {
         loop {
             self.blanks();
