@@ -24,6 +24,7 @@
 //! | [`ExactTrim`] | winding number in single precision, as the GPU does without a table | a few arcs |
 //! | [`Face::bounds`], [`Part::bounds`], [`Model::bounds`] | how far the kept points reach | branch and bound |
 //! | [`crossing`] | whether loops cross | nearly linear |
+//! | [`each_pair`] | boxes that meet | nearly linear |
 //! | [`chord_bend, segment_count`] | how many chords stay within a tolerance | closed form |
 //!
 //! Sources: R. Wu, J. Peters, *Correct resolution rendering of trimmed spline surfaces*, 2014 (the
@@ -50,6 +51,7 @@ pub use classify::RectSide;
 pub use crossing::{Crossing, crossing};
 pub use exact::{AT_HIGH, AT_LOW, Cell, Entry, ExactTrim, MARGIN};
 pub use flatten::{chord_bend, polyline, segment_count};
+pub use meet::{Box2, each_pair};
 pub use piece::{MonotonePiece, monotone_pieces};
 pub use table::TrimTable;
 pub use winding::LoopIndex;

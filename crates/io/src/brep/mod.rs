@@ -19,7 +19,7 @@
 //! | curves and surfaces made ready | `curve`, `pieces`, `edge`; `support`, `invert`, `spline` |
 //! | curves and surfaces derived from other ones | `derived`, `approximate` |
 //! | edge → pre-image in the standard's own `(u, v)` | `order`; `trace`, `border`, `lines`, `preimage`, `strand` |
-//! | strands → loops without seams, oriented | `loops`; `rims`, `cut`; `nest` |
+//! | strands → loops without seams, oriented | `loops`; `rims`, `cut`; `nest`, `outline` |
 //! | the standard's `(u, v)` → a spline's | `law`, `carrier`, `fit` |
 //! | loops stated in a spline's own `(u, v)` | `given` |
 //!
@@ -44,6 +44,7 @@ mod loops;
 mod map;
 mod nest;
 mod order;
+mod outline;
 mod pieces;
 mod preimage;
 mod rims;

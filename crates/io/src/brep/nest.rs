@@ -3,9 +3,11 @@
 use super::cut::cut_open;
 use super::edge::EdgeCurve;
 use super::loops::{Limits, Loop, area};
+use super::outline::Outline;
 use super::rims::natural_rims;
 use super::support::Support;
 use super::{BuildError, law};
+use crate::trim::{Box2, each_pair};
 use glam::DVec2;
 use std::rc::Rc;
 
@@ -65,7 +67,7 @@ fn gather(support: &Support, loops: &mut [Loop]) {
     let Some(outer) = (0..loops.len()).max_by(|a, b| size(*a).total_cmp(&size(*b))) else { return };
     let centre = |p: &[DVec2]| p.iter().sum::<DVec2>() / p.len() as f64;
     let middle = centre(&polygons[outer]);
-    let around = bounds(&polygons[outer]);
+    let around = Outline::new(&polygons[outer]);
     for i in (0..loops.len()).filter(|i| *i != outer) {
         let mut candidates = vec![DVec2::ZERO];
         for ku in -1..=1 {
@@ -78,7 +80,7 @@ fn gather(support: &Support, loops: &mut [Loop]) {
         }
         let inside = |by: &DVec2| {
             let moved: Vec<DVec2> = polygons[i].iter().map(|p| *p + *by).collect();
-            contains((&polygons[outer][..], around), &moved)
+            around.contains(&moved)
         };
         if let Some(by) = candidates.into_iter().find(inside) {
             loops[i] = loops[i].clone().shifted(by);
@@ -117,12 +119,13 @@ fn share_inside(support: &Support, loops: &[Loop]) -> f64 {
     let by = |axis: usize, k: i32| f64::from(k) * support.periods[axis].unwrap_or(0.0);
     let mut odd = vec![false; (STEPS * STEPS) as usize];
     for polygon in &polygons {
-        let (lo, hi) = bounds(polygon);
+        let outline = Outline::new(polygon);
+        let (lo, hi) = outline.bounds;
         for by in copies(0).flat_map(|k| copies(1).map(move |l| DVec2::new(by(0, k), by(1, l)))) {
             let (lo, hi) = (lo - by, hi - by);
             for i in samples(u, lo.x, hi.x) {
                 for j in samples(v, lo.y, hi.y) {
-                    odd[(i * STEPS + j) as usize] ^= encloses(polygon, DVec2::new(at(u, i), at(v, j)) + by);
+                    odd[(i * STEPS + j) as usize] ^= outline.encloses(DVec2::new(at(u, i), at(v, j)) + by);
                 }
             }
         }
@@ -147,64 +150,23 @@ fn orient(support: &Support, loops: &mut [Loop]) {
     }
 }
 
-/// How many other polygons hold each one. A sweep along the axis on which the polygons are shorter compares only
-/// polygons whose boxes meet.
+/// How many other polygons hold each one. Only polygons whose boxes meet are compared.
 pub(super) fn depths(polygons: &[Vec<DVec2>]) -> Vec<usize> {
-    let boxes: Vec<(DVec2, DVec2)> = polygons.iter().map(|p| bounds(p)).collect();
-    let whole = boxes.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), (lo, hi)| (a.min(*lo), b.max(*hi)));
-    let share: DVec2 = boxes.iter().map(|(lo, hi)| (hi - lo) / (whole.1 - whole.0)).sum();
-    let axis = usize::from(share.y < share.x);
-    let mut order: Vec<usize> = (0..polygons.len()).collect();
-    order.sort_by(|a, b| boxes[*a].0[axis].total_cmp(&boxes[*b].0[axis]));
+    let outlines: Vec<Outline<'_>> = polygons.iter().map(|p| Outline::new(p)).collect();
+    let boxes: Vec<Box2> = outlines.iter().map(|o| o.bounds).collect();
     let mut depths = vec![0; polygons.len()];
-    let mut open: Vec<usize> = Vec::new();
-    for i in order {
-        open.retain(|j| boxes[*j].1[axis] >= boxes[i].0[axis]);
-        for &j in &open {
-            if (boxes[i].0.cmple(boxes[j].1) & boxes[j].0.cmple(boxes[i].1)).all() {
-                depths[i] += usize::from(contains((&polygons[j][..], boxes[j]), &polygons[i]));
-                depths[j] += usize::from(contains((&polygons[i][..], boxes[i]), &polygons[j]));
-            }
-        }
-        open.push(i);
-    }
+    let none: Option<()> = each_pair(&boxes, |i, j| {
+        depths[i] += usize::from(outlines[j].contains(&polygons[i]));
+        depths[j] += usize::from(outlines[i].contains(&polygons[j]));
+        None
+    });
+    debug_assert!(none.is_none(), "every pair is visited");
     depths
-}
-
-fn bounds(polygon: &[DVec2]) -> (DVec2, DVec2) {
-    polygon.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)))
 }
 
 fn closed(mut polygon: Vec<DVec2>) -> Vec<DVec2> {
     polygon.extend(polygon.first().copied());
     polygon
-}
-
-/// `inner` lies in `outer`, by the vote of its edge midpoints: loops may touch.
-fn contains((outer, (lo, hi)): (&[DVec2], (DVec2, DVec2)), inner: &[DVec2]) -> bool {
-    // at most some thirty votes of the longest loops
-    let stride = inner.len().div_ceil(32).max(1);
-    let mut votes = (0, 0);
-    for w in inner.windows(2).step_by(stride) {
-        let p = 0.5 * (w[0] + w[1]);
-        votes.1 += 1;
-        if (p.cmpge(lo) & p.cmple(hi)).all() && encloses(outer, p) {
-            votes.0 += 1;
-        }
-    }
-    2 * votes.0 > votes.1
-}
-
-/// Parity of the crossings of a ray towards `+u`; edges are bottom-open, top-closed.
-fn encloses(polygon: &[DVec2], p: DVec2) -> bool {
-    let mut inside = false;
-    for w in polygon.windows(2) {
-        if (w[0].y < p.y) != (w[1].y < p.y) {
-            let u = w[0].x + (w[1].x - w[0].x) * ((p.y - w[0].y) / (w[1].y - w[0].y));
-            inside ^= u > p.x;
-        }
-    }
-    inside
 }
 
 /// Moves all loops by whole periods so that their box begins in the natural range.

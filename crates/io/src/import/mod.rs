@@ -24,6 +24,7 @@ mod damage;
 mod error;
 mod external;
 mod facets;
+mod far;
 mod guard;
 mod iges;
 mod junctions;
@@ -243,6 +244,7 @@ fn read(bytes: &[u8], name: &str, folder: Option<&Path>, options: &Options<'_>) 
     if !matches!(format, Some(Format::Mesh(_))) {
         text.tell(name, &mut import);
     }
+    far::leave_out(&mut import, name);
     Ok((import, mentions))
 }
 

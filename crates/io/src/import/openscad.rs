@@ -23,13 +23,18 @@ const BETWEEN: Duration = Duration::from_millis(10);
 /// Bytes of a line of messages; the rest of a longer one counts as a line of its own.
 const MOST_LINE: u64 = 1000;
 
-/// The exit status of a shell whose command is not found.
-const NOT_FOUND: i32 = 127;
+/// The last line of the shell script's messages where there is no such program. Its exit status says less: a program
+/// that runs may end with any.
+const MISSING: &str = "selvedge: no such program";
 
-/// The shell script that runs its arguments as a command. Its input is an empty pipe, which ends when this process
-/// closes it or ends. The process in brackets waits for that end, and then kills its group.
+/// The shell script that runs its arguments, from the second on, as a command; the first is [`MISSING`]. Its input is
+/// an empty pipe, which ends when this process closes it or ends. The process in brackets waits for that end, and then
+/// kills its group.
 #[cfg(unix)]
-const WATCHED: &str = r#"exec 3<&0; (read -r _ <&3; kill -s KILL 0) >/dev/null 2>&1 & exec 3<&-; "$@" </dev/null"#;
+const WATCHED: &str = concat!(
+    r#"missing=$1; shift; command -v "$1" >/dev/null 2>&1 || { echo "$missing" >&2; exit 1; }; "#,
+    r#"exec 3<&0; (read -r _ <&3; kill -s KILL 0) >/dev/null 2>&1 & exec 3<&-; "$@" </dev/null"#,
+);
 
 /// Whether the file is a program of OpenSCAD's, by its name.
 pub(super) fn is_program(path: &Path) -> bool {
@@ -46,7 +51,7 @@ fn open_by(openscad: &Path, path: &Path, name: &str, options: &Options<'_>) -> R
     source::load(path, name, options)?;
     let Output { status, text, said } = run(openscad, path, name, options)?;
     if !status.success() {
-        if status.code() == Some(NOT_FOUND) {
+        if said.last == MISSING {
             return Err(not_installed(name));
         }
         let last = if said.last.is_empty() { "no word".to_owned() } else { said.last };
@@ -126,7 +131,7 @@ fn run(openscad: &Path, path: &Path, name: &str, options: &Options<'_>) -> Resul
 fn command(program: &Path) -> Command {
     use std::os::unix::process::CommandExt;
     let mut command = Command::new("/bin/sh");
-    command.process_group(0).args(["-c", WATCHED, "sh"]).arg(program);
+    command.process_group(0).args(["-c", WATCHED, "sh", MISSING]).arg(program);
     command
 }
 
@@ -261,6 +266,8 @@ mod tests {
         assert!(told("echo 'ERROR: odd' >&2; echo end >&2; exit 1").ends_with(": ERROR: odd"));
         assert!(told("echo; echo end >&2; exit 1").ends_with(": end"));
         assert!(told("exit 3").contains("exit status: 3"));
+        // the exit status of a shell whose command is not found says nothing of openscad
+        assert!(told("echo 'no such library' >&2; exit 127").ends_with("(exit status: 127): no such library"));
         let none = Folder::new("none", "");
         fs::remove_file(none.path.join("openscad")).unwrap();
         let error = none.open(&Options::default()).unwrap_err();

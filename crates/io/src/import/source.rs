@@ -139,6 +139,7 @@ pub(super) fn inflated(bytes: Vec<u8>, name: &str, limit: u64) -> Result<Vec<u8>
     flate2::read::MultiGzDecoder::new(bytes.as_slice())
         .take(limit + 1)
         .read_to_end(&mut text)
+        .map_err(|e| io::Error::new(e.kind(), format!("gzip data that are cut off or damaged: {e}")))
         .map_err(|source| ImportError::Read { file: name.to_owned(), source })?;
     if text.len() as u64 > limit {
         return Err(ImportError::Expansion { file: name.to_owned(), limit });
@@ -170,6 +171,9 @@ mod tests {
         let bomb = gzip(&vec![b' '; 1 << 24]);
         assert!(matches!(inflated(bomb, "bomb.gz", ALL), Err(ImportError::Expansion { .. })));
         assert!(matches!(inflated(vec![b' '; 11], "b.stp", 10), Err(ImportError::TooLarge { limit: 10, .. })));
+        let whole = gzip(b"ISO-10303-21;");
+        let cut = inflated(whole[..whole.len() - 10].to_vec(), "c.gz", ALL).unwrap_err().to_string();
+        assert!(cut.starts_with("c.gz: gzip data that are cut off or damaged: "), "{cut}");
         // less than a bomb, but more than the limit
         assert!(matches!(inflated(gzip(&[b' '; 5000]), "b.gz", 4000), Err(ImportError::Expansion { limit: 4000, .. })));
     }

@@ -102,13 +102,18 @@ pub(super) fn utf16(bytes: &[u8]) -> Option<(String, bool)> {
     Some((text.into_owned(), !lost))
 }
 
+/// The bytes behind a mark of byte order of UTF-8, if they begin with one.
+pub(super) fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
 /// The whole text as UTF-8, without a mark of byte order.
 pub(super) fn utf8(bytes: &[u8]) -> Text<'_> {
     if let Some((text, whole)) = utf16(bytes) {
         let told = (!whole).then(|| "it is UTF-16 with units that are no characters".to_owned());
         return Text { text: Cow::Owned(text), told };
     }
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let bytes = without_mark(bytes);
     if let Ok(text) = std::str::from_utf8(bytes) {
         return Text { text: Cow::Borrowed(text), told: None };
     }

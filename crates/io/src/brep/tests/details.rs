@@ -93,3 +93,21 @@ fn depths_are_those_of_all_pairs() {
         assert_eq!(super::super::nest::depths(&polygons), (0..count).map(pairs).collect::<Vec<_>>());
     }
 }
+
+/// A row of holes along each axis, within a border of thousands of edges. Neither the pairs nor the edges that a hole is
+/// compared with grow with all of them: a test of each with each takes minutes.
+#[test]
+fn depths_of_many_holes_within_a_long_border() {
+    const EACH: u32 = 20_000;
+    let square = |at: DVec2| {
+        let corners = [(0.0, 0.0), (0.25, 0.0), (0.25, 0.25), (0.0, 0.25), (0.0, 0.0)];
+        corners.map(|(u, v)| at + DVec2::new(u, v)).to_vec()
+    };
+    let reach = f64::from(EACH);
+    let border = |k: u32| DVec2::from_angle(std::f64::consts::TAU * f64::from(k % EACH) / reach) * 2.0 * reach;
+    let mut polygons = vec![(0..=EACH).map(border).collect()];
+    polygons.extend((0..EACH).map(|k| square(DVec2::new(f64::from(k), 0.5))));
+    polygons.extend((0..EACH).map(|k| square(DVec2::new(0.5, f64::from(k) + 1.0))));
+    let depths = super::super::nest::depths(&polygons);
+    assert!(depths[0] == 0 && depths[1..].iter().all(|depth| *depth == 1));
+}

@@ -26,7 +26,7 @@ mod tube;
 mod words;
 
 use super::solid::Fault;
-use super::{Import, ImportError, ImportReport, Warnings};
+use super::{Import, ImportError, ImportReport, Place, Warnings};
 use crate::model::Model;
 use expand::Expansion;
 use object::{Database, Object};
@@ -68,6 +68,12 @@ pub(super) fn read(text: &str, name: &str) -> Result<Import, ImportError> {
         expansion.add(top, &mut warnings).map_err(failed)?;
     }
     model.solids.extend(expansion.finish().map_err(failed)?);
+    let primitives = model.solids.iter().flat_map(|solid| solid.primitives());
+    let flat: HashSet<u32> = primitives.filter(|p| p.to_own().is_none()).map(|p| p.id).collect();
+    for object in objects.values().filter(|o| flat.contains(&o.id)) {
+        let what = || format!("the axes of `{}`, or matrices around it, are flat", object.record.name);
+        warnings.push("empty solid", || Place::Line(object.record.line), what);
+    }
     report.bodies = model.solids.len();
     let warnings = warnings.finish(&mut report);
     Ok(Import { model, warnings, report, ..Import::default() })

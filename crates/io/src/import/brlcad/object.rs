@@ -136,6 +136,16 @@ fn colour(value: &str) -> Option<Colour> {
     Some(colour_of(parts?[..].try_into().ok()?))
 }
 
+/// The colour, or a warning.
+fn told_colour(value: &str, line: usize, warnings: &mut Warnings) -> Option<Colour> {
+    let found = colour(value);
+    if found.is_none() {
+        let shown: String = value.chars().take(40).collect();
+        warnings.push("colour left out", || Place::Line(line), || format!("`{shown}` is no red, green and blue"));
+    }
+    found
+}
+
 /// Objects of the form with `put`.
 pub(super) fn read<'a>(
     text: &'a str,
@@ -158,16 +168,27 @@ pub(super) fn read<'a>(
                 } else {
                     None
                 };
-                let own = value("rgb").and_then(colour);
+                let own = value("rgb").and_then(|rgb| told_colour(rgb, line, warnings));
                 database.add(record, combination, own, report, warnings);
             }
             "put" => return Err(Fault::new(line, "`put` without name and kind")),
             "units" => report.units.extend(words.get(1).map(|u| (*u).to_owned())),
             "attr" => {
-                let Some(object) = words.get(2).and_then(|n| database.objects.get_mut(n)) else { continue };
+                let Some(name) = words.get(2) else { continue };
+                let Some(object) = database.objects.get_mut(name) else {
+                    // names of the database's own begin so
+                    if !name.starts_with('_') {
+                        warnings.push(
+                            "attributes not used",
+                            || Place::Line(line),
+                            || format!("`{name}` does not exist"),
+                        );
+                    }
+                    continue;
+                };
                 for pair in words[3..].chunks_exact(2) {
-                    if let ("rgb" | "color", Some(c)) = (pair[0], colour(pair[1])) {
-                        object.colour = Some(c);
+                    if matches!(pair[0], "rgb" | "color") {
+                        object.colour = told_colour(pair[1], line, warnings).or(object.colour);
                     }
                     object.combination.iter_mut().for_each(|c| attribute(c, pair[0], pair[1]));
                 }

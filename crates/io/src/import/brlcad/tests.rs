@@ -25,6 +25,25 @@ const BOX: &str =
     "put box arb8 V1 {0 0 0} V2 {4 0 0} V3 {4 4 0} V4 {0 4 0} V5 {0 0 4} V6 {4 0 4} V7 {4 4 4} V8 {0 4 4}\n";
 const ROD: &str = "put rod tgc V {0 0 -1} H {0 0 9} A {1 0 0} B {0 1 0} C {1 0 0} D {0 1 0}\n";
 
+/// What leaves no trace in the picture does so in the warnings.
+#[test]
+fn flat_solids_and_lost_colours_are_reported() {
+    let told = |text: &str| import(text).warnings.iter().map(ToString::to_string).collect::<Vec<_>>();
+    let whole = format!("title {{A box}}\nunits mm\n{BOX}");
+    assert!(told(&whole).is_empty());
+    let ball = "put ball ell V {0 0 0} A {0 0 0} B {0 2 0} C {0 0 3}\n";
+    let flat = "t.asc:4: empty solid: the axes of `ball`, or matrices around it, are flat";
+    assert_eq!(told(&format!("{whole}{ball}")), [flat]);
+    for (line, message) in [
+        ("put all comb rgb {255 0} tree {l box}", "colour left out: `255 0` is no red, green and blue"),
+        ("attr set box rgb red", "colour left out: `red` is no red, green and blue"),
+        ("attr set bux rgb {255 0 0}", "attributes not used: `bux` does not exist"),
+    ] {
+        assert_eq!(told(&format!("{whole}{line}\n")), [format!("t.asc:4: {message}")], "{line}");
+    }
+    assert!(told(&format!("{whole}attr set _GLOBAL units mm\n")).is_empty());
+}
+
 #[test]
 fn a_drilled_box() {
     let moved = "{1 0 0 2 0 1 0 2 0 0 1 0 0 0 0 1}";

@@ -9,7 +9,7 @@
 //!         ─surface, ruled─▶ Carrier                             surfaces, and how their (u, v) map
 //!         ─trim─▶ Sheet   ─solid, swept─▶ Shells                faces, by themselves or with shared edges
 //!         ─csg─▶ Expression         Boolean solids
-//!         ─tree, array, colour─▶ bodies and their places
+//!         ─tree, array, owners, colour─▶ bodies and their places
 //!         ─brep::build_face─▶ Face  in parallel, results in file order
 //! ```
 //!
@@ -30,6 +30,7 @@ mod file;
 mod fit;
 mod geometry;
 mod global;
+mod owners;
 mod ruled;
 mod solid;
 mod spline;
@@ -52,14 +53,14 @@ use tree::{Body, Placement, SOLID_LOST, Tree};
 
 /// Whether the bytes begin like IGES, in any of its forms.
 pub(super) fn recognise(bytes: &[u8]) -> bool {
-    card::recognise(bytes).is_some()
+    card::recognise(text::without_mark(bytes)).is_some()
         || text::utf16(bytes).is_some_and(|(text, _)| card::recognise(text.as_bytes()).is_some())
 }
 
 /// Reads IGES text; `name` is the file's name in messages.
 pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Import, ImportError> {
     let wide = text::utf16(bytes);
-    let bytes = wide.as_ref().map_or(bytes, |(text, _)| text.as_bytes());
+    let bytes = text::without_mark(wide.as_ref().map_or(bytes, |(text, _)| text.as_bytes()));
     let form = |form| ImportError::IgesForm { file: name.to_owned(), form };
     match card::recognise(bytes) {
         None => return Err(ImportError::NotIges { file: name.to_owned() }),

@@ -15,6 +15,7 @@ use super::array;
 use super::csg::Expression;
 use super::entity::{Entity, Fault};
 use super::geometry::{FACE_LOST, Geometry};
+use super::owners::{Unreached, unreached};
 use super::solid::Shells;
 use super::surface::SURFACES;
 use super::trim::Sheet;
@@ -90,7 +91,8 @@ impl<'g, 'a> Tree<'g, 'a> {
             trail: Vec::new(),
             visits: 0,
         };
-        let used = tree.used();
+        let mut pairs = tree.used();
+        let used: HashSet<u32> = pairs.iter().map(|(_, member)| *member).collect();
         let free = geometry.file.entries.iter().filter(|e| !used.contains(&e.id)).map(|e| e.id);
         let free: Vec<u32> = free.collect();
         tree.scope(0, &free, DAffine3::IDENTITY, "");
@@ -98,12 +100,27 @@ impl<'g, 'a> Tree<'g, 'a> {
             let last = free.last().copied().unwrap_or(0);
             geometry.note("subfigure left out", last, format!("all but the first {MAX_INSTANCES} instances"));
         }
+        drop(used);
+        let of_kind = |kind: u16| geometry.file.entries.iter().filter(move |e| e.kind == kind).map(|e| e.id);
+        // a subfigure is drawn where it is placed, so its placements own it
+        let subfigures: Vec<u32> = of_kind(308).collect();
+        let definition = |id| Some((id, Entity::find(geometry.file, id).ok()?.optional(1).ok()??));
+        pairs.extend(of_kind(408).filter_map(definition));
+        let roots: Vec<u32> = free.into_iter().filter(|id| subfigures.binary_search(id).is_err()).collect();
+        let Unreached { circles, unplaced } = unreached(&roots, pairs, &subfigures);
+        for id in circles {
+            geometry.note("entity left out", id, Endless::Cycle(id).to_string());
+        }
+        for id in unplaced {
+            geometry.note("subfigure not placed", id, "nothing that is drawn places it");
+        }
         tree
     }
 
-    /// Entities that are parts of other ones. Fills in the groups, whose members are still drawn by themselves.
-    fn used(&mut self) -> HashSet<u32> {
-        let mut used = HashSet::new();
+    /// Entities that are parts of other ones, each behind its owner. Fills in the groups, whose members are still drawn
+    /// by themselves.
+    fn used(&mut self) -> Vec<(u32, u32)> {
+        let (mut pairs, mut used) = (Vec::new(), Vec::new());
         for entry in &self.geometry.file.entries {
             let Ok(entity) = Entity::find(self.geometry.file, entry.id) else { continue };
             let listed = |count: usize, first: usize, each: usize| {
@@ -144,8 +161,9 @@ impl<'g, 'a> Tree<'g, 'a> {
                 }
                 _ => {}
             }
+            pairs.extend(used.drain(..).map(|member| (entry.id, member)));
         }
-        used
+        pairs
     }
 
     fn full(&self) -> bool {
@@ -314,8 +332,10 @@ impl<'g, 'a> Tree<'g, 'a> {
                     self.sheet(entity, body);
                 }
                 100..=106 | 110 | 112 | 116 | 126 | 130 | 142 => self.not_drawn(entity, "a curve or a point"),
-                182 => self.geometry.note("entity left out", id, entity.unsupported().to_string()),
-                _ => {}
+                182 | 420 => self.geometry.note("entity left out", id, entity.unsupported().to_string()),
+                // definitions, annotation, finite elements; what is drawn elsewhere, or blanked
+                0 | 100..=148 | 150..=230 | 302..=322 | 402..=430 | 502..=514 => {}
+                kind => self.geometry.note("entity of an unknown type not drawn", id, format!("type {kind}")),
             }
         }
         (first..self.bodies.len()).filter(|i| !self.bodies[*i].operand).collect()

@@ -9,10 +9,10 @@
 //!     <constellation id> <instance objectid> <deltax/> … <rx/> …       degrees, about x, then y, then z
 //! ```
 //!
-//! Curved triangles are drawn flat; colours that are formulas are none.
+//! Curved triangles are drawn flat. Colours that are formulas, textures or of vertices are left out. Warnings say so.
 
 use super::xml::{archive, index, line, millimetres, named, number, parse, unpacked};
-use super::{Found, MOST_PLACED, Piece, Placement, Wrong};
+use super::{Found, MOST_PLACED, Note, Piece, Placement, Wrong};
 use crate::import::colour::linear;
 use crate::model::Colour;
 use glam::{DAffine3, DMat3, DVec3};
@@ -61,7 +61,31 @@ pub(super) fn read(bytes: &[u8]) -> Result<Found, Wrong> {
     if found.placements.len() > MOST_PLACED {
         return Err(Wrong::new(format!("more than {MOST_PLACED} objects are placed")));
     }
+    found.notes.extend(flattened(root));
     Ok(found)
+}
+
+/// What the model has in a simpler form.
+fn flattened(root: Node<'_, '_>) -> Vec<Note> {
+    let (mut colours, mut curved) = (0, 0);
+    for node in root.descendants().filter(Node::is_element) {
+        let within = |name: &str| node.parent().is_some_and(|p| p.tag_name().name() == name);
+        match node.tag_name().name() {
+            "color" if within("vertex") || node.parent().and_then(colour).is_none() => colours += 1,
+            "texmap" | "composite" => colours += 1,
+            "normal" if within("vertex") => curved += 1,
+            "edge" if within("vertices") => curved += 1,
+            _ => {}
+        }
+    }
+    let mut notes = Vec::new();
+    if colours > 0 {
+        notes.push(("colours left out", format!("{colours} of vertices, of textures, or that are formulas")));
+    }
+    if curved > 0 {
+        notes.push(("curved triangles drawn flat", format!("{curved} normals of vertices and curved edges")));
+    }
+    notes
 }
 
 fn object(object: Node<'_, '_>, materials: &HashMap<&str, Option<Colour>>, scale: f64) -> Result<Piece, Wrong> {

@@ -5,8 +5,9 @@
 //!                                                material: base colour, linear
 //! ```
 //!
-//! Metres become millimetres, and y, which points up, becomes z. Points and lines, textures, animations and skins are
-//! left out, with a warning. Every access to a buffer is checked: a file may state any offset.
+//! Metres become millimetres, and y, which points up, becomes z. Points and lines, textures, colours of vertices, morph
+//! targets, animations and skins are left out, with a warning; extensions are named. Every access to a buffer is
+//! checked: a file may state any offset.
 //!
 //! Source: Khronos Group, *glTF 2.0 Specification*.
 
@@ -17,6 +18,7 @@ use base64::Engine;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use gltf::accessor::{Accessor, DataType, Dimensions};
 use gltf::mesh::{Mode, Primitive};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// Nodes within nodes.
@@ -38,6 +40,10 @@ pub(super) fn read(bytes: &[u8], files: OtherFiles<'_>) -> Result<Found, Wrong> 
                 found.notes.push(("lines left out", format!("mesh {}, primitive {}", mesh.index(), primitive.index())));
                 continue;
             }
+            if primitive.get(&gltf::Semantic::Colors(0)).is_some() {
+                let what = format!("mesh {}, primitive {}: colours of vertices", mesh.index(), primitive.index());
+                found.notes.push(("colours left out", what));
+            }
             let name = mesh.name().unwrap_or_default().to_owned();
             found.pieces.push(Piece { name, ..self::piece(&primitive, &buffers).map_err(at)? });
         }
@@ -49,6 +55,7 @@ pub(super) fn read(bytes: &[u8], files: OtherFiles<'_>) -> Result<Found, Wrong> 
     let scene = file.default_scene().or_else(|| file.scenes().next());
     let mut waiting: Vec<_> = scene.iter().flat_map(|s| s.nodes()).map(|n| (n, up, 0)).collect();
     waiting.reverse();
+    let mut shown = HashSet::new();
     while let Some((node, above, depth)) = waiting.pop() {
         if depth > MOST_NESTED || found.placements.len() + waiting.len() > MOST_PLACED {
             return Err(Wrong::new(format!(
@@ -60,6 +67,7 @@ pub(super) fn read(bytes: &[u8], files: OtherFiles<'_>) -> Result<Found, Wrong> 
         if !transform.is_finite() {
             return Err(Wrong::new(format!("node {}: its matrix is not finite", node.index())));
         }
+        shown.insert(node.index());
         if let Some(mesh) = node.mesh() {
             for piece in pieces[mesh.index()].clone() {
                 let name = node.name().or(mesh.name()).unwrap_or_default().to_owned();
@@ -74,6 +82,23 @@ pub(super) fn read(bytes: &[u8], files: OtherFiles<'_>) -> Result<Found, Wrong> 
         if count > 0 {
             found.notes.push(("left out", format!("{count} {what}")));
         }
+    }
+    let bends = |weights: Option<&[f32]>| weights.is_some_and(|w| w.iter().any(|x| *x != 0.0));
+    let bent =
+        file.meshes().filter(|m| bends(m.weights())).count() + file.nodes().filter(|n| bends(n.weights())).count();
+    if bent > 0 {
+        found.notes.push(("morph targets left out", format!("{bent} meshes or nodes use them")));
+    }
+    for extension in file.extensions_used() {
+        let copies = extension == "EXT_mesh_gpu_instancing";
+        let kind = if copies { "copies left out" } else { "extension not used" };
+        found.notes.push((kind, extension.to_owned()));
+    }
+    let hidden = file.nodes().filter(|n| n.mesh().is_some() && !shown.contains(&n.index())).count();
+    if hidden > 0 && !found.placements.is_empty() {
+        found
+            .notes
+            .push(("object not placed", format!("{hidden} nodes with a mesh are not in the scene that is drawn")));
     }
     if found.placements.is_empty() && !found.pieces.is_empty() {
         let all = (0..found.pieces.len()).map(|piece| Placement { piece, transform: up, name: String::new() });
@@ -99,7 +124,7 @@ fn buffer(
                 base64::engine::general_purpose::STANDARD.decode(text).map_err(|e| wrong(e.to_string()))?
             }
             None => {
-                let name = uri.replace("%20", " ");
+                let name = unescaped(uri);
                 let path = files.folder.map_or_else(|| Path::new(&name).to_path_buf(), |f| f.join(&name));
                 let bytes = source::beside(&path, files.most).map_err(|why| wrong(format!("{name}: {why}")))?;
                 opened.push(path);
@@ -111,6 +136,18 @@ fn buffer(
         return Err(wrong(format!("cut off: {} of {} bytes", bytes.len(), buffer.length())));
     }
     Ok(bytes)
+}
+
+/// A name without the escapes of a URI, `%20` and the like.
+fn unescaped(uri: &str) -> String {
+    let (mut bytes, mut rest) = (Vec::new(), uri.as_bytes());
+    while let Some((&first, behind)) = rest.split_first() {
+        let digits = behind.get(..2).filter(|d| first == b'%' && d.iter().all(u8::is_ascii_hexdigit));
+        let code = digits.and_then(|d| u8::from_str_radix(std::str::from_utf8(d).ok()?, 16).ok());
+        bytes.push(code.unwrap_or(first));
+        rest = if code.is_some() { &behind[2..] } else { behind };
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
 }
 
 fn piece(primitive: &Primitive<'_>, buffers: &[Vec<u8>]) -> Result<Piece, String> {
@@ -126,6 +163,7 @@ fn piece(primitive: &Primitive<'_>, buffers: &[Vec<u8>]) -> Result<Piece, String
     if let Some(far) = corners.iter().find(|i| **i as usize >= points.len()) {
         return Err(format!("vertex {far} of {}", points.len()));
     }
+    let few = usize::from(primitive.mode() == Mode::Triangles && !corners.len().is_multiple_of(3));
     let triangles: Vec<[u32; 3]> = match primitive.mode() {
         Mode::TriangleStrip => {
             let turned = |(k, w): (usize, &[u32])| if k % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] };
@@ -147,7 +185,7 @@ fn piece(primitive: &Primitive<'_>, buffers: &[Vec<u8>]) -> Result<Piece, String
         [r, g, b, if opaque { 1.0 } else { a }].map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 })
     });
     let colours = vec![colour; triangles.len()];
-    Ok(Piece { points, triangles, normals, colours, ..Piece::default() })
+    Ok(Piece { points, triangles, normals, colours, few, ..Piece::default() })
 }
 
 /// The bytes of each entry of an accessor.

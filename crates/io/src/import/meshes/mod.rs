@@ -20,16 +20,19 @@ mod xml;
 
 use super::facets::{closed, triangulate};
 use super::source::OtherFiles;
-use super::{Import, ImportError, ImportReport, Place, Warnings, stem};
+use super::{Import, ImportError, ImportReport, Place, Warnings, stem, text};
 use crate::model::{Colour, Instance, Mesh, Model, Part};
 use glam::{DAffine3, DVec3};
-use std::collections::HashMap;
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 
 /// Colours of one object, each of which is a mesh of its own.
 const MOST_COLOURS: usize = 256;
 /// Objects that a file may place: components of components multiply.
 const MOST_PLACED: usize = 1 << 16;
+/// Notes that the refusal of a file without triangles has.
+const MOST_TOLD: usize = 3;
 
 /// One object of a file.
 #[derive(Debug, Default)]
@@ -41,6 +44,8 @@ struct Piece {
     normals: Vec<[DVec3; 3]>,
     /// Of each triangle, or none.
     colours: Vec<Option<Colour>>,
+    /// Polygons of fewer than three corners, which are no triangles.
+    few: usize,
 }
 
 /// Where an object stands.
@@ -50,6 +55,9 @@ struct Placement {
     transform: DAffine3,
     name: String,
 }
+
+/// A kind of warning, and what it says.
+type Note = (&'static str, String);
 
 /// The objects of a file.
 #[derive(Debug, Default)]
@@ -61,7 +69,7 @@ struct Found {
     /// Every piece once, where there are none.
     placements: Vec<Placement>,
     /// Things left out, by kind.
-    notes: Vec<(&'static str, String)>,
+    notes: Vec<Note>,
     /// Files that were read, too.
     files: Vec<PathBuf>,
 }
@@ -93,6 +101,7 @@ impl Piece {
         if corners.len() > super::facets::MAX_CORNERS {
             return Err(format!("{} corners", corners.len()));
         }
+        self.few += usize::from(corners.len() < 3);
         for t in triangulate(&corners) {
             self.triangles.push(t.map(|i| face[i as usize]));
             self.colours.push(colour);
@@ -101,7 +110,7 @@ impl Piece {
     }
 
     /// Triangles of one colour each, numbered from `id`.
-    fn meshes(self, id: u32, notes: &mut Vec<(&'static str, String)>) -> Result<Vec<Mesh>, Wrong> {
+    fn meshes(self, id: u32, notes: &mut Vec<Note>) -> Result<Vec<Mesh>, Wrong> {
         let wrong = |e: crate::model::MeshError| Wrong::new(e.to_string());
         let key = |c: &Option<Colour>| c.map(|c| c.map(f32::to_bits));
         let mut places: HashMap<Option<[u32; 4]>, usize> = HashMap::new();
@@ -161,20 +170,42 @@ impl Shared {
     }
 }
 
+/// The bytes as UTF-8 without a mark of byte order, where the text within has this word at its beginning; else the
+/// bytes, which may be no text.
+fn utf8<'b>(bytes: &'b [u8], word: &str) -> Cow<'b, [u8]> {
+    let begins = |text: &[u8]| {
+        // a letter before it may say what vertices have: COFF
+        let start = text.trim_ascii_start();
+        start.windows(word.len()).take(2).any(|w| w.eq_ignore_ascii_case(word.as_bytes()))
+    };
+    match text::utf16(bytes) {
+        Some((text, _)) if begins(text.as_bytes()) => Cow::Owned(text.into_bytes()),
+        _ if begins(text::without_mark(bytes)) => Cow::Borrowed(text::without_mark(bytes)),
+        _ => Cow::Borrowed(bytes),
+    }
+}
+
 /// The objects in the bytes, and in other files that they name. `ending` gives the format.
 fn found(bytes: &[u8], ending: &str, files: OtherFiles<'_>) -> Result<Found, Wrong> {
     match ending {
-        "stl" => stl::read(bytes),
-        "off" => off::read(bytes),
-        "ply" => ply::read(bytes),
+        "stl" => stl::read(&utf8(bytes, "solid")),
+        "off" => off::read(&utf8(bytes, "off")),
+        "ply" => ply::read(&utf8(bytes, "ply")),
         "3mf" => threemf::read(bytes),
-        "amf" => amf::read(bytes),
+        "amf" => amf::read(&utf8(bytes, "<")),
         _ => gltf::read(bytes, files),
     }
 }
 
+/// A note on polygons that are no triangles, if there are any.
+fn polygons_left_out(pieces: &[Piece]) -> Option<Note> {
+    let few: usize = pieces.iter().map(|p| p.few).sum();
+    (few > 0).then(|| ("polygons left out", format!("{few} of fewer than three corners")))
+}
+
 /// The format of the bytes, if they begin as one of these files does.
 pub(super) fn recognise(bytes: &[u8]) -> Option<&'static str> {
+    let bytes = text::without_mark(bytes);
     let start = bytes.trim_ascii_start();
     if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") {
         return Some("ply");
@@ -199,8 +230,11 @@ pub(super) fn read(bytes: &[u8], name: &str, ending: &str, files: OtherFiles<'_>
     };
     let Found { format, unit, pieces, mut placements, mut notes, files } =
         found(bytes, ending, files).map_err(wrong)?;
+    notes.extend(polygons_left_out(&pieces));
     if pieces.iter().all(|p| p.triangles.is_empty()) {
-        return Err(ImportError::Mesh { file: name.to_owned(), message: format!("{format} without a triangle") });
+        let beside: String = notes.iter().take(MOST_TOLD).map(|(kind, note)| format!("; {kind}: {note}")).collect();
+        let message = format!("{format} without a triangle{beside}");
+        return Err(ImportError::Mesh { file: name.to_owned(), message });
     }
     let mut model = Model { name: stem(name), unit: unit.clone(), ..Model::default() };
     let units = if unit.is_empty() { Vec::new() } else { vec![unit] };
@@ -209,6 +243,11 @@ pub(super) fn read(bytes: &[u8], name: &str, ending: &str, files: OtherFiles<'_>
         let all =
             |(piece, p): (usize, &Piece)| Placement { piece, transform: DAffine3::IDENTITY, name: p.name.clone() };
         placements = pieces.iter().enumerate().map(all).collect();
+    }
+    let placed: HashSet<usize> = placements.iter().map(|p| p.piece).collect();
+    for (k, piece) in pieces.iter().enumerate().filter(|(k, p)| !placed.contains(k) && !p.triangles.is_empty()) {
+        let called = if piece.name.is_empty() { format!("object {} of the file", k + 1) } else { piece.name.clone() };
+        notes.push(("object not placed", called));
     }
     let mut id = 1;
     let mut places = Vec::with_capacity(pieces.len());
@@ -241,20 +280,23 @@ pub(super) fn read(bytes: &[u8], name: &str, ending: &str, files: OtherFiles<'_>
 #[cfg(feature = "scad-facets")]
 pub(super) type Triangles = (Vec<DVec3>, Vec<[u32; 3]>);
 
-/// The triangles of a file, each object where it stands.
+/// The triangles of a file, each object where it stands, and what is left out but colours.
 #[cfg(feature = "scad-facets")]
-pub(super) fn pieces(bytes: &[u8], ending: &str) -> Result<Vec<Triangles>, String> {
+pub(super) fn pieces(bytes: &[u8], ending: &str) -> Result<(Vec<Triangles>, Vec<String>), String> {
     let wrong = |w: Wrong| match w.line {
         Some(line) => format!("line {line}: {}", w.message),
         None => w.message,
     };
     let alone = OtherFiles { folder: None, most: 0 };
-    let Found { pieces, placements, .. } = found(bytes, ending, alone).map_err(wrong)?;
+    let Found { pieces, placements, mut notes, .. } = found(bytes, ending, alone).map_err(wrong)?;
+    notes.extend(polygons_left_out(&pieces));
+    let lost = notes.into_iter().filter(|(kind, _)| kind.ends_with("left out") && !kind.starts_with("colours"));
+    let lost = lost.map(|(kind, note)| format!("{kind}: {note}")).collect();
     if let Some(piece) = pieces.iter().find(|p| p.points.iter().any(|x| !x.is_finite())) {
         return Err(format!("{}: a coordinate is not finite", piece.name));
     }
     if placements.is_empty() {
-        return Ok(pieces.into_iter().map(|p| (p.points, p.triangles)).collect());
+        return Ok((pieces.into_iter().map(|p| (p.points, p.triangles)).collect(), lost));
     }
     let placed = |p: &Placement| {
         let piece = &pieces[p.piece];
@@ -262,5 +304,5 @@ pub(super) fn pieces(bytes: &[u8], ending: &str) -> Result<Vec<Triangles>, Strin
         let points = piece.points.iter().map(|x| p.transform.transform_point3(*x)).collect();
         (points, piece.triangles.iter().map(turn).collect())
     };
-    Ok(placements.iter().map(placed).collect())
+    Ok((placements.iter().map(placed).collect(), lost))
 }

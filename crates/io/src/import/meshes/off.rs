@@ -1,7 +1,7 @@
 //! OFF of Geomview, text.
 //!
 //! ```text
-//!   OFF                     or COFF: vertices with colours
+//!   OFF                     or COFF: vertices with colours, used where they are one colour
 //!   8 6 12                  vertices, faces, edges (not used); may stand on the first line
 //!   x y z                   a line each
 //!   4 0 1 2 3  [r g b [a]]  corners from 0; colours of 0 to 255, or of 0.0 to 1.0
@@ -24,6 +24,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Found, Wrong> {
     let lines = text.lines().zip(1..).map(|(l, n)| (l.split('#').next().unwrap_or_default().trim(), n));
     let mut lines = lines.filter(|(l, _)| !l.is_empty()).peekable();
     let (first, line) = lines.next().ok_or_else(|| Wrong::new("an empty file"))?;
+    let coloured = first.starts_with("COFF");
     let head = ["COFF", "OFF"].into_iter().find_map(|h| first.strip_prefix(h)).map(str::trim);
     let head = head.ok_or_else(|| Wrong::at(line, "the first word is neither OFF nor COFF"))?;
     let (counts, line) = if head.is_empty() {
@@ -36,14 +37,22 @@ pub(super) fn read(bytes: &[u8]) -> Result<Found, Wrong> {
         return Err(Wrong::at(line, "no numbers of vertices and faces"));
     };
     let mut piece = Piece::default();
+    let mut notes = Vec::new();
     let mut last = line;
+    // the first vertex's colour, whether others have another, numbers that are no colour
+    let (mut own, mut varies, mut unread) = (None, false, 0);
     for k in 0..*vertices {
         let (content, line) =
             lines.next().ok_or_else(|| Wrong::at(last, format!("cut off: {k} of {vertices} vertices")))?;
         let number = |w: &str| w.parse::<f64>().ok().filter(|x| x.is_finite());
-        let p: Option<Vec<f64>> = content.split_whitespace().take(3).map(number).collect();
+        let words: Vec<&str> = content.split_whitespace().collect();
+        let p: Option<Vec<f64>> = words.iter().copied().take(3).map(number).collect();
         let p = p.filter(|p| p.len() == 3).ok_or_else(|| Wrong::at(line, "a vertex without three finite numbers"))?;
         piece.points.push(DVec3::from_slice(&p));
+        let this = if coloured { colour(&words[3..]) } else { None };
+        unread += usize::from(words.len() > 3 && this.is_none());
+        own = if k == 0 { this } else { own };
+        varies |= this != own;
         last = line;
     }
     for k in 0..*faces {
@@ -55,13 +64,22 @@ pub(super) fn read(bytes: &[u8]) -> Result<Found, Wrong> {
         let corners = corners
             .filter(|c| c.len() == count)
             .ok_or_else(|| Wrong::at(line, format!("a face without {count} corners")))?;
-        piece.polygon(&corners, colour(&words.collect::<Vec<_>>())).map_err(|what| Wrong::at(line, what))?;
+        let words: Vec<&str> = words.collect();
+        let this = colour(&words);
+        unread += usize::from(!words.is_empty() && this.is_none());
+        let this = this.or(if varies { None } else { own });
+        piece.polygon(&corners, this).map_err(|what| Wrong::at(line, what))?;
         last = line;
     }
-    let notes = match lines.next() {
-        Some((_, line)) => vec![("lines left out", format!("line {line} follows the last face"))],
-        None => Vec::new(),
-    };
+    if let Some((_, line)) = lines.next() {
+        notes.push(("lines left out", format!("line {line} follows the last face")));
+    }
+    if varies {
+        notes.push(("colours left out", "colours of vertices, which vary over triangles".to_owned()));
+    }
+    if unread > 0 {
+        notes.push(("colours left out", format!("{unread} lines end in numbers that are no colour here")));
+    }
     Ok(Found { format: "OFF", pieces: vec![piece], notes, ..Found::default() })
 }
 

@@ -4,7 +4,8 @@
 //!   element vertex: x y z [red green blue [alpha]]     element face: a list of corners [red green blue [alpha]]
 //! ```
 //!
-//! Colours of vertices would vary over a triangle: where they differ they are left out, with a warning.
+//! Triangles may stand in strips (`tristrips`), which -1 ends. Colours of vertices would vary over a triangle: where
+//! they differ they are left out, with a warning.
 //!
 //! Source: G. Turk, *The PLY Polygon File Format*, 1994.
 
@@ -78,7 +79,11 @@ fn numbers(list: Property) -> Vec<i64> {
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<Found, Wrong> {
-    let wrong = |e: &dyn std::fmt::Display| Wrong::new(format!("cut off or no PLY: {e}"));
+    // the library's messages go on with the line and with its grammar
+    let wrong = |e: &dyn std::fmt::Display| {
+        let message = e.to_string();
+        Wrong::new(format!("cut off or no PLY: {}", message.lines().next().unwrap_or_default()))
+    };
     let parser = Parser::<Element>::new();
     let mut reader = Reader::new(bytes);
     let header = parser.read_header(&mut reader).map_err(|e| wrong(&e))?;
@@ -91,6 +96,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Found, Wrong> {
     let mut payload = parser.read_payload(&mut reader, &header).map_err(|e| wrong(&e))?;
     let vertices = payload.shift_remove("vertex").unwrap_or_default();
     let faces = payload.shift_remove("face").unwrap_or_default();
+    let strips = payload.shift_remove("tristrips").unwrap_or_default();
     let mut piece = Piece { points: vertices.iter().map(|v| v.place).collect(), ..Piece::default() };
     if let Some(k) = piece.points.iter().position(|p| !p.is_finite()) {
         return Err(Wrong::new(format!("vertex {k}: a coordinate is not there or not finite")));
@@ -103,6 +109,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Found, Wrong> {
         let corners = corners.ok_or_else(|| Wrong::new(format!("face {k}: a corner that is no vertex")))?;
         let colour = face.colour().or(own.filter(|_| !varies));
         piece.polygon(&corners, colour).map_err(|what| Wrong::new(format!("face {k}: {what}")))?;
+    }
+    for (k, strip) in strips.iter().flat_map(|s| s.corners.split(|i| *i == -1)).enumerate() {
+        let corners: Option<Vec<u32>> = strip.iter().map(|i| u32::try_from(*i).ok()).collect();
+        let corners = corners.ok_or_else(|| Wrong::new(format!("strip {k}: a corner that is no vertex")))?;
+        for (turn, w) in corners.windows(3).enumerate().filter(|(_, w)| w[0] != w[1] && w[1] != w[2] && w[2] != w[0]) {
+            let triangle = if turn.is_multiple_of(2) { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] };
+            let colour = own.filter(|_| !varies);
+            piece.polygon(&triangle, colour).map_err(|what| Wrong::new(format!("strip {k}: {what}")))?;
+        }
     }
     if varies {
         notes.push(("colours left out", "colours of vertices, which vary over triangles".to_owned()));

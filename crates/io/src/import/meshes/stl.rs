@@ -79,7 +79,16 @@ fn binary(bytes: &[u8]) -> Result<Found, Wrong> {
         None if attributes.iter().all(|a| a >> 15 == 1) => {
             attributes.iter().map(|a| Some(five_bits([a >> 10, a >> 5, *a]))).collect()
         }
-        None => Vec::new(),
+        None => {
+            let other = attributes.iter().filter(|a| **a != 0).count();
+            if other > 0 {
+                notes.push((
+                    "colours not used",
+                    format!("{other} of {count} triangles have an attribute, and not all a colour"),
+                ));
+            }
+            Vec::new()
+        }
     };
     Ok(Found { format: "STL, binary", pieces: vec![piece], notes, ..Found::default() })
 }
@@ -98,6 +107,9 @@ fn ascii(bytes: &[u8]) -> Result<Found, Wrong> {
         let Some(keyword) = words.next().map(str::to_ascii_lowercase) else { continue };
         last = line;
         match (keyword.as_str(), pieces.last_mut(), &mut corners) {
+            ("solid" | "endsolid" | "facet" | "endfacet" | "outer", _, Some(_)) => {
+                return Err(Wrong::at(line, format!("`{keyword}` before the end of a loop")));
+            }
             ("solid", ..) => {
                 let name = words.collect::<Vec<_>>().join(" ");
                 pieces.push((Piece { name, ..Piece::default() }, Shared::default()));

@@ -9,7 +9,8 @@
 //!       <build>      <item objectid transform p:path/>
 //! ```
 //!
-//! Triangles have one colour, that of their first corner. Textures and composite materials have none here.
+//! Triangles have one colour, that of their first corner. Textures and composite materials have none here, and beams
+//! are not drawn. Warnings say so, and name extensions that a file calls required and that are not read.
 //!
 //! Source: 3MF Consortium, *3D Manufacturing Format core specification* 1.3; *materials extension* 1.2 (colour groups);
 //! *production extension* 1.1 (paths).
@@ -24,6 +25,13 @@ use std::collections::HashMap;
 
 /// Components within components.
 const MOST_NESTED: usize = 64;
+
+/// Namespaces that are read: the core, materials, and paths of the production extension.
+const READ: [&str; 3] = [
+    "http://schemas.microsoft.com/3dmanufacturing/core/2015/02",
+    "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
+    "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
+];
 
 /// A number that is unique within one file of the archive.
 type Key = (String, u32);
@@ -41,6 +49,8 @@ struct Reader {
     colours: HashMap<Key, Vec<Colour>>,
     items: Vec<Component>,
     names: HashMap<Key, String>,
+    /// Triangles whose colour is none here, and those whose corners have different ones.
+    colourless: [usize; 2],
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<Found, Wrong> {
@@ -83,6 +93,12 @@ impl Reader {
         if first {
             self.found.unit = unit.to_owned();
         }
+        for prefix in model.attribute("requiredextensions").unwrap_or_default().split_whitespace() {
+            let space = model.lookup_namespace_uri(Some(prefix)).unwrap_or(prefix);
+            if !READ.contains(&space) {
+                self.found.notes.push(("extension left out", space.to_owned()));
+            }
+        }
         for resources in named(model, "resources") {
             for group in resources.children().filter(Node::is_element) {
                 let colours: Result<Vec<Colour>, Wrong> = match group.tag_name().name() {
@@ -114,6 +130,10 @@ impl Reader {
             self.components.insert(own.clone(), all?);
         }
         let Some(mesh) = named(object, "mesh").next() else { return Ok(()) };
+        for beams in named(mesh, "beamlattice").flat_map(|b| named(b, "beams")) {
+            let count = named(beams, "beam").count();
+            self.found.notes.push(("beams left out", format!("object {}: {count}", own.1)));
+        }
         let mut piece = Piece { name, ..Piece::default() };
         for vertex in named(mesh, "vertices").flat_map(|v| named(v, "vertex")) {
             let at = |name: &str| number(vertex.attribute(name), vertex);
@@ -129,7 +149,12 @@ impl Reader {
             };
             let place =
                 chosen.and_then(|(pid, p)| Some(((file.to_owned(), pid.parse().ok()?), p.parse::<usize>().ok()?)));
-            piece.colours.push(place.and_then(|(group, p)| self.colours.get(&group)?.get(p).copied()));
+            let colour = place.and_then(|(group, p)| self.colours.get(&group)?.get(p).copied());
+            let first = triangle.attribute("p1");
+            let differs = |name: &str| triangle.attribute(name).is_some_and(|p| Some(p) != first);
+            self.colourless[0] += usize::from(chosen.is_some() && colour.is_none());
+            self.colourless[1] += usize::from(colour.is_some() && first.is_some() && (differs("p2") || differs("p3")));
+            piece.colours.push(colour);
         }
         self.meshes.insert(own, self.found.pieces.len());
         self.found.pieces.push(piece);
@@ -139,6 +164,10 @@ impl Reader {
     /// Walks from the items to the meshes.
     fn place(mut self) -> Result<Found, Wrong> {
         self.found.format = "3MF";
+        let what = ["triangles have a texture, a mixture or no such colour", "triangles have the first corner's alone"];
+        for (count, what) in self.colourless.into_iter().zip(what).filter(|(count, _)| *count > 0) {
+            self.found.notes.push(("colours left out", format!("{count} {what}")));
+        }
         let mut waiting: Vec<(Key, DAffine3, usize)> =
             self.items.iter().rev().map(|(k, t)| (k.clone(), *t, 0)).collect();
         while let Some((key, transform, depth)) = waiting.pop() {

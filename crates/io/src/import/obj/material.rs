@@ -1,4 +1,4 @@
-//! Materials: `Kd` and `d` of the `.mtl` files that lie beside the file.
+//! Materials: `Kd` and `d` of the `.mtl` files that lie beside the file. Their textures are reported, and not used.
 //!
 //! ```text
 //!   mtllib a.mtl ─▶ folder/a.mtl ─▶ lines that say something about a colour ─tobj─▶ name: Colour
@@ -71,6 +71,11 @@ impl Materials {
                 ("d", Some(n)) if n.len() == 1 => writeln!(clean, "d {}", n[0]).is_ok(),
                 ("Tr", Some(n)) if n.len() == 1 => writeln!(clean, "d {}", 1.0 - n[0]).is_ok(),
                 ("newmtl" | "Kd" | "d" | "Tr", _) => false,
+                ("map_Kd" | "map_d", _) => {
+                    let what = || format!("{file}:{line}: {}", brief(&text));
+                    warnings.push("texture not used", || Place::File, what);
+                    true
+                }
                 _ => true,
             };
             if !written {

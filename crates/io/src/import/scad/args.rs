@@ -5,8 +5,8 @@
 //!            └─ segments ────────────┘   number("h")            flag("center")
 //! ```
 
-use super::Fault;
 use super::lex::{Lexer, Token};
+use super::{Fault, names};
 use glam::DVec2;
 
 /// A value; lists may nest [`MOST_NESTED`] deep.
@@ -29,6 +29,8 @@ pub(super) struct Args<'a> {
     pub node: &'a str,
     pub line: usize,
     all: Vec<(Option<&'a str>, Value)>,
+    /// What the node states and nothing uses.
+    pub unknown: Vec<String>,
 }
 
 impl<'a> Args<'a> {
@@ -50,12 +52,13 @@ impl<'a> Args<'a> {
                 return Err(Fault::new(at, format!("`,` or `)` expected, not {}", found.name())));
             }
         }
-        Ok(Self { node, line, all })
+        let unknown = names::settle(node, &mut all);
+        Ok(Self { node, line, all, unknown })
     }
 
     /// Of no node.
     pub fn none() -> Self {
-        Self { node: "", line: 1, all: Vec::new() }
+        Self { node: "", line: 1, all: Vec::new(), unknown: Vec::new() }
     }
 
     pub fn fault(&self, message: impl std::fmt::Display) -> Fault {
@@ -66,11 +69,6 @@ impl<'a> Args<'a> {
     pub fn get(&self, name: &str) -> Option<&Value> {
         let found = self.all.iter().find(|(n, _)| *n == Some(name)).map(|(_, v)| v);
         found.filter(|v| **v != Value::Undefined)
-    }
-
-    /// The first value without a name.
-    pub fn first(&self) -> Option<&Value> {
-        self.all.iter().find(|(n, _)| n.is_none()).map(|(_, v)| v)
     }
 
     /// A number, or the default where there is none.
@@ -122,6 +120,13 @@ impl<'a> Args<'a> {
         let paths = self.indices("paths", points.len())?;
         let along = |path: &Vec<u32>| path.iter().map(|i| points[*i as usize]).collect();
         Ok(if paths.is_empty() { vec![points.clone()] } else { paths.iter().map(along).collect() })
+    }
+
+    /// Radians about z at which a part of a turn of `angle` degrees starts; 0 for a whole turn.
+    pub fn start(&self, angle: f64) -> Result<f64, Fault> {
+        let start = self.number("start", 0.0)?;
+        let part = angle.is_finite() && angle.abs() < 360.0;
+        Ok(if part && start.is_finite() { start.to_radians() } else { 0.0 })
     }
 
     /// `$fn`, or 0 without it.

@@ -1,7 +1,7 @@
 //! OpenSCAD's flattened solids, the output of `openscad -o x.csg`.
 //!
 //! ```text
-//!   text ──lex──▶ words ──args──▶ node(name, arguments) ──one frame a node on a stack──▶ Assembly ──▶ Solid
+//!   text ──lex──▶ words ──args, names──▶ node(name, arguments) ──one frame a node on a stack──▶ Assembly ──▶ Solid
 //!
 //!   difference() {        Frame { Difference, placed }      first child minus the rest
 //!     cube(size = 2);       flat, body: leaves              a node without solids below it is skipped
@@ -29,6 +29,7 @@ mod facets;
 mod flat;
 mod frame;
 mod lex;
+mod names;
 mod polygon;
 #[cfg(test)]
 mod tests;
@@ -204,6 +205,9 @@ impl<'a> Reader<'a> {
             };
             self.count = self.count.saturating_add(1);
             let inside = self.modified(inside, mods, &args);
+            for what in args.unknown.iter().filter(|_| !inside.skipped) {
+                self.warn("argument left out", &args, || format!("`{}` has {what}", args.node));
+            }
             let mut made = Frame::new(args, inside);
             made.root = mods[2] && !inside.skipped;
             if !inside.skipped {
@@ -275,13 +279,20 @@ impl<'a> Reader<'a> {
                     inside.plane *= flat::in_plane(&m);
                 }
             }
-            "color" => inside.colour = inside.colour.or(colour(args)), // the outermost wins
+            "color" => match colour(args) {
+                Ok(own) => inside.colour = inside.colour.or(own), // the outermost wins
+                Err(fault) => self.warn("colour left out", args, || fault.message),
+            },
             "linear_extrude" | "rotate_extrude" => {
                 if inside.lift.is_some() {
                     return Err(args.fault("an extrusion inside an extrusion is not read"));
                 }
                 let (lift, wedge) = self.lift(args)?;
                 inside.lift = Some(lift);
+                let start = args.start(args.number("angle", 360.0)?)?;
+                if start != 0.0 {
+                    inside.transform *= DAffine3::from_rotation_z(start);
+                }
                 let placed = Placed { transform: inside.transform, colour: inside.colour, id: self.count };
                 frame.cut = wedge.map(|planes| self.wedge(&planes, &placed));
             }
@@ -406,7 +417,7 @@ impl<'a> Reader<'a> {
 
 /// A 4 x 4 matrix by rows.
 fn matrix(args: &Args<'_>) -> Result<DAffine3, Fault> {
-    let rows = match args.first().or_else(|| args.get("m")) {
+    let rows = match args.get("m") {
         Some(Value::List(rows)) => rows.iter().map(Value::vector::<4>).collect::<Option<Vec<_>>>(),
         _ => None,
     };
@@ -421,7 +432,12 @@ fn matrix(args: &Args<'_>) -> Result<DAffine3, Fault> {
 }
 
 /// Linear light; none for OpenSCAD's "no colour", which is negative.
-fn colour(args: &Args<'_>) -> Option<Colour> {
-    let [r, g, b, a] = args.first().or_else(|| args.get("c"))?.vector::<4>()?;
-    [r, g, b, a].iter().all(|c| *c >= 0.0).then(|| linear([r, g, b], a))
+fn colour(args: &Args<'_>) -> Result<Option<Colour>, Fault> {
+    let Some(value) = args.get("c") else { return Ok(None) };
+    let alpha = args.number("alpha", 1.0)?;
+    let three = || value.vector::<3>().map(|[r, g, b]| [r, g, b, alpha]);
+    let parts =
+        value.vector::<4>().or_else(three).ok_or_else(|| args.fault("`c` is neither three nor four numbers"))?;
+    let [r, g, b, a] = parts;
+    Ok(parts.iter().all(|c| *c >= 0.0).then(|| linear([r, g, b], a)))
 }

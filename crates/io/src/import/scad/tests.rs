@@ -4,6 +4,7 @@ mod classes;
 #[cfg(feature = "scad-facets")]
 mod facets;
 mod left_out;
+mod names;
 mod twist;
 
 use super::Facets;

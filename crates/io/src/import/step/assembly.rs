@@ -268,8 +268,8 @@ impl<'a> Reader<'a, '_> {
                         Role::Unsupported => {
                             s.ledger.note("item left out", item, format!("{} is not supported", entity.name()));
                         }
-                        Role::Ignored => s.ledger.ignore(&entity.name(), 1),
-                        Role::Other => {}
+                        Role::Ignored | Role::Unknown => s.ledger.ignore(&entity.name(), 1),
+                        Role::Beside => {}
                     }
                 }
                 Ok(())

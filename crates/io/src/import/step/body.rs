@@ -77,8 +77,10 @@ pub(super) enum Role {
     Unsupported,
     /// Curves and points: never drawn.
     Ignored,
-    /// Placements and the like.
-    Other,
+    /// Of no kind that is known.
+    Unknown,
+    /// Placements, and annotation, which is counted elsewhere.
+    Beside,
 }
 
 /// Whether an item is a body. A geometric set is one if it holds a surface.
@@ -99,10 +101,12 @@ pub(super) fn role(geometry: &Geometry<'_>, item: Entity<'_>) -> Role {
     }
     let wire = |k: &str| k.ends_with("WIREFRAME_MODEL") || k.ends_with("CURVE") || k == "CARTESIAN_POINT";
     let unsupported = |k: &str| UNSUPPORTED.iter().any(|end| k.ends_with(end));
+    let beside = |k: &str| ["PLACEMENT", "TRANSFORMATION", "ANNOTATION", "CALLOUT"].iter().any(|part| k.contains(part));
     match item.kinds().any(unsupported) {
         true => Role::Unsupported,
         false if item.kinds().any(wire) => Role::Ignored,
-        false => Role::Other,
+        false if item.kinds().any(beside) => Role::Beside,
+        false => Role::Unknown,
     }
 }
 

@@ -71,6 +71,8 @@ struct Found {
     transparency: Option<f64>,
     /// There are styles of curves on the surface.
     curves: bool,
+    /// A colour that cannot be read.
+    unread: Option<u32>,
 }
 
 impl Colours {
@@ -122,6 +124,10 @@ impl Colours {
         let mut found = Found::default();
         for style in base.references(0)? {
             search(file, ledger, style?, &mut found)?;
+        }
+        if let (None, Some(colour)) = (found.rgb, found.unread) {
+            let name = Entity::find(file, colour)?.name();
+            ledger.note("colour ignored", id, format!("{name} #{colour} is no colour that is known"));
         }
         let (Some(rgb), Some(item)) = (found.rgb, base.optional(1)) else {
             if found.curves {
@@ -178,11 +184,15 @@ fn search(file: &File<'_>, ledger: &Ledger<'_>, id: u32, found: &mut Found) -> R
             let rgb = [fields.real(0)?, fields.real(1)?, fields.real(2)?];
             found.rgb = found.rgb.or(Some(rgb.map(|c| c.clamp(0.0, 1.0))));
         } else if kinds.iter().any(|k| k.ends_with("PRE_DEFINED_COLOUR")) {
-            found.rgb = found.rgb.or(named(&entity.all().text(0)));
+            let rgb = named(&entity.all().text(0));
+            found.rgb = found.rgb.or(rgb);
+            found.unread = found.unread.or(rgb.is_none().then_some(id));
         } else if kinds.iter().any(|k| CURVES.contains(k)) {
             found.curves = true;
         } else if let Ok(fields) = entity.fields("SURFACE_STYLE_TRANSPARENT", 0) {
             found.transparency = found.transparency.or(Some(fields.real(0)?.clamp(0.0, 1.0)));
+        } else if kinds.iter().any(|k| k.starts_with("COLOUR_")) {
+            found.unread = found.unread.or(Some(id));
         }
         Ok(())
     })

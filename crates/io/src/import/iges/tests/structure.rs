@@ -1,7 +1,7 @@
 //! Units, matrices, subfigures, groups, colours, names, status; cards of every shape; a whole solid.
 
 use super::{Entity, GLOBAL, e, face, file, import, reaches};
-use crate::import::{ImportError, iges};
+use crate::import::{Import, ImportError, iges};
 use crate::model::Face;
 use glam::DVec3;
 
@@ -115,6 +115,41 @@ fn subfigures() {
         ("pair/tile", DVec3::new(0.0, 6.0, 1.0)),
     ];
     assert_eq!(all, wanted);
+}
+
+/// What nothing drawn leads to: a subfigure that is placed nowhere, one that only itself places, a face whose hole is
+/// the face.
+#[test]
+fn what_nothing_draws_is_reported() {
+    let spare = Entity { status: "00000200", ..e("308,0,5Hspare,1,1;") };
+    let i = import(&[Entity { status: "00010000", ..e(SQUARE) }, spare, e(SQUARE)]);
+    let told = |i: &Import| i.warnings.iter().map(|w| w.message.clone()).collect::<Vec<_>>();
+    assert_eq!(told(&i), ["subfigure not placed: nothing that is drawn places it"]);
+    assert!(i.summary().is_complete() && i.model.instances.len() == 1);
+    let i = import(&[e(SQUARE), e("308,0,1Ha,1,5;"), e("408,3,0.,0.,0.,1.;"), e("144,1,1,1,0,7;")]);
+    let circles = ["entity left out: #3 refers to itself", "entity left out: #7 refers to itself"];
+    assert_eq!(told(&i)[..2], circles);
+    assert_eq!(i.summary().left_out["entity left out"].total(), 2);
+    assert!(i.model.instances.is_empty());
+}
+
+/// A type of a writer's own, and the instance of a network subfigure, whose definition is not read.
+#[test]
+fn types_that_are_not_read_are_reported() {
+    let i = import(&[e(SQUARE), e("5001,1.,2.;"), e("420,9,0.,0.,0.,1.,1.,1.,0,,0,0;"), e("410,1,1.;")]);
+    let told: Vec<_> = i.warnings.iter().map(|w| w.message.clone()).collect();
+    let network = "entity left out: type 420 form 0 is not supported (#5)";
+    assert_eq!(told, ["entity of an unknown type not drawn: type 5001", network]);
+    assert_eq!(i.model.instances.len(), 1);
+}
+
+/// A mark of byte order moves no column.
+#[test]
+fn a_mark_of_byte_order_is_no_column() {
+    let marked = ["\u{feff}", CYLINDER].concat();
+    let i = crate::import::read_from(&mut marked.as_bytes(), "cylinder.igs", &Default::default()).unwrap();
+    assert!(i.warnings.is_empty(), "{:?}", i.warnings);
+    assert_eq!(i.report.faces, 3);
 }
 
 #[test]

@@ -71,6 +71,52 @@ fn other_files_of_the_archive_are_followed() {
     assert!(refusal(&zipped(&files[..2]), "3mf").contains("3D/Objects/a.model"));
 }
 
+/// Required extensions, beams, colours that are none, and objects that nothing builds are reported.
+#[test]
+fn what_is_lost_of_3mf_is_reported() {
+    let told = |text: &str| {
+        let import = import(&zipped(&[("3D/3dmodel.model", text)]), "3mf");
+        (import.warnings.iter().map(|w| w.message.clone()).collect::<Vec<_>>(), import.summary().is_complete())
+    };
+    let file = whole("millimeter");
+    assert_eq!(told(&file), (vec![], true));
+    let again =
+        object().split_once("<object").unwrap().1.replacen("id=\"1\" name=\"tetra\"", "id=\"9\" name=\"spare\"", 1);
+    for (from, to, message, complete) in [
+        ("<model ", "<model requiredextensions=\"p x\" xmlns:x=\"urn:x\" ", "extension left out: urn:x", false),
+        (
+            "</triangles>",
+            "</triangles><beamlattice><beams><beam/></beams></beamlattice>",
+            "beams left out: object 1: 1",
+            false,
+        ),
+        ("p1=\"1\"", "p1=\"7\"", "colours left out: 1 triangles have a texture, a mixture or no such colour", false),
+        ("p1=\"1\"", "p1=\"1\" p2=\"0\"", "colours left out: 1 triangles have the first corner's alone", false),
+        ("</resources>", format!("<object{again}</resources>").as_str(), "object not placed: spare", true),
+    ] {
+        assert!(file.contains(from), "{from}");
+        assert_eq!(told(&file.replacen(from, to, 1)), (vec![message.to_owned()], complete));
+    }
+}
+
+/// Curved triangles are flat here, and a colour that varies is none.
+#[test]
+fn what_is_lost_of_amf_is_reported() {
+    let told = |from: &str, to: &str| {
+        assert!(AMF.contains(from), "{from}");
+        let import = import(AMF.replacen(from, to, 1).as_bytes(), "amf");
+        import.warnings.iter().map(|w| w.message.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(told("", ""), Vec::<String>::new());
+    let normal = "</coordinates><normal><nx>1</nx><ny>0</ny><nz>0</nz></normal>";
+    assert_eq!(told("</coordinates>", normal), ["curved triangles drawn flat: 1 normals of vertices and curved edges"]);
+    for (from, to) in
+        [("</coordinates>", "</coordinates><color><r>1</r><g>0</g><b>0</b></color>"), ("<r>0</r>", "<r>x</r>")]
+    {
+        assert_eq!(told(from, to), ["colours left out: 1 of vertices, of textures, or that are formulas"]);
+    }
+}
+
 #[test]
 fn damaged_3mf() {
     let file = whole("millimeter");
@@ -104,7 +150,7 @@ fn damaged_3mf() {
     assert!(refusal(&zipped(&[("3D/3dmodel.model", &many)]), "3mf").contains("more than 65536 objects"));
 }
 
-const AMF: &str = r#"<?xml version="1.0"?>
+pub(super) const AMF: &str = r#"<?xml version="1.0"?>
 <amf unit="inch"><material id="3"><color><r>0</r><g>1</g><b>0</b></color></material>
 <object id="a"><metadata type="name">tetra</metadata><mesh><vertices>
 <vertex><coordinates><x>0</x><y>0</y><z>0</z></coordinates></vertex>

@@ -181,6 +181,86 @@ fn ply_files() {
     assert!(varied.warnings[0].to_string().contains("colours of vertices"));
 }
 
+/// What the file states and the model has not is reported: attributes that are no colours, polygons without an inside,
+/// loops without an end, numbers behind a vertex.
+#[test]
+fn what_is_lost_of_triangles_is_reported() {
+    let told = |bytes: &[u8], ending: &str| {
+        import(bytes, ending).warnings.iter().map(|w| w.message.clone()).collect::<Vec<_>>()
+    };
+    let some = binary_stl([0xFC00, 0, 3, 0]);
+    assert_eq!(told(&some, "stl"), ["colours not used: 2 of 4 triangles have an attribute, and not all a colour"]);
+    let open = text_stl().replacen("endloop\n", "", 1);
+    assert_eq!(refusal(open.as_bytes(), "stl"), "t.x:7: `endfacet` before the end of a loop");
+    let line = OFF.replace("4 4 0", "4 5 0") + "2 0 1\n";
+    assert_eq!(told(line.as_bytes(), "off"), ["polygons left out: 1 of fewer than three corners"]);
+    let none = refusal(b"OFF\n2 1 0\n0 0 0\n1 0 0\n2 0 1\n", "off");
+    assert!(none.ends_with("OFF without a triangle; polygons left out: 1 of fewer than three corners"), "{none}");
+    let unnamed = String::from_utf8(ply("ascii", b"0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"));
+    let unnamed = refusal(unnamed.unwrap().replace("vertex_indices", "corners").as_bytes(), "ply");
+    assert!(unnamed.ends_with("polygons left out: 4 of fewer than three corners"), "{unnamed}");
+}
+
+/// Text with a mark of byte order, and text in UTF-16 of either order.
+#[test]
+fn texts_of_other_encodings() {
+    let ply = ply("ascii", b"0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+    let coff = OFF.replacen("OFF", "COFF", 1);
+    for (text, ending) in [
+        (text_stl(), "stl"),
+        (OFF.to_owned(), "off"),
+        (coff, "off"),
+        (String::from_utf8(ply).unwrap(), "ply"),
+        (archives::AMF.to_owned(), "amf"),
+    ] {
+        let whole = volume(&import(text.as_bytes(), ending).model);
+        let marked = format!("\u{feff}{text}");
+        let little: Vec<u8> = marked.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = marked.encode_utf16().flat_map(u16::to_be_bytes).collect();
+        for bytes in [marked.into_bytes(), little, big] {
+            assert_eq!(volume(&import(&bytes, ending).model), whole, "{ending}");
+        }
+    }
+}
+
+/// Colours of OFF's vertices: one for all, several, entries of a table; the same for faces.
+#[test]
+fn colours_of_off() {
+    let coloured = |last: &str, face: &str| {
+        let row = |p: &[f32; 3]| format!("{} {} {} 255 0 0 255\n", p[0], p[1], p[2]);
+        let rows: String = CORNERS[..3].iter().map(row).collect();
+        import(format!("COFF\n4 1 0\n{rows}0 0 1 {last}\n3 0 1 2 {face}\n").as_bytes(), "off")
+    };
+    let colour = |i: &Import| i.model.parts[0].meshes[0].colour;
+    let told = |i: &Import| i.warnings.iter().map(|w| w.message.clone()).collect::<Vec<_>>();
+    let red = coloured("255 0 0 255", "");
+    assert_eq!((colour(&red), told(&red).len()), (Some([1.0, 0.0, 0.0, 1.0]), 0));
+    let varied = coloured("0 0 255 255", "");
+    assert_eq!(colour(&varied), None);
+    assert_eq!(told(&varied), ["colours left out: colours of vertices, which vary over triangles"]);
+    let table = coloured("255 0 0 255", "7");
+    assert_eq!(told(&table), ["colours left out: 1 lines end in numbers that are no colour here"]);
+    assert!(table.summary().left_out.contains_key("colours left out"));
+}
+
+/// A strip turns every second triangle, and -1 ends it.
+#[test]
+fn strips_of_ply() {
+    let strips = |rows: &str| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+             element tristrips 1\nproperty list int int vertex_indices\nend_header\n\
+             0 0 0\n1 0 0\n0 1 0\n0 0 1\n{rows}\n"
+        )
+    };
+    // 0 2 1, then 2 3 1 turned; 0 3 2; 0 1 3
+    let closed = import(strips("12 0 2 1 3 -1 0 3 2 -1 0 1 3").as_bytes(), "ply");
+    assert!(closed.model.parts[0].closed && closed.warnings.is_empty());
+    assert!((volume(&closed.model) - 1.0 / 6.0).abs() < 1e-15);
+    assert!(refusal(strips("3 0 2 9").as_bytes(), "ply").contains("strip 0: vertex 9 of 4"));
+    assert!(refusal(strips("3 0 2 -7").as_bytes(), "ply").contains("strip 0: a corner that is no vertex"));
+}
+
 #[test]
 fn bounds_are_those_of_the_file() {
     let bounds = import(OFF.as_bytes(), "off").model.bounds();

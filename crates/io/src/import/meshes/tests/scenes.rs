@@ -68,7 +68,7 @@ fn buffers_beside_the_file() {
     let (file, beside) = (folder.join("t.gltf"), folder.join("my data.bin"));
     // longer than the text
     std::fs::write(&beside, [data(), vec![0; 4000]].concat()).unwrap();
-    let named = text(",\"uri\":\"my%20data.bin\"");
+    let named = text(",\"uri\":\"m%79%20data.bin\"");
     std::fs::write(&file, &named).unwrap();
     let read = |most: Option<u64>| open_with(&file, &Options { most_bytes: most, ..Options::default() });
     let (whole, short) = (read(None), read(Some(named.len() as u64)));
@@ -79,6 +79,48 @@ fn buffers_beside_the_file() {
     let told = short.expect_err("too long").to_string();
     let most = format!("buffer 0: my data.bin: larger than {} bytes, the most that is read", named.len());
     assert!(named.len() < 4000 && told.ends_with(&most), "{told}");
+}
+
+/// What the file states and the model has not is reported. A scene that is not shown is no loss.
+#[test]
+fn what_is_lost_of_gltf_is_reported() {
+    let whole = with_data(&data());
+    let told = |text: &str| {
+        let import = import(text.as_bytes(), "gltf");
+        (import.warnings.iter().map(|w| w.message.clone()).collect::<Vec<_>>(), import.summary().is_complete())
+    };
+    assert_eq!(told(&whole), (vec![], true));
+    for (from, to, message, complete) in [
+        (
+            "\"POSITION\":0",
+            "\"POSITION\":0,\"COLOR_0\":0",
+            "colours left out: mesh 0, primitive 0: colours of vertices",
+            false,
+        ),
+        ("\"count\":12", "\"count\":11", "polygons left out: 1 of fewer than three corners", false),
+        ("\"mesh\":0,", "\"mesh\":0,\"weights\":[0.5],", "morph targets left out: 1 meshes or nodes use them", false),
+        (
+            "\"scene\":0",
+            "\"extensionsUsed\":[\"EXT_mesh_gpu_instancing\"],\"scene\":0",
+            "copies left out: EXT_mesh_gpu_instancing",
+            false,
+        ),
+        (
+            "\"scene\":0",
+            "\"extensionsUsed\":[\"KHR_materials_transmission\"],\"scene\":0",
+            "extension not used: KHR_materials_transmission",
+            true,
+        ),
+        (
+            "\"scale\":[3,3,3]}",
+            "\"scale\":[3,3,3]},{\"mesh\":0}",
+            "object not placed: 1 nodes with a mesh are not in the scene that is drawn",
+            true,
+        ),
+    ] {
+        assert!(whole.contains(from), "{from}");
+        assert_eq!(told(&whole.replacen(from, to, 1)), (vec![message.to_owned()], complete));
+    }
 }
 
 #[test]

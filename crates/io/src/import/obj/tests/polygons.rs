@@ -45,7 +45,7 @@ fn colours_come_from_the_file_beside() {
     let folder = std::env::temp_dir().join(format!("selvedge-obj-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let materials = "newmtl red one\nKd 1 0 0.5 # diffuse\nd 0.25\nnewmtl none\nillum 2\nKd 1 1\nd -halo 0.5\n\
-        newmtl grey\nKd 0.5\nTr 0.75\n";
+        newmtl grey\nKd 0.5\nTr 0.75\nmap_Kd wood.png\n";
     std::fs::write(folder.join("my colours.mtl"), materials).unwrap();
     let triangle = "f 1 2 3\n";
     let text = format!(
@@ -66,12 +66,13 @@ fn colours_come_from_the_file_beside() {
     for expected in [
         "material statement not read: my colours.mtl:6: Kd 1 1",
         "material statement not read: my colours.mtl:7: d -halo 0.5",
+        "texture not used: my colours.mtl:11: map_Kd wood.png",
         "coloured.obj:2: materials not read: ../other.mtl: not beside the model",
         "coloured.obj:10: no such material: missing",
     ] {
         assert!(told.contains(expected), "{expected} in {told}");
     }
-    assert_eq!(read.warnings.len(), 4);
+    assert_eq!(read.warnings.len(), 5);
 }
 
 #[test]

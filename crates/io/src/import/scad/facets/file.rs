@@ -23,6 +23,7 @@ pub(super) fn read(
     };
     let path = files.folder.map_or_else(|| Path::new(file).to_path_buf(), |f| f.join(file));
     let wrong = |what: String| args.fault(format!("{file}: {what}"));
+    let of_file = |notes: Vec<String>| -> Vec<String> { notes.into_iter().map(|n| format!("{file}: {n}")).collect() };
     let bytes = source::beside(&path, MOST_BYTES.min(files.most)).map_err(wrong)?;
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     if !opened.contains(&path) {
@@ -38,8 +39,12 @@ pub(super) fn read(
             if !(1e-3..=1e6).contains(&dpi) {
                 return Err(args.fault(format!("{dpi} dots an inch")));
             }
-            let region = svg::region(&bytes, dpi, args.segments(10.0), args.flag("center")).map_err(wrong)?;
-            Ok((placed(args, &region)?, Vec::new()))
+            let (region, mut notes) =
+                svg::region(&bytes, dpi, args.segments(10.0), args.flag("center")).map_err(wrong)?;
+            if matches!(args.get("layer"), Some(Value::Text(layer)) if !layer.is_empty()) {
+                notes.push("`layer` of an SVG file is not read: all layers are there".to_owned());
+            }
+            Ok((placed(args, &region)?, of_file(notes)))
         }
         "dxf" => {
             let layer = match args.get("layer") {
@@ -47,16 +52,15 @@ pub(super) fn read(
                 _ => "",
             };
             let (region, notes) = dxf::region(&bytes, layer, |r| args.segments(r)).map_err(wrong)?;
-            let notes = notes.into_iter().map(|n| format!("{file}: {n}")).collect();
-            Ok((placed(args, &region)?, notes))
+            Ok((placed(args, &region)?, of_file(notes)))
         }
         "stl" | "off" | "3mf" | "amf" => {
-            let pieces = meshes::pieces(&bytes, &ending).map_err(wrong)?;
+            let (pieces, notes) = meshes::pieces(&bytes, &ending).map_err(wrong)?;
             let mut body = Body::default();
             for (points, triangles) in pieces {
                 body = Body::union(vec![body, Body::mesh(Triangles::welded(&points, triangles).outwards())]);
             }
-            Ok((Shape::Solid(body), Vec::new()))
+            Ok((Shape::Solid(body), of_file(notes)))
         }
         _ => Err(wrong("a kind of file that is not imported: STL, OFF, 3MF, AMF, SVG and DXF are".to_owned())),
     }

@@ -36,6 +36,8 @@ enum Job {
     /// By facets: all around, or by an angle.
     Turned {
         angle: f64,
+        /// Where it starts, radians.
+        start: f64,
         segments: Segments,
     },
     Moved(DAffine3),
@@ -98,8 +100,9 @@ impl Gather {
             "projection" => Job::Projection { cut: args.flag("cut") },
             "rotate_extrude" => {
                 let angle = args.number("angle", 360.0)?;
+                let start = args.start(angle)?;
                 let angle = if angle.is_finite() { angle.clamp(-360.0, 360.0) } else { 360.0 };
-                Job::Turned { angle, segments: Segments::of(args)? }
+                Job::Turned { angle, start, segments: Segments::of(args)? }
             }
             _ => match (lift, matrix) {
                 (Some(lift), _) => Job::Linear { lift },
@@ -264,8 +267,9 @@ fn flat(job: Job, mut regions: Vec<Region>, budget: &mut Budget) -> Result<Shape
         Job::Fill => Region::union(regions).filled(),
         Job::Offset { distance, join } => Region::union(regions).offset(distance, join),
         Job::Linear { lift } => return Ok(Shape::Solid(Body::mesh(linear(&Region::union(regions), lift)?))),
-        Job::Turned { angle, segments } => {
-            return Ok(Shape::Solid(Body::mesh(turned(&Region::union(regions), angle, |r| segments.count(r))?)));
+        Job::Turned { angle, start, segments } => {
+            let body = Body::mesh(turned(&Region::union(regions), angle, |r| segments.count(r))?);
+            return Ok(Shape::Solid(if start == 0.0 { body } else { body.moved(&DAffine3::from_rotation_z(start)) }));
         }
         Job::Boolean(_) | Job::Projection { .. } => Region::union(regions),
     }))

@@ -1,12 +1,14 @@
 //! SVG drawings as regions, through usvg.
 //!
-//! Every path is filled, by odd and even; y runs upwards from the lower edge of the sheet; millimetres.
+//! Every path is filled, by odd and even; y runs upwards from the lower edge of the sheet; millimetres. Texts and
+//! pictures are left out.
 
 use super::Region;
 use glam::DVec2;
 
-/// The filled paths of an SVG file at so many dots an inch, its curves in `segments` for a circle.
-pub(super) fn region(bytes: &[u8], dpi: f64, segments: f64, centred: bool) -> Result<Region, String> {
+/// The filled paths of an SVG file at so many dots an inch, its curves in `segments` for a circle; and notes on what is
+/// left out.
+pub(super) fn region(bytes: &[u8], dpi: f64, segments: f64, centred: bool) -> Result<(Region, Vec<String>), String> {
     let options = usvg::Options { dpi: dpi as f32, ..usvg::Options::default() };
     let tree = usvg::Tree::from_data(bytes, &options).map_err(|e| e.to_string())?;
     let unit = 25.4 / dpi;
@@ -63,5 +65,15 @@ pub(super) fn region(bytes: &[u8], dpi: f64, segments: f64, centred: bool) -> Re
     });
     let all = Region::union(regions.collect());
     let shift = glam::DAffine2::from_translation(-0.5 * unit * size);
-    Ok(if centred { all.moved(&shift) } else { all })
+    Ok((if centred { all.moved(&shift) } else { all }, left_out(bytes)))
+}
+
+/// Elements that become no path, by their names in the text: the tree does not keep them.
+fn left_out(bytes: &[u8]) -> Vec<String> {
+    let options = roxmltree::ParsingOptions { allow_dtd: true, ..roxmltree::ParsingOptions::default() };
+    let text = std::str::from_utf8(bytes).unwrap_or_default();
+    let Ok(document) = roxmltree::Document::parse_with_options(text, options) else { return Vec::new() };
+    let count = |name: &str| document.descendants().filter(|n| n.is_element() && n.tag_name().name() == name).count();
+    let counts = ["text", "image"].map(|name| (name, count(name)));
+    counts.into_iter().filter(|(_, n)| *n > 0).map(|(name, n)| format!("{n} of `{name}` are not read")).collect()
 }

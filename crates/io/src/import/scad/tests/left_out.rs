@@ -58,7 +58,7 @@ fn the_rest_of_a_boolean_is_drawn_where_that_says_something() {
     // a difference without its first operand is lost, and a lost first child is lost all the way up
     for text in [
         "difference() { frobnicate(); cube(size = 2); }",
-        "difference() { group() { color(\"red\") { frobnicate(); } } cube(size = 2); }",
+        "difference() { group() { color([1, 0, 0, 1]) { frobnicate(); } } cube(size = 2); }",
         "difference() { difference() { frobnicate(); sphere(); } cube(size = 2); }",
     ] {
         let import = import(text);

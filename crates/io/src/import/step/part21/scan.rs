@@ -93,6 +93,7 @@ pub(super) fn scan<'a>(
                 b"ENDSCOPE" if section == Section::Data => s.end_scope(&mut scopes),
                 b"END-ISO-10303-21" => {
                     complete = true;
+                    s.after_end();
                     break;
                 }
                 _ if section == Section::Header => {
@@ -138,6 +139,29 @@ pub(super) fn scan<'a>(
 }
 
 impl<'a> Scanner<'a, '_> {
+    /// Reports what stands behind the end: a second file, or anything but a signature, white space and DOS's mark of
+    /// the end.
+    fn after_end(&mut self) {
+        loop {
+            self.blanks();
+            if !matches!(self.peek(), b';' | 0x1a) {
+                break;
+            }
+            self.at += 1;
+        }
+        let (bytes, at) = (self.bytes, self.at);
+        let rest = &bytes[at..];
+        if rest.is_empty() || rest.starts_with(b"SIGNATURE") {
+            return;
+        }
+        let place = || Place::Line(line_of(bytes, at));
+        if rest.windows(5).any(|w| w == b"DATA;") {
+            self.warnings.push("second file left out", place, || "it stands behind END-ISO-10303-21".into());
+        } else {
+            self.warnings.push("text not used", place, || "it stands behind END-ISO-10303-21".into());
+        }
+    }
+
     fn peek(&self) -> u8 {
         self.bytes.get(self.at).copied().unwrap_or(0)
     }

@@ -92,6 +92,21 @@ fn several_data_sections_and_other_sections() {
     assert_eq!(records.iter().map(|r| r.0).collect::<Vec<_>>(), [1, 2]);
 }
 
+/// Files that are put together have one end each: the second is left out, and that is a loss.
+#[test]
+fn text_behind_the_end_is_reported() {
+    let whole = data("#1=A();");
+    for (rest, told) in [
+        ("\n\0 \u{1a}/* end */\n", ""),
+        ("\nSIGNATURE;\nabc\nENDSEC;\n", ""),
+        ("\n\nSent by mail", "t.step:5: text not used: it stands behind END-ISO-10303-21"),
+        (format!("\n{whole}").as_str(), "t.step:4: second file left out: it stands behind END-ISO-10303-21"),
+    ] {
+        let (records, warnings) = parse(&format!("{whole}{rest}"));
+        assert_eq!((records.len(), warnings.join("; ").as_str()), (1, told), "{rest:?}");
+    }
+}
+
 #[test]
 fn missing_header_and_byte_order_mark() {
     let (records, warnings) = parse("\u{feff}\n ISO-10303-21;\nDATA;#1=A();ENDSEC;END-ISO-10303-21;");

@@ -93,6 +93,21 @@ fn curves_on_a_surface_do_not_paint_it() {
     }
 }
 
+/// A name that the standard does not have, and a kind of colour that is not read.
+#[test]
+fn unknown_colours_are_reported() {
+    for (colour, name) in [
+        ("DRAUGHTING_PRE_DEFINED_COLOUR('orange')", "DRAUGHTING_PRE_DEFINED_COLOUR"),
+        ("COLOUR_SPECIFICATION('orange')", "COLOUR_SPECIFICATION"),
+    ] {
+        let one = format!("{SHAPE}{}#89={colour};#90=STYLED_ITEM('',(#30),#18);", style(30, 89));
+        let found = import(&one);
+        let told: Vec<_> = found.warnings.iter().map(|w| w.message.clone()).collect();
+        assert_eq!(told, [format!("colour ignored: {name} #89 is no colour that is known")]);
+        assert!(found.model.parts[0].faces.iter().all(|f| f.colour.is_none()));
+    }
+}
+
 #[test]
 fn glass_is_kept_as_glass_without_a_word() {
     let found = crate::import::step(include_bytes!("cases/transparent.stp"), "case.stp").unwrap();

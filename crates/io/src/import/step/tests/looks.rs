@@ -61,6 +61,15 @@ fn hidden_in_one_occurrence_only_is_reported() {
     assert_eq!(found.model.face_instance_count(), 4);
 }
 
+/// A kind that no program of today knows is no shape that is drawn, but it is counted; placements are not.
+#[test]
+fn items_of_unknown_kinds_are_counted() {
+    let found = read("#80=FANCY_BODY('',#18);#82=SHAPE_REPRESENTATION('',(#71,#80),#1);");
+    assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+    assert_eq!(ignored(&found), [("FANCY_BODY", 1)]);
+    assert_eq!(found.model.face_instance_count(), 4);
+}
+
 #[test]
 fn curves_and_annotation_are_counted() {
     let found = read(

@@ -226,7 +226,10 @@ fn height_maps() {
 fn drawings() {
     let sheet = r#"<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="20mm" viewBox="0 0 80 40">
         <rect x="10" y="10" width="20" height="10"/><g transform="translate(40 0)"><path d="M10 20h10v10z"/></g></svg>"#;
-    let region = svg::region(sheet.as_bytes(), 72.0, 30.0, false).unwrap();
+    let (region, notes) = svg::region(sheet.as_bytes(), 72.0, 30.0, false).unwrap();
+    assert!(notes.is_empty());
+    let worded = sheet.replace("</svg>", "<text x=\"1\" y=\"9\">A</text></svg>");
+    assert_eq!(svg::region(worded.as_bytes(), 72.0, 30.0, false).unwrap().1, ["1 of `text` are not read"]);
     // half a millimetre a unit; usvg keeps single floats
     assert!((region.area() - 50.0 - 12.5).abs() < 1e-4, "{}", region.area());
     let low = region.corners().fold(DVec2::INFINITY, DVec2::min);
