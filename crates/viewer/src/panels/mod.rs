@@ -31,6 +31,8 @@ use std::path::{Path, PathBuf};
 
 /// Messages that are kept.
 const MOST_MESSAGES: usize = 50;
+/// Measurements that are kept: each is laid out, and drawn as a dimension, in every frame.
+const MOST_KEPT: usize = 200;
 
 /// The state of the panels from frame to frame.
 #[derive(Debug)]
@@ -175,9 +177,17 @@ impl Ui {
             tracing::info!("{}: {} {}", value.what, value.value, value.unit);
         }
         if std::mem::take(&mut self.keeps) {
-            self.kept.extend(measurement.clone());
+            measurement.clone().into_iter().for_each(|measurement| self.keep(measurement));
         }
         self.measurement = measurement;
+    }
+
+    /// Keeps a measurement in the list; the list's first one goes where there are too many.
+    fn keep(&mut self, measurement: Measurement) {
+        if self.kept.len() == MOST_KEPT {
+            self.kept.remove(0);
+        }
+        self.kept.push(measurement);
     }
 
     /// Takes the judge's verdict.
@@ -251,8 +261,8 @@ impl Ui {
                 self.save = if self.save.is_none() { Some(PathBuf::from("edited.selvedge")) } else { None };
             }
             Command::Screenshot => self.shot.open = !self.shot.open,
-            Command::Measure => match &self.measurement {
-                Some(measurement) => self.kept.push(measurement.clone()),
+            Command::Measure => match self.measurement.clone() {
+                Some(measurement) => self.keep(measurement),
                 None => (self.wants_measure, self.keeps) = (true, true),
             },
             _ => {}

@@ -291,6 +291,19 @@ fn two_points_are_measured_listed_and_copied() {
 }
 
 #[test]
+fn the_list_of_kept_measurements_has_an_end() {
+    let mut bench = Bench::new();
+    let points = two_points(&bench.session.world);
+    let first = crate::measure::measure(&bench.session.world, &points[..1]).expect("a point");
+    bench.ui.measured(Some(first.clone()));
+    bench.ui.obey(Command::Measure, &mut bench.session);
+    assert_eq!(bench.ui.kept[0].title, first.title);
+    bench.ui.measured(crate::measure::measure(&bench.session.world, &points));
+    (0..MOST_KEPT).for_each(|_| bench.ui.obey(Command::Measure, &mut bench.session));
+    assert!(bench.ui.kept.len() == MOST_KEPT && bench.ui.kept[0].title != first.title, "the oldest one goes");
+}
+
+#[test]
 fn a_section_follows_its_handle_and_is_undone_as_one() {
     let mut bench = Bench::new();
     bench.modifiers = egui::Modifiers::COMMAND; // the plane snaps to no face
