@@ -188,30 +188,9 @@ impl App {
         }
     }
 
-    /// Makes all objects of the device again, after it was lost.
-    pub fn reopen_device(&mut self) -> Result<(), ViewError> {
-        let Some(Opened { window, input, waiter, mut engine, screen }) = self.opened.take() else { return Ok(()) };
-        engine.wait();
-        screen.context.wait();
-        drop((waiter, engine));
-        self.messages.extend(screen.shutdown());
-        let (waiter, engine, screen) = self.open_device(&window)?;
-        // the textures of the panels are gone: a new context sends them again
-        self.context = crate::panels::context();
-        self.watch_panels();
-        let input = egui_winit::State::new(
-            self.context.clone(),
-            egui::ViewportId::ROOT,
-            &window,
-            Some(input.egui_ctx().pixels_per_point()),
-            window.theme(),
-            None,
-        );
-        self.opened = Some(Opened { window, input, waiter, engine, screen });
+    /// Frames and pictures of a lost device are gone.
+    pub fn forget_frames(&mut self) {
         (self.flight, self.picture) = (None, None);
-        self.ui.tell("The device was lost and is open again.".to_owned());
-        self.redraw();
-        Ok(())
     }
 
     /// A frame is due.
@@ -299,6 +278,7 @@ impl App {
             marks: (marks.0, &marks.1),
             panels: (&shapes, output.pixels_per_point),
             background: background(self.context.style().visuals.dark_mode),
+            fault: self.options.faults.as_ref().and_then(|faults| (faults.0)()),
         };
         let free = output.textures_delta.free;
         let drawn = match screen.draw(window, picture, &frame) {

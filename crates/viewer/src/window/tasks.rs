@@ -39,11 +39,7 @@ impl App {
         };
         match screen.photograph(&mut Picture { renderer, camera, settings }) {
             Ok(photograph) => Some(photograph),
-            Err(Failure::Picture(error)) => {
-                self.ui.tell(format!("No picture: {error}"));
-                None
-            }
-            Err(Failure::Screen(error)) => {
+            Err(Failure::Picture(error) | Failure::Screen(error)) => {
                 self.ui.tell(format!("No picture: {error}"));
                 None
             }
