@@ -139,6 +139,7 @@ impl Engine {
             borders: settings.smooth == Smooth::Borders,
             ambient: settings.ambient.is_some(),
             lines: settings.edges.is_some(),
+            shadows: settings.sun.is_some(),
         };
         self.current.as_ref().map(|current| of(&current.settings)).unwrap_or_default()
     }
