@@ -38,6 +38,9 @@ impl App {
                 if desktop::reduces_motion(&folder) {
                     drop(proxy.send_event(Event::LessMotion));
                 }
+                if let Some(dark) = desktop::is_dark(&folder) {
+                    drop(proxy.send_event(Event::Dark(dark)));
+                }
             });
         }
         for file in std::mem::take(&mut self.options.files) {

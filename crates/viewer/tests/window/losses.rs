@@ -60,14 +60,17 @@ fn a_lost_surface_and_a_lost_device_change_nothing_that_is_shown() {
 }
 
 #[test]
-fn panels_and_picture_have_the_scale_of_the_display_and_the_theme_of_the_settings() {
+fn panels_and_picture_have_the_scale_and_the_colours_of_the_desktop() {
     let Some(screen) = Screen::open((1400, 900)) else { return };
     let display = &screen.display;
-    let twice = [("WINIT_X11_SCALE_FACTOR", "2"), (SIZE, "700 450")];
+    // GSettings say nothing of colours then
+    let unset = ("GSETTINGS_BACKEND", "memory");
+    let twice = [("WINIT_X11_SCALE_FACTOR", "2"), (SIZE, "700 450"), unset];
     let (_folder, mut program, scene) = opened_in(display, "bracket.step", &twice, |folder| {
-        std::fs::write(folder.join("settings.json"), r#"{"theme": "light"}"#).expect("written");
+        std::fs::write(folder.join("kdeglobals"), "[General]\nColorScheme=BreezeLight\n").expect("written");
     });
     assert!((scene.corner.x - 2.0 * TREE).abs() < 2.0, "the picture begins at {}", scene.corner);
+    program.last("the desktop is light");
     assert!(display.screen().brightness(scene.corner + 4.0) > LIGHT);
     let (at, face) = scene.cylinder();
     display.click(at);
