@@ -406,6 +406,20 @@ fn arrow_keys_move_handles_that_tab_leads_to() {
 }
 
 #[test]
+fn menus_open_and_choose_by_keys_alone() {
+    let mut bench = Bench::new();
+    bench.press(egui::Key::Tab);
+    assert!(!bench.says("Open..."));
+    bench.press(egui::Key::Enter);
+    assert!(bench.says("Open..."), "the first menu is open");
+    bench.press(egui::Key::Tab);
+    bench.frame(Vec::new());
+    bench.press(egui::Key::Enter);
+    assert_eq!(bench.ui.commands, [Command::OpenDialog]);
+    assert!(!bench.says("Open..."));
+}
+
+#[test]
 fn a_dialog_is_used_by_keys_alone() {
     let mut bench = Bench::new();
     bench.ui.obey(Command::Screenshot, &mut bench.session);

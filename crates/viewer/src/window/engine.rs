@@ -237,9 +237,10 @@ impl Engine {
         }
     }
 
-    /// Waits for the thread. The renderer is then here, or freed with the engine.
+    /// Gives up an upload, and waits for its thread. The renderer is then here, or freed with the engine.
     pub fn wait(&mut self) {
-        if let Some(Upload { thread, from, .. }) = self.upload.take() {
+        if let Some(Upload { thread, from, stop }) = self.upload.take() {
+            stop.set();
             let _ = thread.join();
             self.renderer = from.try_recv().ok().map(|uploaded| uploaded.renderer);
         }
