@@ -72,8 +72,8 @@ pub struct Settings {
     /// Fields of other versions.
     #[serde(flatten)]
     pub others: Map<String, Value>,
-    /// Values of this version's fields that it cannot read: of other versions, too. A field that has one has its default,
-    /// and keeps it in the file until it is changed.
+    /// Values of this version's fields that it cannot read, such as those of a later one. Such a field has its default,
+    /// and its value stays in the file until it is changed.
     #[serde(skip)]
     pub unread: Map<String, Value>,
 }
