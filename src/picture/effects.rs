@@ -10,9 +10,11 @@ pub struct Effects {
     pub ambient: bool,
     /// Lines along edges: [`SceneSettings::edges`](super::SceneSettings::edges). The image of edges is 0 without them.
     pub lines: bool,
+    /// Shadows of [`SceneSettings::sun`](super::SceneSettings::sun): its light reaches all that is turned towards it.
+    pub shadows: bool,
 }
 
 impl Effects {
     /// No effect.
-    pub const NONE: Self = Self { borders: false, ambient: false, lines: false };
+    pub const NONE: Self = Self { borders: false, ambient: false, lines: false, shadows: false };
 }

@@ -22,12 +22,14 @@ pub(super) struct SlotCentres {
 }
 
 impl SlotCentres {
-    /// Writes them for a camera; what was too small or is not needed any more goes to `retired`.
+    /// Writes them for a camera and a sun with or without `shadows`; what was too small or is not needed any more goes to
+    /// `retired`.
     pub(super) fn write(
         &mut self,
         device: &Device,
         data: &SceneData,
         camera: &Camera,
+        shadows: bool,
         retired: &mut Vec<Retired>,
     ) -> Result<(), GpuError> {
         let solids = &data.solids;
@@ -65,7 +67,10 @@ impl SlotCentres {
                 if self.sun.is_none() {
                     self.sun = Some(upload_buffer(device, "sun", size_of::<abi::Sun>() as u64)?);
                 }
-                self.sun.iter_mut().for_each(|buffer| buffer.write(0, &[sun.seen_from(camera.eye)]));
+                let seen = sun.seen_from(camera.eye);
+                // no tiles: nothing stands before the sun
+                let seen = if shadows { seen } else { abi::Sun { across: 0, ..seen } };
+                self.sun.iter_mut().for_each(|buffer| buffer.write(0, &[seen]));
             }
         }
         Ok(())

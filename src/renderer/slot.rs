@@ -122,7 +122,8 @@ impl Slot {
         }
         self.write_in_sight(device, &in_sight)?;
         self.write_parts(device, loaded, (input.camera, &in_sight), history)?;
-        self.centres.write(device, &loaded.data, input.camera, &mut self.retired)?;
+        let shadows = !input.settings.without.shadows;
+        self.centres.write(device, &loaded.data, input.camera, shadows, &mut self.retired)?;
         let centre = constants(device, loaded, input, formats, (history.table.as_ref(), &in_sight));
         self.constants.write(0, &[centre]);
         self.write_samples(device, loaded, (input.camera, &in_sight), centre)?;

@@ -4,6 +4,7 @@ use crate::hidden::crowd;
 use crate::layers::in_glass;
 use crate::shapes::solids::{block, folded};
 use crate::support::{assert_identical, assert_silent, perspective, watched_with};
+use glam::DVec3;
 use selvedge::csg::Op;
 use selvedge::picture::{
     EdgeSettings, Effects, FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, TrimWay,
@@ -66,10 +67,41 @@ fn what_is_left_out_is_as_if_the_scene_had_it_not() {
                 assert!(again.edge == full.edge, "{what} with {pass} again");
             }
         }
-        let all = draw(Effects { borders: true, ambient: true, lines: true });
+        let all = draw(Effects { borders: true, ambient: true, lines: true, shadows: true });
         let kept = ["borders", "ambient", "lines", "edges"].into_iter().find(|pass| passes(&all).contains(pass));
         assert_eq!(kept, None, "{what}");
         assert!(all.depth == full.depth && all.face == full.face, "{what}");
+        assert_silent(renderer);
+    }
+}
+
+/// Without shadows the sun reaches all that is turned towards it. What it reaches with them looks the same.
+#[test]
+fn shadows_that_are_left_out_change_what_is_in_shadow_alone() {
+    let corner = folded(Op::Union, vec![block([-1.0, -4.0, -1.0], [0.0, 4.0, 4.0]), block([0.0; 3], [4.0, 4.0, 1.0])]);
+    for (model, what) in [(crowd(), "parts"), (corner, "solids")] {
+        let camera = perspective(&model, SIZE);
+        let sun = Some(DVec3::new(-1.0, 0.3, 0.7));
+        let mut renderer =
+            watched_with(&model, SceneSettings { sun, smooth: Smooth::None, ..SceneSettings::default() });
+        let mut draw = |without: Effects| {
+            let settings = FrameSettings { without, ..FrameSettings::default() };
+            renderer.render(&camera, &settings, OUTPUTS).unwrap()
+        };
+        let full = draw(Effects::NONE);
+        let lit = |picture: &Picture| picture.sunlit.iter().filter(|lit| **lit).count();
+        // twice: the second one may reuse what the first one saw
+        for _ in 0..2 {
+            let picture = draw(Effects { shadows: true, ..Effects::NONE });
+            assert!(lit(&full) > 0 && lit(&picture) > lit(&full), "{what}: {} and {}", lit(&full), lit(&picture));
+            assert!(picture.depth == full.depth && picture.face == full.face, "{what}");
+            let same = |i: usize| picture.sunlit[i] && picture.colour[i] == full.colour[i];
+            assert!(
+                (0..full.sunlit.len()).all(|i| !full.sunlit[i] || same(i)),
+                "{what}: what is lit with shadows, too"
+            );
+        }
+        assert_identical(&draw(Effects::NONE), &full, &format!("{what} with shadows again"));
         assert_silent(renderer);
     }
 }

@@ -40,8 +40,17 @@ pub enum Command {
     Undo,
     /// Do it again.
     Redo,
-    /// Clear selection and measurement.
+    /// Clear selection and measurement; close help and dialogs.
     Clear,
+    /// Select the next item of the kind that clicks select.
+    Next {
+        /// The one before it.
+        back: bool,
+        /// What is selected stays so.
+        add: bool,
+    },
+    /// Take colours away that the selection was given here.
+    OwnColours,
     /// Hide the selection.
     Hide,
     /// Hide everything else.
@@ -96,6 +105,7 @@ pub struct Shortcut {
 const NONE: Modifiers = Modifiers::NONE;
 const CTRL: Modifiers = Modifiers::COMMAND;
 const SHIFT: Modifiers = Modifiers::SHIFT;
+const ARROWS: [Key; 4] = [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown];
 /// One press of an arrow key, pixels: it turns by 15 degrees at a picture 600 pixels high.
 const TURN_PX: f64 = 50.0;
 
@@ -127,11 +137,15 @@ pub fn shortcuts() -> Vec<Shortcut> {
         (Key::Plus, NONE, Command::Zoom(1.0), "closer"),
         (Key::Equals, NONE, Command::Zoom(1.0), "closer, too"),
         (Key::Minus, NONE, Command::Zoom(-1.0), "farther"),
+        (Key::N, NONE, Command::Next { back: false, add: false }, "select the next face, or what is picked"),
+        (Key::N, SHIFT, Command::Next { back: true, add: false }, "select the one before"),
+        (Key::N, CTRL, Command::Next { back: false, add: true }, "select the next one, too"),
         (Key::H, NONE, Command::Hide, "hide selection"),
         (Key::I, NONE, Command::Isolate, "hide everything else"),
         (Key::A, NONE, Command::ShowAll, "show everything"),
         (Key::C, NONE, Command::Cut, "cut at the selected face"),
         (Key::X, NONE, Command::SeeThrough, "see through selection"),
+        (Key::U, NONE, Command::OwnColours, "selection in its own colours"),
         (Key::P, NONE, Command::Points, "measure between points"),
         (Key::M, NONE, Command::Measure, "keep the measurement"),
         (Key::Z, CTRL, Command::Undo, "undo"),
@@ -177,13 +191,17 @@ impl Shortcut {
     }
 }
 
-/// Commands of the keys that went down; none while a text is typed.
+/// Commands of the keys that went down; none while a text is typed. While a button, a slider or a handle has the keys,
+/// arrows move it, or lead to the next one.
 pub fn pressed(ctx: &egui::Context) -> Vec<Command> {
-    if ctx.wants_keyboard_input() {
+    let focused = ctx.memory(|memory| memory.focused());
+    if focused.is_some_and(|id| egui::TextEdit::load_state(ctx, id).is_some()) {
         return Vec::new();
     }
+    let is_free = |shortcut: &Shortcut| focused.is_none() || !ARROWS.contains(&shortcut.key);
     ctx.input(|input| {
-        shortcuts().into_iter().filter(|shortcut| shortcut.is_pressed(input)).map(|shortcut| shortcut.command).collect()
+        let pressed = shortcuts().into_iter().filter(|shortcut| is_free(shortcut) && shortcut.is_pressed(input));
+        pressed.map(|shortcut| shortcut.command).collect()
     })
 }
 
@@ -213,5 +231,33 @@ mod tests {
         assert_eq!(after(Key::Questionmark, SHIFT), [Command::Help]);
         assert_eq!(after(Key::H, Modifiers::ALT), []);
         assert_eq!(after(Key::Plus, SHIFT), [Command::Zoom(1.0)]);
+    }
+
+    #[test]
+    fn keys_are_commands_beside_a_button_but_not_in_a_text() {
+        let ctx = egui::Context::default();
+        let mut text = String::new();
+        // a button or a text field takes the keys, and a key goes down
+        let mut after = |focus: Option<usize>, key: Option<Key>| {
+            let press =
+                |key| egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: NONE };
+            let events = key.map(press).into_iter().collect();
+            let mut commands = Vec::new();
+            let _ = ctx.run(egui::RawInput { events, ..Default::default() }, |ctx| {
+                commands.extend(pressed(ctx));
+                egui::CentralPanel::default().show(ctx, |ui| {
+                    let both = [ui.button("beside"), ui.text_edit_singleline(&mut text)];
+                    focus.into_iter().for_each(|nth| both[nth].request_focus());
+                });
+            });
+            commands
+        };
+        assert_eq!(after(None, Some(Key::ArrowLeft)), [Command::Turn(-TURN_PX, 0.0)]);
+        after(Some(0), None);
+        assert_eq!(after(None, Some(Key::H)), [Command::Hide]);
+        assert_eq!(after(None, Some(Key::ArrowLeft)), []);
+        after(Some(1), None);
+        assert_eq!(after(None, Some(Key::H)), []);
+        assert_eq!(after(None, Some(Key::Escape)), [Command::Clear], "it leaves the text, and closes the dialog");
     }
 }

@@ -4,10 +4,11 @@
 //!   still     every pixel, every effect                      once, then nothing is drawn
 //!   moving    the finest of these steps that takes at most BUDGET:
 //!
-//!     of the pixels along a side   1   3/4   1/2   3/8   3/8    3/8    3/8   1/4   3/16
-//!     left out                                           ● ──────────────────────────▶   smooth borders
-//!                                                               ● ───────────────────▶   ambient occlusion
-//!                                                                      ● ────────────▶   lines
+//!     of the pixels along a side   1   3/4   1/2   3/8   3/8    3/8    3/8    3/8   1/4   3/16
+//!     left out                                           ● ─────────────────────────────────▶   smooth borders
+//!                                                               ● ──────────────────────────▶   ambient occlusion
+//!                                                                      ● ───────────────────▶   shadows
+//!                                                                             ● ────────────▶   lines
 //! ```
 //!
 //! Time grows with the number of pixels, from a constant part. The cost of an effect is measured where two pictures
@@ -47,7 +48,10 @@ impl Step {
 /// The effects in the order in which they fall; numbers of [`Pacing`]'s costs.
 const BORDERS: usize = 0;
 const AMBIENT: usize = 1;
-const LINES: usize = 2;
+const SHADOWS: usize = 2;
+const LINES: usize = 3;
+/// How many they are.
+const EFFECTS: usize = 4;
 
 /// The step, and the effect by which it is coarser than the step before; `None`: by its scale.
 type Rung = (Step, Option<usize>);
@@ -61,11 +65,14 @@ fn ladder(present: Effects) -> Vec<Rung> {
         if scale != LEAST_WITH_EFFECTS {
             continue;
         }
-        for (effect, is_there) in [(BORDERS, present.borders), (AMBIENT, present.ambient), (LINES, present.lines)] {
+        let Effects { borders, ambient, lines, shadows } = present;
+        let effects: [_; EFFECTS] = [(BORDERS, borders), (AMBIENT, ambient), (SHADOWS, shadows), (LINES, lines)];
+        for (effect, is_there) in effects {
             if is_there {
                 match effect {
                     BORDERS => without.borders = true,
                     AMBIENT => without.ambient = true,
+                    SHADOWS => without.shadows = true,
                     _ => without.lines = true,
                 }
                 ladder.push((Step { scale, without }, Some(effect)));
@@ -84,7 +91,7 @@ pub struct Pacing {
     /// The last picture: its step and its time.
     last: Option<(usize, Duration)>,
     /// Of each effect, the time with it over the time without it.
-    costs: [f64; 3],
+    costs: [f64; EFFECTS],
 }
 
 impl Default for Pacing {
@@ -92,7 +99,7 @@ impl Default for Pacing {
     fn default() -> Self {
         let ladder = ladder(Effects::NONE);
         let at = place(&ladder, FIRST);
-        Self { present: Effects::NONE, ladder, at, last: None, costs: [ASSUMED; 3] }
+        Self { present: Effects::NONE, ladder, at, last: None, costs: [ASSUMED; EFFECTS] }
     }
 }
 
@@ -168,20 +175,22 @@ impl Pacing {
 mod tests {
     use super::*;
 
-    const ALL: Effects = Effects { borders: true, ambient: true, lines: true };
+    const ALL: Effects = Effects { borders: true, ambient: true, lines: true, shadows: true };
 
     /// A device that needs `fixed` and `each` milliseconds for all pixels, and for each effect a share of `each` more.
     #[derive(Clone, Copy)]
     struct Device {
         fixed: f64,
         each: f64,
-        effects: [f64; 3],
+        /// In the order in which they fall.
+        effects: [f64; EFFECTS],
     }
 
     impl Device {
         fn time(&self, step: Step) -> f64 {
-            let Effects { borders, ambient, lines } = step.without;
-            let shown = [borders, ambient, lines].into_iter().zip(self.effects).filter(|(left_out, _)| !left_out);
+            let Effects { borders, ambient, lines, shadows } = step.without;
+            let shown =
+                [borders, ambient, shadows, lines].into_iter().zip(self.effects).filter(|(left_out, _)| !left_out);
             self.fixed + self.each * step.scale.powi(2) * (1.0 + shown.map(|(_, share)| share).sum::<f64>())
         }
 
@@ -207,7 +216,7 @@ mod tests {
 
     /// On a scene without effects.
     fn settled(fixed: f64, each: f64) -> (f64, f64) {
-        let device = Device { fixed, each, effects: [0.0; 3] };
+        let device = Device { fixed, each, effects: [0.0; EFFECTS] };
         let step = device.settled(&mut Pacing::default());
         (step.scale, device.time(step))
     }
@@ -241,7 +250,15 @@ mod tests {
     /// does, and an effect falls only after the resolution and those before it.
     #[test]
     fn effects_fall_after_the_resolution_and_none_flickers() {
-        for effects in [[0.1, 0.1, 0.1], [1.0, 0.3, 0.2], [0.2, 3.0, 0.1], [8.0, 0.5, 2.0], [0.0; 3]] {
+        let shares = [
+            [0.1; 4],
+            [1.0, 0.3, 0.2, 0.2],
+            [0.2, 3.0, 0.4, 0.1],
+            [8.0, 0.5, 1.0, 2.0],
+            [0.3, 0.1, 4.0, 0.2],
+            [0.0; 4],
+        ];
+        for effects in shares {
             let mut coarsest = 0;
             for each in (0..60).map(|i| 2.0 * 1.13f64.powi(i)) {
                 let device = Device { fixed: 3.0, each, effects };
@@ -249,9 +266,9 @@ mod tests {
                 let step = device.settled(&mut pacing);
                 let last = ladder(ALL).len() - 1;
                 assert!(device.time(step) <= 40.0 || pacing.at == last, "{} ms at {step:?}", device.time(step));
-                let Effects { borders, ambient, lines } = step.without;
+                let Effects { borders, ambient, lines, shadows } = step.without;
                 assert!(!borders || step.scale <= LEAST_WITH_EFFECTS, "{step:?}");
-                assert!((borders || !ambient) && (ambient || !lines), "{step:?}");
+                assert!((borders || !ambient) && (ambient || !shadows) && (shadows || !lines), "{step:?}");
                 assert!(step.scale >= LEAST_WITH_EFFECTS || step.without == ALL, "{step:?}");
                 coarsest = coarsest.max(pacing.at);
             }
@@ -262,9 +279,9 @@ mod tests {
     #[test]
     fn effects_come_back_when_there_is_time() {
         let mut pacing = paced(ALL);
-        let slow = Device { fixed: 3.0, each: 400.0, effects: [0.5; 3] };
+        let slow = Device { fixed: 3.0, each: 400.0, effects: [0.5; EFFECTS] };
         assert_eq!(slow.settled(&mut pacing).without, ALL);
-        let fast = Device { fixed: 1.0, each: 8.0, effects: [0.5; 3] };
+        let fast = Device { fixed: 1.0, each: 8.0, effects: [0.5; EFFECTS] };
         assert_eq!(fast.settled(&mut pacing), Step::STILL);
     }
 
@@ -272,7 +289,7 @@ mod tests {
     #[test]
     fn a_dear_effect_is_tried_once_in_a_move() {
         // 16 ms without smooth borders, 160 ms with them
-        let device = Device { fixed: 0.0, each: 16.0 / LEAST_WITH_EFFECTS.powi(2), effects: [9.0, 0.0, 0.0] };
+        let device = Device { fixed: 0.0, each: 16.0 / LEAST_WITH_EFFECTS.powi(2), effects: [9.0, 0.0, 0.0, 0.0] };
         let borders = Effects { borders: true, ..Effects::NONE };
         let mut pacing = paced(borders);
         let tried = |pacing: &mut Pacing| {
@@ -291,7 +308,7 @@ mod tests {
     #[test]
     fn a_scene_without_an_effect_has_no_step_for_it() {
         let count = |present: Effects| ladder(present).len();
-        assert_eq!((count(Effects::NONE), count(ALL)), (SCALES.len(), SCALES.len() + 3));
+        assert_eq!((count(Effects::NONE), count(ALL)), (SCALES.len(), SCALES.len() + EFFECTS));
         let mut pacing = paced(Effects { lines: true, ..Effects::NONE });
         pacing.took(at(0.5), Duration::from_millis(60));
         pacing.took(at(0.375), Duration::from_millis(50));

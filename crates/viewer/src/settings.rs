@@ -1,11 +1,13 @@
 //! The stored settings: a JSON file in the user's folder of settings.
 //!
-//! Unknown fields are preserved, and missing fields have their default: newer and older versions share one file.
+//! Unknown fields are preserved, and so are values that this version cannot read; missing fields have their default:
+//! newer and older versions share one file.
 
 use crate::navigation::OrbitStyle;
 use crate::navigation::gesture::Preset;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -69,7 +71,11 @@ pub struct Settings {
     pub recent: Vec<PathBuf>,
     /// Fields of other versions.
     #[serde(flatten)]
-    pub others: serde_json::Map<String, serde_json::Value>,
+    pub others: Map<String, Value>,
+    /// Values of this version's fields that it cannot read, such as those of a later one. Such a field has its default,
+    /// and its value stays in the file until it is changed.
+    #[serde(skip)]
+    pub unread: Map<String, Value>,
 }
 
 impl Default for Settings {
@@ -87,7 +93,8 @@ impl Default for Settings {
             ambient: false,
             shadows: false,
             recent: Vec::new(),
-            others: serde_json::Map::new(),
+            others: Map::new(),
+            unread: Map::new(),
         }
     }
 }
@@ -108,13 +115,20 @@ impl Settings {
     /// Reads them; the defaults where there is no file yet.
     ///
     /// # Errors
-    /// When the file cannot be read, or is damaged: naming the line.
+    /// When the file cannot be read, or is no JSON object: naming the line.
     pub fn read(path: &Path) -> io::Result<Self> {
         let text = match std::fs::read(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
             text => text?,
         };
-        let mut settings: Self = serde_json::from_slice(&text)?;
+        let all: Map<String, Value> = serde_json::from_slice(&text)?;
+        let is_read = |(name, value): (&String, &Value)| {
+            let alone = Map::from_iter([(name.clone(), value.clone())]);
+            serde_json::from_value::<Self>(Value::Object(alone)).is_ok()
+        };
+        let (read, unread): (Vec<_>, Vec<_>) = all.into_iter().partition(|(name, value)| is_read((name, value)));
+        let mut settings: Self = serde_json::from_value(Value::Object(read.into_iter().collect()))?;
+        settings.unread = unread.into_iter().collect();
         settings.text = settings.text.clamp(0.5, 4.0);
         settings.recent.truncate(MOST_RECENT);
         Ok(settings)
@@ -128,8 +142,19 @@ impl Settings {
         let folder = path.parent().unwrap_or(Path::new("."));
         std::fs::create_dir_all(folder)?;
         let beside = path.with_extension("json.new");
-        std::fs::write(&beside, serde_json::to_vec_pretty(self)?)?;
+        std::fs::write(&beside, serde_json::to_vec_pretty(&self.stored()?)?)?;
         std::fs::rename(&beside, path)
+    }
+
+    /// As the file has them.
+    fn stored(&self) -> serde_json::Result<Value> {
+        let (mut stored, usual) = (serde_json::to_value(self)?, serde_json::to_value(Self::default())?);
+        for (name, value) in &self.unread {
+            if stored[name] == usual[name] {
+                stored[name] = value.clone();
+            }
+        }
+        Ok(stored)
     }
 
     /// The reach of ambient occlusion in model units, where it is wanted, of a model with this diagonal. A model
@@ -173,9 +198,27 @@ mod tests {
     fn a_damaged_file_is_reported_and_not_replaced() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("viewer.json");
-        std::fs::write(&path, "{\n\"preset\": 3}").expect("written");
+        std::fs::write(&path, "{\n\"preset\": }").expect("written");
         let error = Settings::read(&path).expect_err("damaged").to_string();
         assert!(error.contains("line 2"), "{error}");
+        std::fs::write(&path, "[]").expect("written");
+        assert!(Settings::read(&path).is_err());
+    }
+
+    #[test]
+    fn values_of_another_version_stay_in_the_file_until_they_are_changed() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("viewer.json");
+        let file = r#"{"preset": "later", "lines": {"kind": "dotted"}, "text": 2.0, "shadows": true}"#;
+        std::fs::write(&path, file).expect("written");
+        let mut settings = Settings::read(&path).expect("read");
+        let seen = (settings.preset, settings.lines, settings.text, settings.shadows);
+        assert_eq!(seen, (Preset::default(), Lines::default(), 2.0, true));
+        settings.lines = Lines::None;
+        settings.write(&path).expect("written");
+        let stored: Value = serde_json::from_slice(&std::fs::read(&path).expect("read")).expect("JSON");
+        assert_eq!((&stored["preset"], &stored["lines"]), (&Value::from("later"), &Value::from("none")));
+        assert_eq!(Settings::read(&path).expect("read").preset, Preset::default());
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Handles of section planes: an arrow along the normal, dragged along itself. The plane snaps to parallel faces, unless
-//! Ctrl is held.
+//! Ctrl is held. Where the handle has the keys, each arrow key moves the plane by a point of the arrow: right and up
+//! along it, left and down against it.
 //!
 //! ```text
 //!      plane │     the mouse moves by d on the screen; the arrow of length L in the model is a on the screen:
@@ -46,7 +47,7 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, session: &mut Session) {
         let area = egui::Area::new(egui::Id::new(("section", i))).fixed_pos(from - Vec2::splat(0.5 * SIZE));
         let response = area.order(egui::Order::Middle).constrain(false).show(ctx, |ui| {
             let (rect, response) = ui.allocate_exact_size(Vec2::splat(SIZE), egui::Sense::drag());
-            let lit = response.hovered() || response.dragged();
+            let lit = response.hovered() || response.dragged() || response.has_focus();
             let colour = if lit { Color32::from_rgb(255, 150, 20) } else { Color32::from_rgb(40, 170, 90) };
             let painter = ui.ctx().layer_painter(ui.layer_id()).with_clip_rect(place.rect);
             painter.arrow(rect.center(), along, Stroke::new(2.5, colour));
@@ -54,12 +55,17 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, session: &mut Session) {
             response.on_hover_text(format!("Section at {}", crate::describe::number(section.offset)))
         });
         let response = response.inner;
+        let (low, high) = section.range(bounds);
+        if let Some(by) = super::arrows(&response).filter(|_| along.length() >= SHORTEST) {
+            let step = ARROW * bounds.diagonal() * f64::from((by.x - by.y) / along.length());
+            let offset = (section.offset + step).clamp(low, high);
+            session.scene.change(|state| state.sections[i].offset = offset);
+        }
         if along.length() < SHORTEST || !response.dragged() && !response.drag_started() {
             continue;
         }
         let length = ARROW * bounds.diagonal();
         let step = moved(response.drag_delta(), along, length);
-        let (low, high) = section.range(bounds);
         // where the hand is, beside the face that the plane has snapped to
         let hand = egui::Id::new(("hand", i));
         let before = if response.drag_started() {

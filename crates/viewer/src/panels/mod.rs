@@ -19,6 +19,7 @@ mod trims;
 use crate::commands::{self, Command};
 use crate::measure::{Measurement, cut};
 use crate::pick::PickFilter;
+use crate::pick::step::step;
 use crate::session::Picked;
 use crate::session::Session;
 use crate::session::shown::MOST_SECTIONS;
@@ -31,6 +32,8 @@ use std::path::{Path, PathBuf};
 
 /// Messages that are kept.
 const MOST_MESSAGES: usize = 50;
+/// Measurements that are kept: each is laid out, and drawn as a dimension, in every frame.
+const MOST_KEPT: usize = 200;
 
 /// The state of the panels from frame to frame.
 #[derive(Debug)]
@@ -79,6 +82,8 @@ pub struct Ui {
     pub notice: Option<String>,
     /// The file to save the model to, while its dialog is open.
     pub save: Option<PathBuf>,
+    /// The text field of the dialog that was just opened takes the keys.
+    focuses: bool,
 }
 
 /// The dialog for writing a picture.
@@ -132,6 +137,7 @@ impl Default for Ui {
             chosen: None,
             notice: None,
             save: None,
+            focuses: false,
         }
     }
 }
@@ -175,9 +181,17 @@ impl Ui {
             tracing::info!("{}: {} {}", value.what, value.value, value.unit);
         }
         if std::mem::take(&mut self.keeps) {
-            self.kept.extend(measurement.clone());
+            measurement.clone().into_iter().for_each(|measurement| self.keep(measurement));
         }
         self.measurement = measurement;
+    }
+
+    /// Keeps a measurement in the list; the list's first one goes where there are too many.
+    fn keep(&mut self, measurement: Measurement) {
+        if self.kept.len() == MOST_KEPT {
+            self.kept.remove(0);
+        }
+        self.kept.push(measurement);
     }
 
     /// Takes the judge's verdict.
@@ -218,7 +232,15 @@ impl Ui {
             Command::Clear => {
                 session.select(None, false);
                 (self.help, self.warnings, self.shot.open) = (false, false, false);
-                (self.measurement, self.verdict) = (None, None);
+                (self.measurement, self.verdict, self.save) = (None, None, None);
+            }
+            Command::Next { back, add } => {
+                if step(session, self.filter, back, add) {
+                    self.selected(session, None);
+                }
+            }
+            Command::OwnColours => {
+                session.scene.change(|state| chosen.iter().for_each(|item| _ = state.colours.remove(item)));
             }
             Command::Hide => {
                 session.scene.change(|state| chosen.iter().for_each(|item| state.set_hidden(*item, true)));
@@ -249,10 +271,14 @@ impl Ui {
             Command::Trims => self.trims = !self.trims,
             Command::SaveAs => {
                 self.save = if self.save.is_none() { Some(PathBuf::from("edited.selvedge")) } else { None };
+                self.focuses = self.save.is_some();
             }
-            Command::Screenshot => self.shot.open = !self.shot.open,
-            Command::Measure => match &self.measurement {
-                Some(measurement) => self.kept.push(measurement.clone()),
+            Command::Screenshot => {
+                self.shot.open = !self.shot.open;
+                self.focuses = self.shot.open;
+            }
+            Command::Measure => match self.measurement.clone() {
+                Some(measurement) => self.keep(measurement),
                 None => (self.wants_measure, self.keeps) = (true, true),
             },
             _ => {}
@@ -286,6 +312,23 @@ pub fn show(
     status::windows(ctx, ui, session, settings, facts);
     ui.pointer_taken = ctx.is_using_pointer() || ctx.is_pointer_over_area();
     rect
+}
+
+/// How far the arrow keys move a handle that has the keys, points: one a press, ten with Shift. They then lead to no
+/// other widget.
+fn arrows(handle: &egui::Response) -> Option<egui::Vec2> {
+    if !handle.has_focus() {
+        return None;
+    }
+    let filter = egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
+    handle.ctx.memory_mut(|memory| memory.set_focus_lock_filter(handle.id, filter));
+    let by = handle.ctx.input(|input| {
+        let presses = |key| input.num_presses(key) as f32;
+        let right = presses(egui::Key::ArrowRight) - presses(egui::Key::ArrowLeft);
+        let down = presses(egui::Key::ArrowDown) - presses(egui::Key::ArrowUp);
+        egui::Vec2::new(right, down) * if input.modifiers.shift { 10.0 } else { 1.0 }
+    });
+    (by != egui::Vec2::ZERO).then_some(by)
 }
 
 #[cfg(test)]

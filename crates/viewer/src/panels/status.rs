@@ -165,6 +165,14 @@ pub fn windows(ctx: &egui::Context, ui: &mut Ui, session: &Session, settings: &S
     ui.help = open;
 }
 
+/// Whether Enter ends the text of a dialog. The text of a dialog that was just opened takes the keys.
+fn is_entered(field: &egui::Response, focuses: &mut bool) -> bool {
+    if std::mem::take(focuses) {
+        field.request_focus();
+    }
+    field.lost_focus() && field.ctx.input(|input| input.key_pressed(egui::Key::Enter))
+}
+
 /// The file and the size of a picture to write or to copy.
 fn shot(ctx: &egui::Context, ui: &mut Ui) {
     let mut open = ui.shot.open;
@@ -172,8 +180,12 @@ fn shot(ctx: &egui::Context, ui: &mut Ui) {
     egui::Window::new("Write picture").open(&mut open).show(ctx, |window| {
         let shot = &mut ui.shot;
         let mut path = shot.path.to_string_lossy().into_owned();
-        if window.text_edit_singleline(&mut path).changed() {
+        let field = window.text_edit_singleline(&mut path);
+        if field.changed() {
             shot.path = path.into();
+        }
+        if is_entered(&field, &mut ui.focuses) {
+            wanted = Some(Command::WritePicture);
         }
         window.horizontal(|row| {
             row.add(egui::DragValue::new(&mut shot.size.0).range(1..=16384));
@@ -200,10 +212,12 @@ fn save(ctx: &egui::Context, ui: &mut Ui) {
     egui::Window::new("Save model").open(&mut open).show(ctx, |window| {
         window.label("A file .selvedge, bit for bit, or .step:");
         let mut text = path.to_string_lossy().into_owned();
-        if window.text_edit_singleline(&mut text).changed() {
+        let field = window.text_edit_singleline(&mut text);
+        if field.changed() {
             *path = text.into();
         }
-        wanted = window.button("Save").clicked();
+        let entered = is_entered(&field, &mut ui.focuses);
+        wanted = window.button("Save").clicked() || entered;
     });
     if wanted {
         ui.commands.push(Command::Save);

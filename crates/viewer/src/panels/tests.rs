@@ -108,6 +108,26 @@ impl Bench {
         self.frame(vec![button(from + by, false)]);
     }
 
+    /// A key that goes down.
+    fn press(&mut self, key: egui::Key) -> Vec<(String, egui::Rect)> {
+        let modifiers = self.modifiers;
+        self.frame(vec![egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }])
+    }
+
+    /// Presses Tab until something of this size has the keys.
+    fn tab_to(&mut self, size: egui::Vec2) {
+        for _ in 0..1000 {
+            self.press(egui::Key::Tab);
+            let focused = self.ctx.memory(|memory| memory.focused());
+            let rect = focused.and_then(|id| self.ctx.read_response(id)).map(|response| response.rect);
+            if rect.is_some_and(|rect| (rect.size() - size).length() < 0.1) {
+                self.frame(Vec::new());
+                return;
+            }
+        }
+        panic!("Tab leads to nothing of {size}");
+    }
+
     fn click(&mut self, what: &str) {
         self.frame(Vec::new());
         let all = self.frame(Vec::new());
@@ -291,6 +311,19 @@ fn two_points_are_measured_listed_and_copied() {
 }
 
 #[test]
+fn the_list_of_kept_measurements_has_an_end() {
+    let mut bench = Bench::new();
+    let points = two_points(&bench.session.world);
+    let first = crate::measure::measure(&bench.session.world, &points[..1]).expect("a point");
+    bench.ui.measured(Some(first.clone()));
+    bench.ui.obey(Command::Measure, &mut bench.session);
+    assert_eq!(bench.ui.kept[0].title, first.title);
+    bench.ui.measured(crate::measure::measure(&bench.session.world, &points));
+    (0..MOST_KEPT).for_each(|_| bench.ui.obey(Command::Measure, &mut bench.session));
+    assert!(bench.ui.kept.len() == MOST_KEPT && bench.ui.kept[0].title != first.title, "the oldest one goes");
+}
+
+#[test]
 fn a_section_follows_its_handle_and_is_undone_as_one() {
     let mut bench = Bench::new();
     bench.modifiers = egui::Modifiers::COMMAND; // the plane snaps to no face
@@ -337,6 +370,88 @@ fn a_trim_point_follows_the_hand_on_its_surface() {
     let (far, near) = (nearest(&of_face.loops[0]), nearest(&edits[&(part, face, 0)]));
     assert!(far > 2.0 && near < 0.5, "{near} pixels from the hand, {far} before");
     assert!(bench.session.scene.undo() && bench.session.scene.now().edits.is_empty());
+}
+
+#[test]
+fn arrow_keys_move_handles_that_tab_leads_to() {
+    let mut bench = Bench::new();
+    let world = bench.session.world.clone();
+    let part = world.model.instances[0].part;
+    let face = world.model.parts[part].faces.iter().position(|f| !f.loops.is_empty()).expect("a trimmed face");
+    let before = world.model.parts[part].faces[face].loops[0].curves().next().expect("a curve").point(0.0);
+    bench.session.select(Some(Picked::Face { instance: 0, face, uv: before }), false);
+    bench.ui.trims = true;
+    bench.place(world.bounds.centre());
+    bench.tab_to(egui::Vec2::splat(12.0));
+    let camera = *bench.view.camera();
+    bench.press(egui::Key::ArrowDown);
+    assert_eq!(bench.session.scene.now().edits.keys().copied().collect::<Vec<_>>(), [(part, face, 0)]);
+    assert!(bench.ui.commands.is_empty() && *bench.view.camera() == camera, "the view stands still");
+    assert!(bench.session.scene.undo() && bench.session.scene.now().edits.is_empty());
+    bench.ui.trims = false;
+
+    let section = crate::session::Section::across(DVec3::X, world.bounds);
+    bench.session.scene.change(|state| state.sections.push(section));
+    bench.tab_to(egui::Vec2::splat(18.0));
+    bench.press(egui::Key::ArrowRight);
+    let offset = |bench: &Bench| bench.session.scene.now().sections[0].offset;
+    let step = offset(&bench) - section.offset;
+    assert!(step > 0.0, "{step}");
+    bench.modifiers = egui::Modifiers::SHIFT;
+    bench.press(egui::Key::ArrowLeft);
+    let back = section.offset + step - offset(&bench);
+    // the arrow of the moved plane is as long but for perspective
+    assert!((back / step - 10.0).abs() < 0.5, "{back} after {step}");
+    assert!(bench.ui.commands.is_empty(), "{:?}", bench.ui.commands);
+}
+
+#[test]
+fn menus_open_and_choose_by_keys_alone() {
+    let mut bench = Bench::new();
+    bench.press(egui::Key::Tab);
+    assert!(!bench.says("Open..."));
+    bench.press(egui::Key::Enter);
+    assert!(bench.says("Open..."), "the first menu is open");
+    bench.press(egui::Key::Tab);
+    bench.frame(Vec::new());
+    bench.press(egui::Key::Enter);
+    assert_eq!(bench.ui.commands, [Command::OpenDialog]);
+    assert!(!bench.says("Open..."));
+}
+
+#[test]
+fn a_dialog_is_used_by_keys_alone() {
+    let mut bench = Bench::new();
+    bench.ui.obey(Command::Screenshot, &mut bench.session);
+    (0..3).for_each(|_| drop(bench.frame(Vec::new())));
+    bench.frame(vec![egui::Event::Text("2".to_owned())]);
+    assert_eq!(bench.ui.shot.path, Path::new("view.png2"), "its text takes the keys");
+    assert_eq!(bench.ui.commands, []);
+    bench.press(egui::Key::Enter);
+    assert_eq!(std::mem::take(&mut bench.ui.commands), [Command::WritePicture]);
+    bench.ui.obey(Command::SaveAs, &mut bench.session);
+    (0..3).for_each(|_| drop(bench.frame(Vec::new())));
+    bench.press(egui::Key::Enter);
+    assert_eq!(std::mem::take(&mut bench.ui.commands), [Command::Save]);
+    bench.press(egui::Key::Escape);
+    for command in std::mem::take(&mut bench.ui.commands) {
+        bench.ui.obey(command, &mut bench.session);
+    }
+    assert!(bench.ui.save.is_none() && !bench.ui.shot.open);
+}
+
+#[test]
+fn keys_select_one_face_after_another_and_give_colours_back() {
+    let mut bench = Bench::new();
+    bench.press(egui::Key::N);
+    for command in std::mem::take(&mut bench.ui.commands) {
+        bench.ui.obey(command, &mut bench.session);
+    }
+    assert!(matches!(bench.session.selection[..], [Picked::Face { instance: 0, face: 0, .. }]));
+    assert!(bench.ui.wants_measure && bench.says("control points"));
+    bench.session.scene.change(|state| _ = state.colours.insert(0, [1.0; 4]));
+    bench.ui.obey(Command::OwnColours, &mut bench.session);
+    assert!(bench.session.scene.now().colours.is_empty());
 }
 
 #[test]

@@ -4,6 +4,8 @@
 //!   click on the face ─▶ the loop nearest to it, or one of the list ─▶ handles of its points
 //!   handle under the cursor ─ray─▶ surface, from the point's own (u, v) by Newton ─▶ new (u, v) ─▶ loop with it
 //! ```
+//!
+//! Where a handle has the keys, arrow keys move it on the screen in the cursor's place.
 
 use super::Ui;
 use super::overlay::Place;
@@ -132,13 +134,13 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, ui: &mut Ui, session: &mut S
         ui.notice = Some(format!("Of {count} points in view, the {MOST_POINTS} nearest to the cursor have handles."));
     }
     let cursor = ctx.input(|input| input.pointer.latest_pos()).unwrap_or(place.rect.center());
-    let mut held = None;
+    let (mut held, mut stepped) = (None, None);
     for (handle, at) in nearest(all, cursor, gripped) {
         let id = egui::Id::new(("trim", nth, handle.curve, handle.point));
         let area = egui::Area::new(id).fixed_pos(at - Vec2::splat(0.5 * SIZE)).order(egui::Order::Middle);
         let response = area.constrain(false).show(ctx, |ui| {
             let (rect, response) = ui.allocate_exact_size(Vec2::splat(SIZE), egui::Sense::drag());
-            let lit = response.hovered() || response.dragged();
+            let lit = response.hovered() || response.dragged() || response.has_focus();
             let fill = if lit { Color32::from_rgb(255, 150, 20) } else { Color32::WHITE };
             let painter = ui.ctx().layer_painter(ui.layer_id()).with_clip_rect(place.rect);
             painter.circle(rect.center(), 4.0, fill, Stroke::new(1.5, Color32::from_rgb(30, 110, 255)));
@@ -146,16 +148,25 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, ui: &mut Ui, session: &mut S
         });
         if response.inner.dragged() {
             held = Some((handle, response.inner));
+        } else if let Some(by) = super::arrows(&response.inner) {
+            stepped = Some((handle, at + by));
         }
     }
     if let Some(chosen) = &mut ui.chosen {
         chosen.gripped = held.as_ref().map(|(handle, _)| (handle.curve, handle.point));
     }
-    let Some((handle, response)) = held else { return };
-    if response.drag_started() {
-        session.scene.begin();
-    }
-    let Some(hand) = response.interact_pointer_pos() else { return };
+    let drags = held.is_some();
+    let (handle, hand) = match (held, stepped) {
+        (Some((handle, response)), _) => {
+            if response.drag_started() {
+                session.scene.begin();
+            }
+            let Some(hand) = response.interact_pointer_pos() else { return };
+            (handle, hand)
+        }
+        (None, Some(stepped)) => stepped,
+        (None, None) => return,
+    };
     let pixel = (hand - place.rect.min) / place.to_points as f32;
     let (origin, direction) = place.camera.ray(DVec2::new(f64::from(pixel.x), f64::from(pixel.y)));
     let back = transform.inverse();
@@ -163,7 +174,10 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, ui: &mut Ui, session: &mut S
     // beyond the surface the point follows its border
     let Some((uv, ..)) = towards(&of_face.surface, ray, handle.uv) else { return };
     match trim_loop.with_point(handle.curve, handle.point, uv) {
-        Ok(moved) => session.scene.go_on(|state| _ = state.edits.insert((part, face, nth), moved)),
+        Ok(moved) => {
+            let edit = |state: &mut SceneState| _ = state.edits.insert((part, face, nth), moved);
+            if drags { session.scene.go_on(edit) } else { session.scene.change(edit) }
+        }
         Err(error) => ui.notice = Some(error.to_string()),
     }
 }

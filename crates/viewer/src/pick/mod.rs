@@ -6,9 +6,10 @@
 //!      else the face of the cursor's own pixel         ─▶ face, and (u, v) ─Newton─▶ the point under the cursor, in f64
 //! ```
 //!
-//! [`snap`] finds points.
+//! [`snap`] finds points. [`step`] selects one item after another without a cursor.
 
 pub mod snap;
+pub mod step;
 
 use crate::session::{Picked, World};
 use glam::{DAffine3, DVec2, DVec3};

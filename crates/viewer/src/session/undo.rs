@@ -35,16 +35,22 @@ impl<T: Clone + PartialEq> History<T> {
             return;
         }
         self.undone.clear();
+        let before = std::mem::replace(&mut self.now, next);
+        self.keep(before);
+    }
+
+    /// Keeps a state to undo to, and forgets the oldest of too many.
+    fn keep(&mut self, state: T) {
         if self.before.len() == MOST {
             self.before.remove(0);
         }
-        self.before.push(std::mem::replace(&mut self.now, next));
+        self.before.push(state);
     }
 
     /// A drag begins: what [`go_on`](Self::go_on) does from now on is one change.
     pub fn begin(&mut self) {
         self.undone.clear();
-        self.before.push(self.now.clone());
+        self.keep(self.now.clone());
     }
 
     /// Goes on with the change made last, as a drag does: no state of its own.
@@ -103,5 +109,18 @@ mod tests {
         (1..5).for_each(|i| dragged.go_on(|x| *x = i));
         dragged.begin();
         assert!(dragged.undo() && *dragged.now() == 0 && !dragged.undo());
+    }
+
+    /// Drags and changes share one list.
+    #[test]
+    fn no_more_states_are_kept_than_the_limit() {
+        let mut dragged = History::new(0);
+        for i in 1..=2 * MOST {
+            dragged.begin();
+            dragged.go_on(|x| *x = i);
+        }
+        assert_eq!(dragged.states().count(), MOST + 1);
+        assert_eq!(std::iter::repeat_with(|| dragged.undo()).take_while(|undone| *undone).count(), MOST);
+        assert_eq!((*dragged.now(), dragged.states().count()), (MOST, MOST + 1));
     }
 }

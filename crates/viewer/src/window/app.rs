@@ -25,6 +25,9 @@ use std::time::Instant;
 use winit::event_loop::EventLoopProxy;
 use winit::window::Window;
 
+/// Most threads that measure at once: the last selection waits for one of them.
+const MOST_MEASURING: usize = 4;
+
 /// Messages of other threads to the window.
 pub enum Event {
     /// The frame that was submitted to the device of this number has finished.
@@ -45,6 +48,8 @@ pub enum Event {
     Judged(Result<Verdict, String>),
     /// The desktop is set to less motion.
     LessMotion,
+    /// The desktop is dark, or light.
+    Dark(bool),
     /// The panels need to be drawn again.
     Repaint,
 }
@@ -92,6 +97,8 @@ pub struct App {
     pub settings: Settings,
     /// The desktop is set to less motion.
     pub less_motion: bool,
+    /// The desktop's colours, where its settings have them.
+    pub desktop: Option<egui::Theme>,
     /// The settings in the file.
     kept: Settings,
     pub files: Vec<Arc<Loaded>>,
@@ -129,17 +136,20 @@ pub struct App {
     pub explosion: f64,
     /// Counts devices that were opened.
     pub devices: u32,
+    /// Threads that measure.
+    pub measuring: usize,
     pub begun: Instant,
 }
 
 impl App {
-    pub fn new(options: ViewOptions, proxy: EventLoopProxy<Event>) -> Self {
+    pub fn new(mut options: ViewOptions, proxy: EventLoopProxy<Event>) -> Self {
         let mut ui = Ui::default();
         let read = options.settings.as_deref().map(Settings::read);
         let settings = match read {
             Some(Ok(settings)) => settings,
             Some(Err(error)) => {
                 ui.tell(format!("The settings cannot be read and are left as they are: {error}"));
+                options.settings = None;
                 Settings::default()
             }
             None => Settings::default(),
@@ -159,6 +169,7 @@ impl App {
             view: View::default(),
             ui,
             less_motion: false,
+            desktop: None,
             kept: settings.clone(),
             settings,
             files: Vec::new(),
@@ -184,34 +195,14 @@ impl App {
             drawn: (0, 0),
             explosion: 0.0,
             devices: 0,
+            measuring: 0,
             begun: Instant::now(),
         }
     }
 
-    /// Makes all objects of the device again, after it was lost.
-    pub fn reopen_device(&mut self) -> Result<(), ViewError> {
-        let Some(Opened { window, input, waiter, mut engine, screen }) = self.opened.take() else { return Ok(()) };
-        engine.wait();
-        screen.context.wait();
-        drop((waiter, engine));
-        self.messages.extend(screen.shutdown());
-        let (waiter, engine, screen) = self.open_device(&window)?;
-        // the textures of the panels are gone: a new context sends them again
-        self.context = crate::panels::context();
-        self.watch_panels();
-        let input = egui_winit::State::new(
-            self.context.clone(),
-            egui::ViewportId::ROOT,
-            &window,
-            Some(input.egui_ctx().pixels_per_point()),
-            window.theme(),
-            None,
-        );
-        self.opened = Some(Opened { window, input, waiter, engine, screen });
+    /// Frames and pictures of a lost device are gone.
+    pub fn forget_frames(&mut self) {
         (self.flight, self.picture) = (None, None);
-        self.ui.tell("The device was lost and is open again.".to_owned());
-        self.redraw();
-        Ok(())
     }
 
     /// A frame is due.
@@ -252,7 +243,7 @@ impl App {
         self.view.advance(now);
         let output = self.run_panels();
         self.obey(now);
-        if std::mem::take(&mut self.ui.wants_measure) {
+        if self.measuring < MOST_MEASURING && std::mem::take(&mut self.ui.wants_measure) {
             self.measure();
         }
         self.keep_settings();
@@ -299,6 +290,7 @@ impl App {
             marks: (marks.0, &marks.1),
             panels: (&shapes, output.pixels_per_point),
             background: background(self.context.style().visuals.dark_mode),
+            fault: self.options.faults.as_ref().and_then(|faults| (faults.0)()),
         };
         let free = output.textures_delta.free;
         let drawn = match screen.draw(window, picture, &frame) {
@@ -343,7 +335,8 @@ impl App {
             self.context.set_zoom_factor(self.settings.text);
         }
         let Some(Opened { window, input, engine, screen, .. }) = &mut self.opened else { unreachable!("checked") };
-        let raw = input.take_egui_input(window);
+        let mut raw = input.take_egui_input(window);
+        raw.system_theme = raw.system_theme.or(self.desktop);
         let facts = Facts {
             loading: self.loads.iter().collect(),
             stats: self.stats.as_ref(),

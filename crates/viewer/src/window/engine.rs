@@ -139,6 +139,7 @@ impl Engine {
             borders: settings.smooth == Smooth::Borders,
             ambient: settings.ambient.is_some(),
             lines: settings.edges.is_some(),
+            shadows: settings.sun.is_some(),
         };
         self.current.as_ref().map(|current| of(&current.settings)).unwrap_or_default()
     }
@@ -236,9 +237,10 @@ impl Engine {
         }
     }
 
-    /// Waits for the thread. The renderer is then here, or freed with the engine.
+    /// Gives up an upload, and waits for its thread. The renderer is then here, or freed with the engine.
     pub fn wait(&mut self) {
-        if let Some(Upload { thread, from, .. }) = self.upload.take() {
+        if let Some(Upload { thread, from, stop }) = self.upload.take() {
+            stop.set();
             let _ = thread.join();
             self.renderer = from.try_recv().ok().map(|uploaded| uploaded.renderer);
         }

@@ -139,6 +139,7 @@ impl ApplicationHandler<Event> for App {
                 }
             }
             Event::Measured(selection, measured) => {
+                self.measuring -= 1;
                 if selection == self.session.selection {
                     self.ui.measured(measured);
                 }
@@ -154,6 +155,11 @@ impl ApplicationHandler<Event> for App {
             Event::LessMotion => {
                 tracing::info!("the desktop asks for less motion");
                 self.less_motion = true;
+            }
+            Event::Dark(dark) => {
+                tracing::info!("the desktop is {}", if dark { "dark" } else { "light" });
+                self.desktop = Some(if dark { egui::Theme::Dark } else { egui::Theme::Light });
+                self.redraw();
             }
             Event::Repaint => self.redraw(),
         }

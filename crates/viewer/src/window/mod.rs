@@ -26,7 +26,9 @@ use crate::session::Finder;
 use selvedge::ash::vk;
 use selvedge::gpu::GpuError;
 use selvedge::renderer::RenderError;
+use std::fmt;
 use std::path::PathBuf;
+use std::sync::Arc;
 use winit::event_loop::EventLoop;
 
 /// How to open the window.
@@ -46,6 +48,21 @@ pub struct ViewOptions {
     pub size: Option<(u32, u32)>,
     /// Finds parts of assemblies in other files; `None`: beside the file that names them.
     pub finder: Option<Finder>,
+    /// Failures of Vulkan to imitate; `None` imitates none.
+    pub faults: Option<Faults>,
+}
+
+/// Imitates failures of Vulkan, for tests: a lost surface, a lost device.
+#[derive(Clone)]
+pub struct Faults(
+    /// Called before each frame; a result is handled as that of the frame's first call.
+    pub Arc<dyn Fn() -> Option<vk::Result> + Send + Sync>,
+);
+
+impl fmt::Debug for Faults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Faults")
+    }
 }
 
 /// The state after the window is closed.
@@ -95,7 +112,7 @@ pub enum ViewError {
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// The window is shown without a new picture.
-    Picture(RenderError),
+    Picture(ViewError),
     /// Nothing is shown.
     Screen(ViewError),
 }

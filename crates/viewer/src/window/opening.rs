@@ -8,8 +8,13 @@ use super::waiter::Waiter;
 use super::{Closed, ViewError, ViewOptions};
 use crate::desktop;
 use std::sync::Arc;
+use std::time::Duration;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
+
+/// How often a lost device is tried to be opened again, and the pause between: drivers reset a device within seconds.
+const TRIES: u32 = 10;
+const PAUSE: Duration = Duration::from_millis(500);
 
 impl App {
     /// Opens window and device; begins to read the files.
@@ -32,6 +37,9 @@ impl App {
             std::thread::spawn(move || {
                 if desktop::reduces_motion(&folder) {
                     drop(proxy.send_event(Event::LessMotion));
+                }
+                if let Some(dark) = desktop::is_dark(&folder) {
+                    drop(proxy.send_event(Event::Dark(dark)));
                 }
             });
         }
@@ -62,6 +70,41 @@ impl App {
         let (proxy, device) = (self.proxy.clone(), self.devices);
         let done = move |result| drop(proxy.send_event(Event::FrameDone(device, result)));
         Ok((Waiter::new(screen.context.device.clone(), done), engine, screen))
+    }
+
+    /// Makes all objects of the device again, after it was lost. The window, the session and the view stay.
+    pub fn reopen_device(&mut self) -> Result<(), ViewError> {
+        let Some(Opened { window, input, waiter, mut engine, screen }) = self.opened.take() else { return Ok(()) };
+        engine.wait();
+        screen.context.wait();
+        drop((waiter, engine, input));
+        self.messages.extend(screen.shutdown());
+        let (waiter, engine, screen) = self.open_lost_device(&window)?;
+        // the textures of the panels are gone: a new context sends them again
+        self.context = crate::panels::context();
+        self.watch_panels();
+        let (root, scale) = (egui::ViewportId::ROOT, Some(window.scale_factor() as f32));
+        let mut input = egui_winit::State::new(self.context.clone(), root, &window, scale, window.theme(), None);
+        // the system tells of later changes alone
+        input.egui_input_mut().focused = window.has_focus();
+        self.opened = Some(Opened { window, input, waiter, engine, screen });
+        self.forget_frames();
+        tracing::info!("the device is open again");
+        self.ui.tell("The device was lost and is open again.".to_owned());
+        self.redraw();
+        Ok(())
+    }
+
+    /// Opens the device, again and again while its driver resets it.
+    fn open_lost_device(&mut self, window: &Window) -> Result<(Waiter, Engine, Screen), ViewError> {
+        for _ in 1..TRIES {
+            match self.open_device(window) {
+                Err(error) if error.is_of_device() => tracing::warn!("the device cannot be opened yet: {error}"),
+                opened => return opened,
+            }
+            std::thread::sleep(PAUSE);
+        }
+        self.open_device(window)
     }
 
     /// Frees everything.

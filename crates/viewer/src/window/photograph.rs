@@ -50,7 +50,7 @@ impl Screen {
             self.begin()?;
             let again =
                 Picture { renderer: &mut *picture.renderer, camera: picture.camera, settings: picture.settings };
-            self.record_into(again, targets).map_err(Failure::Picture)?;
+            self.record_into(again, targets).map_err(|error| Failure::Picture(error.into()))?;
             targets.copy_all(&self.context, to, IMAGES);
             self.submit_and_wait()?;
             let report = picture.renderer.report(0).map_err(ViewError::from)?;

@@ -32,6 +32,8 @@ pub struct Frame<'a> {
     pub panels: (&'a [egui::ClippedPrimitive], f32),
     /// Colour where there is no picture, linear.
     pub background: [f32; 4],
+    /// A failure to imitate.
+    pub fault: Option<vk::Result>,
 }
 
 /// The engine's next picture.
@@ -137,6 +139,7 @@ impl Screen {
     fn lost(&mut self, window: &Window, what: Presented) -> Result<(), ViewError> {
         self.outdated |= what != Presented::Shown;
         if what == Presented::SurfaceLost {
+            tracing::warn!("the surface is lost, and made again");
             self.context.wait();
             if let Some(old) = self.swapchain.take() {
                 old.destroy(&self.context);
@@ -159,16 +162,23 @@ impl Screen {
     /// Records and submits a frame; the frame before has finished. False while the window has no size: nothing is drawn.
     ///
     /// # Errors
-    /// [`Failure::Picture`] when the engine could not record its picture: the frame is shown with the picture before.
+    /// [`Failure::Picture`] when the engine could not record its picture, or there is no memory for it: the frame is shown
+    /// with the picture before.
     pub fn draw(&mut self, window: &Window, picture: Option<Picture<'_>>, frame: &Frame<'_>) -> Result<bool, Failure> {
+        if let Some(fault) = frame.fault {
+            self.lost(window, Presented::of(Err(fault))?)?;
+        }
         let Some(image) = self.acquire(window)? else { return Ok(false) };
         self.composite.mark(frame.marks.0, frame.marks.1);
         let mut failed = None;
         self.begin()?;
         if let Some(picture) = picture {
-            let target = self.target(picture.camera.size)?;
-            match self.record_into(picture, &self.targets[target]) {
-                Ok(()) => self.shown = Some(target),
+            let drawn = self.target(picture.camera.size).and_then(|target| {
+                self.record_into(picture, &self.targets[target])?;
+                Ok(target)
+            });
+            match drawn {
+                Ok(target) => self.shown = Some(target),
                 Err(error) => {
                     // the recorded commands are discarded
                     self.begin()?;
@@ -177,6 +187,8 @@ impl Screen {
             }
         }
         self.record_window(image, frame)?;
+        // Wayland then asks for the next frame only when it can be seen
+        window.pre_present_notify();
         let presented = self.submit(image)?;
         self.lost(window, presented)?;
         failed.map_or(Ok(true), |error| Err(Failure::Picture(error)))

@@ -9,6 +9,7 @@ use crate::panels::{Shot, Verdict};
 use selvedge::model::{Camera, Images, Model};
 use selvedge::picture::FrameSettings;
 use selvedge_check::{JudgeOptions, Tracer, judge};
+use selvedge_io::import::caught;
 use selvedge_io::{export, native};
 use std::error::Error;
 use std::fs::File;
@@ -24,8 +25,10 @@ impl App {
     pub fn measure(&mut self) {
         let (world, selection) = (Arc::clone(&self.session.world), self.session.selection.clone());
         let proxy = self.proxy.clone();
+        self.measuring += 1;
         std::thread::spawn(move || {
-            let measured = measure::measure(&world, &selection);
+            // after a panic, too, the thread counts no more
+            let measured = caught(|| measure::measure(&world, &selection)).unwrap_or_default();
             drop(proxy.send_event(Event::Measured(selection, measured)));
         });
     }
@@ -39,11 +42,7 @@ impl App {
         };
         match screen.photograph(&mut Picture { renderer, camera, settings }) {
             Ok(photograph) => Some(photograph),
-            Err(Failure::Picture(error)) => {
-                self.ui.tell(format!("No picture: {error}"));
-                None
-            }
-            Err(Failure::Screen(error)) => {
+            Err(Failure::Picture(error) | Failure::Screen(error)) => {
                 self.ui.tell(format!("No picture: {error}"));
                 None
             }

@@ -1,8 +1,9 @@
 //! Gestures and keys that move the view, read from the command line that the window copies.
 
-use super::{Screen, opened};
+use super::{Screen, opened, opened_with};
 use glam::{DVec2, DVec3};
 use selvedge::model::Camera;
+use selvedge_viewer::navigation::gesture::LINE_PX;
 use selvedge_viewer::navigation::standard::StandardView;
 
 /// Pixels by which a point that a gesture holds may be off: the camera is written with all its digits.
@@ -38,6 +39,27 @@ fn a_gesture_holds_the_point_under_the_cursor() {
     assert!(off(&turned, at + by) < HELD_PX, "{}", off(&turned, at + by));
     let direction = |camera: &Camera| (camera.target - camera.eye).normalize();
     assert!(direction(&turned).dot(direction(&moved)) < 0.99);
+    program.close(display);
+}
+
+#[test]
+fn two_fingers_move_the_view_sideways() {
+    let Some(screen) = Screen::open((900, 560)) else { return };
+    let display = &screen.display;
+    let (_folder, mut program, scene) = opened_with(display, "bracket.step", |folder| {
+        std::fs::write(folder.join("settings.json"), r#"{"preset": "trackpad"}"#).expect("written");
+    });
+    let (at, _) = scene.cylinder();
+    let at = at.floor();
+    let point = scene.hit(at).expect("it is seen").point;
+    program.after(|| display.move_to(at));
+    // winit 0.30 reports a line for the press of such a button, and one for its release
+    for (click, place) in [("click 6", at + 2.0 * LINE_PX * DVec2::X), ("click 7", at)] {
+        program.after(|| drop(display.xdotool(click)));
+        let camera = scene.camera_of(&program.command(display));
+        let off = scene.in_window(&camera, point).distance(place);
+        assert!(off < HELD_PX, "{click}: {off} pixels from where two fingers lead");
+    }
     program.close(display);
 }
 

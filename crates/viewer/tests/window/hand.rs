@@ -1,6 +1,6 @@
 //! The hand: an X server without a screen, the mouse and the keys that xdotool moves, and the program with the window.
 
-use super::{FILE, NAME, PATIENCE, SIZE, SLOW};
+use super::{FILE, NAME, PATIENCE, SIZE};
 use glam::DVec2;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -112,6 +112,12 @@ impl Pixels {
         i32::from(red) - i32::from(blue)
     }
 
+    /// The mean of red, green and blue at a place, of 255.
+    pub fn brightness(&self, at: DVec2) -> i32 {
+        let all = self.all[at.y as usize * self.size.0 as usize + at.x as usize];
+        all.iter().map(|part| i32::from(*part)).sum::<i32>() / 3
+    }
+
     /// Writes it as a picture of docs/viewer.md, where the environment names a folder for them.
     pub fn keep(&self, name: &str) {
         let Some(folder) = std::env::var_os("SELVEDGE_WINDOW_PICTURES") else { return };
@@ -144,21 +150,21 @@ pub struct Program {
 
 impl Program {
     /// Opens a file and waits for its picture at rest.
-    pub fn start(display: &Display, file: &Path) -> Self {
-        let mut program = Self::begin(display, file, false);
+    pub fn start(display: &Display, file: &Path, variables: &[(&str, &str)]) -> Self {
+        let mut program = Self::begin(display, file, variables);
         program.rest();
         program
     }
 
-    /// Opens a file and waits for the first picture. It may read the files of an assembly slowly.
-    pub fn begin(display: &Display, file: &Path, slowly: bool) -> Self {
+    /// Opens a file and waits for the first picture. The process has these variables in its environment, too.
+    pub fn begin(display: &Display, file: &Path, variables: &[(&str, &str)]) -> Self {
         let folder = file.parent().expect("a folder").to_owned();
         let mut child = Command::new(std::env::current_exe().expect("this test"))
-            .envs(slowly.then_some((SLOW, "1")))
             .args(["--exact", NAME, "--nocapture"])
             .env(FILE, file)
             .env(SIZE, format!("{} {}", display.size.0, display.size.1))
             .env("DISPLAY", &display.name)
+            .envs(variables.iter().copied())
             .env_remove("WAYLAND_DISPLAY")
             .current_dir(&folder)
             .stdout(Stdio::null())

@@ -7,6 +7,7 @@ mod clipboard;
 mod gestures;
 mod hand;
 mod living;
+mod losses;
 mod menus;
 mod panels;
 mod points;
@@ -19,7 +20,7 @@ use hand::{Display, Program, numbers};
 use previews::Slow;
 use scene::Scene;
 use selvedge_viewer::session::Finder;
-use selvedge_viewer::{ViewOptions, run};
+use selvedge_viewer::{Faults, ViewOptions, run};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -77,7 +78,9 @@ fn window(file: PathBuf) {
     let size = std::env::var(SIZE).expect("a size");
     let (width, height) = size.split_once(' ').expect("two numbers");
     let slow = std::env::var_os(SLOW).and(file.parent()).map(|folder| Slow(folder.to_owned()));
+    let loss = file.with_file_name(losses::LOSS);
     let closed = run(ViewOptions {
+        faults: Some(Faults(Arc::new(move || losses::take(&loss)))),
         finder: slow.map(|slow| Finder(Arc::new(slow))),
         settings: file.parent().map(|folder| folder.join("settings.json")),
         desktop: file.parent().map(Path::to_owned),
@@ -101,11 +104,21 @@ fn opened(display: &Display, name: &str) -> (tempfile::TempDir, Program, Scene) 
 
 /// The same, where something else is put into the folder before.
 fn opened_with(display: &Display, name: &str, put: impl FnOnce(&Path)) -> (tempfile::TempDir, Program, Scene) {
+    opened_in(display, name, &[], put)
+}
+
+/// The same, with variables in the environment of the process.
+fn opened_in(
+    display: &Display,
+    name: &str,
+    variables: &[(&str, &str)],
+    put: impl FnOnce(&Path),
+) -> (tempfile::TempDir, Program, Scene) {
     let folder = tempfile::tempdir().expect("a folder");
     put(folder.path());
     let file = folder.path().join(name);
     std::fs::copy(sample(name), &file).expect("copied");
-    let program = Program::start(display, &file);
+    let program = Program::start(display, &file, variables);
     let scene = Scene::new(&file, &program.last("view of "));
     (folder, program, scene)
 }

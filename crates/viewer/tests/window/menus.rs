@@ -1,6 +1,6 @@
 //! What menus, lists and dialogs do: finding, checking, styles, sections, saving.
 
-use super::hand::numbers;
+use super::hand::{PICTURE, numbers, read_png};
 use super::living::is_in_place;
 use super::panels::Panels;
 use super::{Screen, opened, opened_with};
@@ -90,6 +90,29 @@ fn menus_choose_styles_and_cut_three_times() {
     program.rest();
     let flipped = expected[1].map(|x| -x);
     assert_eq!(planes(&program.command(display)), [expected[0], flipped, expected[2]]);
+    program.close(display);
+}
+
+#[test]
+fn keys_alone_write_a_picture_without_background() {
+    let Some(screen) = Screen::open(WINDOW) else { return };
+    let display = &screen.display;
+    let (folder, mut program, _) = opened(display, "bracket.step");
+    display.key("ctrl+s");
+    program.settle();
+    // from the file to the width, the height and the box; from there to the button
+    for key in ["Tab", "Tab", "Tab", "space", "Tab", "Return"] {
+        display.key(key);
+        program.settle();
+    }
+    if !program.all.iter().any(|line| line.contains("is written")) {
+        program.wait("is written");
+    }
+    program.rest();
+    let (size, pixels) = read_png(&folder.path().join("view.png"));
+    assert_eq!(size, PICTURE);
+    let of = |opacity: u8| pixels.iter().filter(|pixel| pixel[3] == opacity).count();
+    assert!(pixels[0][3] == 0 && of(0) > pixels.len() / 4 && of(255) > pixels.len() / 20, "{} and {}", of(0), of(255));
     program.close(display);
 }
 

@@ -2,7 +2,7 @@
 
 use super::hand::{Display, Program};
 use super::scene::Scene;
-use super::{Screen, sample};
+use super::{SLOW, Screen, sample};
 use glam::DVec3;
 use selvedge_io::import::Files;
 use std::path::{Path, PathBuf};
@@ -65,7 +65,7 @@ fn the_first_parts_are_shown_before_the_rest_is_read() {
     let Some(screen) = Screen::open((900, 560)) else { return };
     let display = &screen.display;
     let (folder, file) = pair();
-    let mut program = Program::begin(display, &file, true);
+    let mut program = Program::begin(display, &file, &[(SLOW, "1")]);
     program.quiet();
     let said = program.all.join("\n");
     assert!(said.contains("so far: ") && !said.contains(&format!("read {}", file.display())), "{said}");
@@ -96,7 +96,7 @@ fn a_view_that_was_moved_stays_when_the_rest_is_read() {
     let Some(screen) = Screen::open((900, 560)) else { return };
     let display = &screen.display;
     let (folder, file) = pair();
-    let mut program = Program::begin(display, &file, true);
+    let mut program = Program::begin(display, &file, &[(SLOW, "1")]);
     program.quiet();
     let bolt = Scene::new(&folder.path().join(BOLT), &program.last("view of "));
     let first = eye(&mut program, display, &bolt);

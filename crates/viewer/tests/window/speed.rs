@@ -30,7 +30,7 @@ fn a_large_file_moves_at_twenty_frames_a_second() {
         let folder = tempfile::tempdir().expect("a folder");
         let copy: PathBuf = folder.path().join(file.file_name().expect("a file"));
         std::fs::copy(&file, &copy).expect("copied");
-        let mut program = Program::start(display, &copy);
+        let mut program = Program::start(display, &copy, &[]);
         let place = numbers(&program.last("view of "), "view of ");
         let middle = DVec2::new(place[2] + 0.5 * place[0], place[3] + 0.5 * place[1]);
         display.move_to(middle);
