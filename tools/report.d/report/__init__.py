@@ -7,4 +7,5 @@ views, scenes          the same cameras and solids for all
 sections/              one section of the report a file; each gives `rows.Section`
 peer/                  code that runs inside a peer's process, or the kernel's
 markdown, plots        the output
+stored                 benchmarks.json read back: the sections that a run does not measure
 """

@@ -12,10 +12,10 @@ from pathlib import Path
 
 from . import budget
 from . import context as given
-from . import machine, markdown, plots
+from . import machine, markdown, plots, stored
 from .peers import Peers
 from .program import Program
-from .rows import Contest, Report, Section
+from .rows import Contest, Report, Run, Section
 from .sections import first_use, frames, least, packages, reading, scale, solids, stability, surfaces, trims, zoom
 from .turns import Late
 
@@ -47,13 +47,22 @@ def options():
         help="folder of benchmarks.md, benchmarks.json and benchmarks/; docs without it",
     )
     parser.add_argument(
-        "--only", nargs="+", choices=SECTIONS, metavar="SECTION", help=f"needs --out; of {', '.join(SECTIONS)}"
+        "--only",
+        nargs="+",
+        choices=SECTIONS,
+        metavar="SECTION",
+        help=f"the others are those of benchmarks.json, as it was; of {', '.join(SECTIONS)}",
     )
     chosen = parser.parse_args()
-    if chosen.only and not chosen.out:
-        parser.error("--only is part of a report: name a folder with --out")
     chosen.out = (chosen.out or machine.ROOT / "docs").resolve()
     return chosen
+
+
+def command(chosen):
+    """The command as it stands in the document: without the folder, which is one of this machine."""
+    words = ["tools/report", *["--quick"] * chosen.quick]
+    words += ["--device", chosen.device] if chosen.device else []
+    return shlex.join([*words, *(["--only", *chosen.only] if chosen.only else [])])
 
 
 def measured(name, context):
@@ -61,7 +70,7 @@ def measured(name, context):
     print(f"== {name}", file=sys.stderr, flush=True)
     start = time.monotonic()
     of = SECTIONS[name]
-    section = Section(list(SECTIONS).index(name) + 1, of.TITLE, of.TEXT)
+    section = Section(list(SECTIONS).index(name) + 1, of.TITLE, of.TEXT, name)
     context.give(budget.of(name, context.quick))
     try:
         of.measure(context, section)
@@ -98,8 +107,22 @@ def write(report, out):
                 drawn[plot.name] = f"benchmarks/{plot.name}.svg"
             except ImportError:
                 print("no plots: matplotlib is not installed", file=sys.stderr)
-    (out / "benchmarks.json").write_text(json.dumps(report.as_json(), indent=1) + "\n")
     (out / "benchmarks.md").write_text(markdown.text(report, drawn))
+    # a later run reads it: one that is ended here leaves the old file or the new one
+    new = out / "benchmarks.json.new"
+    new.write_text(json.dumps(report.as_json(), indent=1) + "\n")
+    new.replace(out / "benchmarks.json")
+
+
+def kept(chosen):
+    """The sections of earlier runs by name; a sentence if there are none and --only needs them."""
+    try:
+        found = stored.sections(chosen.out / "benchmarks.json", {name: of.TITLE for name, of in SECTIONS.items()})
+    except stored.Unreadable as why:
+        if chosen.only:
+            print(f"{why}: the report will have the sections of this run alone", file=sys.stderr)
+        return {}
+    return {section.name: section for section in found}
 
 
 def main():
@@ -108,22 +131,25 @@ def main():
         scratch = Path(scratch)
         program = Program(Path(os.environ["SELVEDGE"]).resolve(), chosen.device, scratch)
         context = given.Context(chosen.quick, program, Peers(scratch), scratch, given.models())
-        load, date, commit, sections = machine.load(), machine.date(), machine.commit(), []
+        load, date, commit = machine.load(), machine.date(), machine.commit()
+        sections, new = kept(chosen), []
         for name in chosen.only or SECTIONS:
-            sections.append(measured(name, context))
-            report = Report(
-                command=shlex.join(["tools/report", *sys.argv[1:]]),
+            section = measured(name, context)
+            section.run = Run(
+                command=command(chosen),
                 date=date,
                 machine=machine.processor(),
-                device=program.device or "none was used",
+                device=program.device,
                 commit=commit,
                 load=load,
                 peers=context.peers.versions,
-                sections=sections,
             )
-            # after each section: a run that is ended early leaves what it has measured
-            write(report, chosen.out)
+            new.append(section)
+            sections[name] = section
+            # after each section: a run that is ended early leaves what it has measured, beside what was there
+            write(Report([sections[name] for name in SECTIONS if name in sections]), chosen.out)
     print(chosen.out / "benchmarks.md")
+    report = Report(new)
     for section, contest in report.lost():
         print(
             f"lost: {section.number}. {contest.what}, beside {contest.peer}: {markdown.interval(contest)}",

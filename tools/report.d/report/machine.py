@@ -26,11 +26,13 @@ def load():
 
 
 def commit():
-    """The commit, with a plus if tracked files differ from it."""
+    """The commit, with a plus if tracked files differ from it.
+
+    The report's own files do not count: runs of single sections that follow each other measure the same engine.
+    """
     git = lambda *words: subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout.strip()
-    return (git("rev-parse", "--short", "HEAD") or "unknown") + (
-        "+" if git("status", "--porcelain", "--untracked-files=no") else ""
-    )
+    changed = git("status", "--porcelain", "--untracked-files=no", "--", ".", ":(exclude)docs/benchmarks*")
+    return (git("rev-parse", "--short", "HEAD") or "unknown") + ("+" if changed else "")
 
 
 def date():

@@ -18,8 +18,8 @@ def text(report, plots):
     """`plots` are paths of pictures, relative to the document, by the plots' names."""
     parts = [
         "# Benchmarks",
-        f"Written by `{report.command}`: current figures only, each from this run. Dated experiments stand in "
-        "[notes](notes).",
+        "Written by `tools/report`: current figures only. Each section names the run that measured it; `tools/report "
+        "--only SECTION` measures one anew. Dated experiments stand in [notes](notes).",
         heading(report),
         "## Where we lose",
         losses(report),
@@ -35,13 +35,13 @@ def text(report, plots):
 
 
 def heading(report):
-    peers = ", ".join(f"{name} {value}" for name, value in report.peers.items() if not isinstance(value, Missing))
     took, given = (sum(getattr(section, of) for section in report.sections) for of in ("seconds", "given"))
+    of_runs = lambda of: shared(report.sections, lambda section: of(section.run))
     rows = [
-        ("machine", f"{report.machine}; load {report.load}"),
-        ("device", report.device),
-        ("date, commit", f"{report.date}, {report.commit}"),
-        ("peers", peers or "none"),
+        ("machine", of_runs(lambda run: [run.machine])),
+        ("device", of_runs(lambda run: [run.device] if run.device else []) or "none was used"),
+        ("date, commit", of_runs(lambda run: [f"{run.date}, {run.commit}"])),
+        ("peers", of_runs(versions) or "none"),
         ("time", f"{took / 60:.0f} minutes; the sections are given {given / 60:.0f}"),
     ]
     count = lambda verdict: sum(c.verdict() == verdict for _, c in report.contests())
@@ -57,6 +57,33 @@ def heading(report):
         "interval. Above 1 we are ahead; an interval that contains 1 is even. A **claim** that is behind makes the run "
         "fail. Each section has a budget of time; what it had no time for is listed below, with the limit."
     )
+
+
+def versions(run):
+    return [f"{name} {value}" for name, value in run.peers.items() if not isinstance(value, Missing)]
+
+
+def shared(sections, values):
+    """The values of the sections; what some sections lack has the numbers of the others."""
+    found = {}
+    for section in sections:
+        for value in values(section):
+            found.setdefault(value, []).append(section.number)
+    return "; ".join(value + among(numbers, sections) for value, numbers in found.items())
+
+
+def among(numbers, sections):
+    """The numbers of sections in brackets, three in sequence as "1 to 3"; empty if they are all."""
+    if len(numbers) == len(sections):
+        return ""
+    spans = []
+    for number in numbers:
+        if spans and number == spans[-1][-1] + 1:
+            spans[-1].append(number)
+        else:
+            spans.append([number])
+    words = [f"{span[0]} to {span[-1]}" if len(span) > 2 else ", ".join(map(str, span)) for span in spans]
+    return f" (section{'s' if numbers[1:] else ''} {', '.join(words)})"
 
 
 def losses(report):
@@ -85,10 +112,10 @@ def losses(report):
         grouped[cause] = [f"* {loss(section, contest)}{also(others)}" for section, contest, others in rows]
     unexplained = grouped.pop("", [])
     if unexplained:
-        parts += ["No measurement of this run explains these:", "\n".join(unexplained)]
+        parts += ["No measurement explains these:", "\n".join(unexplained)]
     for cause, rows in grouped.items():
         parts += [f"Cause: {cause}.", "\n".join(rows)]
-    return "\n\n".join(part for part in parts if part) or "Nowhere in this run."
+    return "\n\n".join(part for part in parts if part) or "Nowhere in these sections."
 
 
 def tallied(section, contest):
@@ -115,7 +142,7 @@ def tally(contests):
 def claims(report):
     """The claims by quantity; in the sections' tables each is marked."""
     short = tally((s, c) for s, c in report.contests() if c.claim == "ahead")
-    return short or "Nothing in this run."
+    return short or "Nothing in these sections."
 
 
 def loss(section, contest):
@@ -125,8 +152,12 @@ def loss(section, contest):
 
 
 def absences(report):
-    lines = [f"* {name}: {value.why}" for name, value in report.peers.items() if isinstance(value, Missing)]
-    grouped = {}
+    absent, grouped = {}, {}
+    for section in report.sections:
+        for name, value in section.run.peers.items():
+            if isinstance(value, Missing):
+                absent.setdefault((name, value.why), []).append(section.number)
+    lines = [f"* {name}{among(numbers, report.sections)}: {why}" for (name, why), numbers in absent.items()]
     for section, contest in report.contests():
         if contest.verdict() == "not measured":
             grouped.setdefault((section.number, contest.reason()), []).append(f"{contest.what}, {contest.peer}")
@@ -145,9 +176,7 @@ def absences(report):
 
 
 def section_text(section, plots):
-    parts = [section.text]
-    if section.given:
-        parts.append(f"This section took {section.seconds:,.0f} s of the {section.given:,.0f} s that it is given.")
+    parts = [measured(section), section.text]
     if section.failure:
         parts.append(f"**This section failed**: {section.failure}")
     for one in section.tables:
@@ -162,6 +191,18 @@ def section_text(section, plots):
     if section.commands:
         parts.append("```sh\n" + "\n".join(section.commands) + "\n```")
     return "\n\n".join(part for part in parts if part)
+
+
+def measured(section):
+    """The run of a section, and its time."""
+    run = section.run
+    time = f", {span(section.seconds)} of the {span(section.given)} that it is given" if section.given else ""
+    on = "; ".join(part for part in (f"{run.machine}, load {run.load}", run.device) if part)
+    return f"Measured {run.date}, commit {run.commit}{time}, by `{run.command}`. {on}."
+
+
+def span(seconds):
+    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.1f} min"
 
 
 def contests(rows):

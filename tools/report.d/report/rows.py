@@ -19,7 +19,8 @@ from dataclasses import dataclass, field
 
 from . import noise
 
-SCHEMA = 1
+# of benchmarks.json; stored.py lists the formats
+SCHEMA = 2
 CLAIMS = ("ahead", "open")
 VERDICTS = ("ahead", "even", "behind", "unreached", "not measured")
 
@@ -149,10 +150,28 @@ class Plot:
 
 
 @dataclass
+class Run:
+    """What measured a section: the command, the day, the engine, and where. `peers` are versions, or `Missing`.
+    `device` is empty if the program had drawn nothing by then."""
+
+    command: str
+    date: str
+    machine: str
+    device: str
+    commit: str
+    load: str
+    peers: dict
+
+
+@dataclass
 class Section:
     number: int
     title: str
     text: str
+    # as --only names it
+    name: str = ""
+    # None until the section is measured
+    run: Run | None = None
     tables: list[Table] = field(default_factory=list)
     contests: list[Contest] = field(default_factory=list)
     promises: list[Promise] = field(default_factory=list)
@@ -166,15 +185,8 @@ class Section:
 
 @dataclass
 class Report:
-    """Everything of one run. `peers` are versions, or `Missing`."""
+    """The sections, of one run or of several."""
 
-    command: str
-    date: str
-    machine: str
-    device: str
-    commit: str
-    load: str
-    peers: dict
     sections: list[Section]
 
     def contests(self):
@@ -190,7 +202,7 @@ class Report:
         return [(s, p) for s, p in self.promises() if p.broken()]
 
     def exit_status(self):
-        """1: a claim was lost by more than the noise, a promise is broken, or a section failed."""
+        """1: a claim was lost by more than the noise, a promise is broken, or a section failed. Of all sections."""
         failed = any(section.failure for section in self.sections)
         return 1 if self.lost() or self.broken() or failed else 0
 

@@ -4,7 +4,7 @@ import json
 import unittest
 
 from report import markdown, plots
-from report.rows import Contest, Missing, Promise, Report, Section, Table
+from report.rows import Contest, Missing, Promise, Report, Run, Section, Table
 
 
 def contest(ours, theirs, claim="ahead", **more):
@@ -12,8 +12,9 @@ def contest(ours, theirs, claim="ahead", **more):
 
 
 def report(*contests, promises=(), failure=""):
-    section = Section(1, "Made up", "", contests=list(contests), promises=list(promises), failure=failure)
-    return Report("tools/report", "2026-01-01", "a machine", "a device", "abc", "0.1", {"Viewer": "1.0"}, [section])
+    run = Run("tools/report", "2026-01-01", "a machine", "a device", "abc", "0.1", {"Viewer": "1.0"})
+    made_up = {"contests": list(contests), "promises": list(promises), "failure": failure}
+    return Report([Section(1, "Made up", "", "made_up", run, **made_up)])
 
 
 WON = contest([100, 110, 105], [300, 280, 330])
@@ -88,7 +89,7 @@ class Written(unittest.TestCase):
         caused = contest(LOST.ours, LOST.theirs, "open", cause="a process takes 0.4 s")
         text = markdown.losses(report(contest(LOST.ours, LOST.theirs, "open"), caused))
         unexplained, explained = text.split("Cause: a process takes 0.4 s.")
-        self.assertIn("No measurement of this run explains these:\n\n* 1. first picture", unexplained)
+        self.assertIn("No measurement explains these:\n\n* 1. first picture", unexplained)
         self.assertIn("* 1. first picture", explained)
 
     def test_a_lost_claim_has_its_cause(self):
@@ -111,20 +112,23 @@ class Written(unittest.TestCase):
         self.assertIn(row.format(1), lose)
         self.assertIn(row.format(0), claim)
         nothing = markdown.text(report(contest(WON.ours, WON.theirs, "open")), {})
-        self.assertIn("## What we claim\n\nNothing in this run.", nothing)
+        self.assertIn("## What we claim\n\nNothing in these sections.", nothing)
 
-    def test_each_section_has_its_time(self):
+    def test_each_section_has_its_run_and_time(self):
         whole = report(WON)
         whole.sections[0].seconds, whole.sections[0].given = 61.0, 80.0
-        self.assertIn("This section took 61 s of the 80 s that it is given.", markdown.text(whole, {}))
+        run = "Measured 2026-01-01, commit abc, {}, by `tools/report`. a machine, load 0.1; a device."
+        self.assertIn(run.format("61 s of the 80 s that it is given"), markdown.text(whole, {}))
+        whole.sections[0].seconds, whole.sections[0].given = 330.0, 300.0
+        self.assertIn(run.format("5.5 min of the 5.0 min that it is given"), markdown.text(whole, {}))
 
     def test_a_run_without_losses_states_it(self):
-        self.assertIn("Nowhere in this run.", markdown.text(report(WON), {}))
+        self.assertIn("Nowhere in these sections.", markdown.text(report(WON), {}))
 
     def test_a_missing_figure_has_a_reason(self):
         whole = report(contest([], [], why="the viewer is not installed"))
         whole.sections[0].tables.append(Table("", ["a", "b"], [[1, Missing("no room")]]))
-        whole.peers["Other"] = Missing("pip found no such package")
+        whole.sections[0].run.peers["Other"] = Missing("pip found no such package")
         text = markdown.text(whole, {})
         absent = text[text.index("## What was not measured") : text.index("## 1. Made up")]
         for why in ("the viewer is not installed", "no room", "pip found no such package"):
@@ -135,7 +139,7 @@ class Written(unittest.TestCase):
         rows = data["sections"][0]["contests"]
         self.assertEqual([(row["verdict"], row["lost"]) for row in rows], [("ahead", False), ("behind", True)])
         self.assertTrue(data["sections"][0]["promises"][0]["broken"])
-        self.assertEqual((data["schema"], data["exit_status"]), (1, 1))
+        self.assertEqual((data["schema"], data["exit_status"]), (2, 1))
 
     def test_a_table_of_uneven_rows_is_refused(self):
         self.assertRaises(ValueError, Table, "", ["a", "b"], [[1]])
