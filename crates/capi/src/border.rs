@@ -39,7 +39,9 @@ impl From<JobError> for Failure {
         let status = match &error {
             JobError::Import(_) | JobError::Nothing { .. } | JobError::Limit(_) => SelvedgeStatus::File,
             JobError::Device(_) => SelvedgeStatus::Device,
-            JobError::Draw(_) | JobError::Validation(_) | JobError::Closed => SelvedgeStatus::Render,
+            JobError::Draw(_) | JobError::Boundary { .. } | JobError::Validation(_) | JobError::Closed => {
+                SelvedgeStatus::Render
+            }
             JobError::Camera(_) | JobError::Pinhole(_) | JobError::Edges(_) | JobError::Snap => {
                 SelvedgeStatus::Argument
             }

@@ -28,7 +28,9 @@ pub fn raised(py: Python<'_>, error: &JobError) -> PyErr {
         JobError::Camera(_) | JobError::Pinhole(_) | JobError::Edges(_) | JobError::Snap => PyValueError::new_err(text),
         JobError::Device(_) => instance(py, "DeviceError", (text,)),
         JobError::Closed => instance(py, "ClosedError", (text,)),
-        JobError::Draw(_) | JobError::Validation(_) | JobError::Limit(_) => instance(py, "RenderError", (text,)),
+        JobError::Draw(_) | JobError::Boundary { .. } | JobError::Validation(_) | JobError::Limit(_) => {
+            instance(py, "RenderError", (text,))
+        }
         _ => PyRuntimeError::new_err(text),
     }
 }

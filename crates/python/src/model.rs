@@ -7,14 +7,14 @@ use crate::shape::{Edge, Face, corners};
 use crate::waiting::apart;
 use numpy::ndarray::Array2;
 use numpy::{PyArray, PyArray2};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyTuple;
 use selvedge::model;
 use selvedge_io::import;
-use selvedge_jobs::{Loaded, Node, ReadOptions, SNAP_KINDS, Snapper, Source, bounds, read};
+use selvedge_jobs::{JobError, Loaded, Node, ReadOptions, SNAP_KINDS, Snapper, Source, bounds, read};
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -145,8 +145,10 @@ impl Model {
     fn edges(&self, py: Python<'_>) -> PyResult<Py<PyTuple>> {
         let made = || {
             let model = Arc::clone(&self.loaded.model);
-            let found = py.detach(|| model.parts.iter().map(model::Part::edges).collect::<Result<Vec<_>, _>>());
-            let found = Arc::new(found.map_err(|error| PyRuntimeError::new_err(error.to_string()))?);
+            let edges =
+                |(part, p): (usize, &model::Part)| p.edges().map_err(|source| JobError::Boundary { part, source });
+            let found = py.detach(|| model.parts.iter().enumerate().map(edges).collect::<Result<Vec<_>, _>>());
+            let found = Arc::new(found.map_err(|error| raised(py, &error))?);
             let counts = found.iter().map(|edges| edges.edges.len() + edges.of_meshes.len());
             let places = counts.enumerate().flat_map(|(part, count)| (0..count).map(move |index| (part, index)));
             let edge = |(number, (part, index)): (usize, (usize, usize))| Edge {
