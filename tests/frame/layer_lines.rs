@@ -3,7 +3,7 @@
 use crate::layers::{BLUE, glass, model, one, painted};
 use crate::shapes::solids::{ball, block, post, solid};
 use crate::solid_lines::{HALF, JUNCTION, OFF, OFF_AT_JUNCTIONS, SIZE, SOLID, draw, judged_by_program, lines, with};
-use crate::support::{assert_silent, orthographic, perspective, watched_with};
+use crate::support::{assert_silent, orthographic, perspective, render, watched_with};
 use glam::{DVec2, DVec3};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{EdgeChoice, EdgeSettings, SceneSettings};
@@ -112,7 +112,8 @@ fn lines_are_the_same_in_bands() {
 #[test]
 fn what_makes_them_exists_only_where_it_is_needed() {
     let count = |model: &Model, settings| {
-        let renderer = watched_with(model, settings);
+        let mut renderer = watched_with(model, settings);
+        render(&mut renderer, &perspective(model, SIZE));
         let objects = renderer.objects();
         assert_silent(renderer);
         objects.iter().filter(|n| n.contains("seen through)") || n.contains("faces seen through")).count()

@@ -1,9 +1,10 @@
-//! Shared by several stages: counters that begin at 0, prefix sums, and the draws of sub-patches.
+//! Shared by several stages: counters that begin at 0, prefix sums, draws of sub-patches, and what two stages agree on.
 
 pub(crate) mod border_list;
 pub(crate) mod draw;
 pub(crate) mod gate;
 pub(crate) mod kernel;
+pub(crate) mod layer_faces;
 pub(crate) mod reset;
 pub(crate) mod room;
 pub mod scan;

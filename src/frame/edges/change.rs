@@ -10,7 +10,7 @@
 
 use crate::bindings::Primitives;
 use crate::frame::common::draw::Draw;
-use crate::frame::transparency::solid_layers::Faces;
+use crate::frame::common::layer_faces::Faces;
 use crate::gpu::{
     Attachment, Blend, Buffer, ColourTarget, Commands, Device, GpuError, Image, Pipeline, Resource, TexelBuffer,
 };

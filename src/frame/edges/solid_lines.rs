@@ -9,10 +9,11 @@
 
 use super::{change, join};
 use crate::abi::constants::edges::{LINES_FOLDS, LINES_SHARP, LINES_SMOOTH, LINES_SMOOTH_FULL};
+use crate::frame::common::layer_faces::{FACES_FORMAT, Faces};
 use crate::frame::common::room::{DRAWN_AND_READ, Room};
 use crate::frame::solids::SolidParts;
 use crate::frame::solids::bands::Band;
-use crate::frame::transparency::solid_layers::{FACES_FORMAT, Faces, For, SolidLayers};
+use crate::frame::transparency::solid_layers::{For, SolidLayers};
 use crate::frame::transparency::{Transparency, kinds};
 use crate::frame::{Frame, WRITE_TO_READ};
 use crate::gpu::{Access, Attachment, Commands, Device, GpuError, Image, Load, barrier};

@@ -13,6 +13,7 @@
 
 use crate::bindings::{Primitives, SUN_BINDINGS, SUN_OWN};
 use crate::frame::common::draw::Draw;
+use crate::frame::common::layer_faces::{FACES_FORMAT, Faces};
 use crate::gpu::{
     Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Image, Pipeline, Resource,
     TexelBuffer,
@@ -38,17 +39,6 @@ pub(crate) enum For {
     /// The faces that [`Faces`] names, the only target.
     Lines(Faces),
 }
-
-/// The faces of what is seen through whose lines are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Faces {
-    Nearest,
-    /// In front of what is opaque.
-    Farthest,
-}
-
-/// Format of the image of such faces: `glsl/include/layer_words.glsl`.
-pub(crate) const FACES_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// The kinds of surfaces in the scene.
 #[derive(Clone, Copy, Debug)]
