@@ -42,6 +42,9 @@ pub mod border_find {
     pub const POINTS: u32 = 16;
     pub const ROWS: i32 = 16;
 }
+pub mod border_mesh {
+    pub const LEADS_NOWHERE_PX: f32 = 1.5;
+}
 pub mod border_mix {
     pub const CLOSE_PX: f32 = 0.02;
     pub const MOST_SHEETS: u32 = 4;
@@ -50,6 +53,11 @@ pub mod border_mix {
 pub mod border_pixel {
     pub const JUMP_OF_CLIMB: f32 = 0.5;
     pub const JUMP_PX: f32 = 2.0;
+}
+pub mod border_reach {
+    pub const ASIDE: f32 = 0.015625;
+    pub const MOST_BESIDE: f32 = 1.5;
+    pub const REMAINDER_PX: f32 = 0.25;
 }
 pub mod border_seen {
     pub const AROUND: u32 = 9;
@@ -109,6 +117,7 @@ pub mod edge_line {
     pub const GAP: f32 = 6.0;
     pub const ROUNDED_PX: f32 = 0.0625;
     pub const SEED_ROUNDED: f32 = 1e-4;
+    pub const TRIMS_TELL_PX: f32 = 1.0;
     pub const TURN_SHEET_PX: f32 = 2.0;
 }
 pub mod edge_seen {
@@ -265,7 +274,10 @@ pub mod scene {
     pub const ENCODE_SUMMED: u32 = 2;
     pub const FACE_CLOSED_U: u32 = 1;
     pub const FACE_CLOSED_V: u32 = 2;
+    pub const FACE_MEETS_U: u32 = 64;
+    pub const FACE_MEETS_V: u32 = 128;
     pub const FACE_OPERAND: u32 = 32;
+    pub const FACE_POINTS: u32 = 8;
     pub const FACE_SAME_SENSE: u32 = 4;
     pub const FACE_SOLID: u32 = 8;
     pub const FACE_TRIMMED: u32 = 16;

@@ -46,7 +46,7 @@ const DIAMETERS: [(&str, &str); 3] = [("d", "r"), ("d1", "r1"), ("d2", "r2")];
 
 /// Names the arguments of a node, and makes radii of diameters, which win over stated radii. The result is what cannot
 /// be used; `undef`, 0 and an empty text count as absent there.
-pub(super) fn settle<'a>(node: &str, all: &mut Vec<(Option<&'a str>, Value)>) -> Vec<String> {
+pub(super) fn settle(node: &str, all: &mut Vec<(Option<&str>, Value)>) -> Vec<String> {
     let Some((_, ordered, other)) = SIGNATURES.iter().find(|(name, ..)| *name == node) else { return Vec::new() };
     let mut unknown = Vec::new();
     let unnamed = all.iter_mut().filter(|(name, _)| name.is_none());
