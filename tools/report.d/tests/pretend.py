@@ -8,7 +8,7 @@ from pathlib import Path
 
 from report.turns import Unmeasurable
 
-KERNEL = {"worst_px": 0.25, "p999_px": 0.125, "off": 3, "searched": 3, "beyond": 0}
+KERNEL = {"worst_px": 0.25, "p999_px": 0.125, "off": 3, "searched": 3, "beyond": 0, "readings": [1, 0, 0]}
 # files of a hundred kilobytes, and their work beside that of the others
 LIGHT, LIGHTER = {"bracket.step", "occt_screw.step", "panel.step"}, 0.5
 # seconds to read a file and mesh it within a share of its diagonal
@@ -195,7 +195,7 @@ class Peers:
         for name, view in job["views"].items():
             pictures = view["pictures"]
             seconds += self.given(job) * (1 + 0.35 * len(pictures))
-            found.append({"view": name, "boundary": 900, "sampled": 9000, "alone": 0})
+            found.append({"view": name, "boundary": 900, "sampled": 9000, "alone": 0, "widened": 1, "edge_mm": 0.1})
             found[-1]["pictures"] = dict.fromkeys(pictures, KERNEL)
         return seconds, found
 

@@ -110,6 +110,18 @@ class Surfaces(unittest.TestCase):
         self.assertEqual(cells[1], ["1e-05 of the diagonal", Missing("the mesh before took 9 s")])
         self.assertEqual((cells[2][0], type(cells[2][1])), ("1e-06 of the diagonal", Missing))
 
+    def test_pixels_of_two_readings_are_a_table(self):
+        case = object.__new__(surfaces.Case)
+        case.what, case.tolerances = "part.step", [0.1, 0.5, 1.0]
+        errors = {"ours 0.1": {"readings": [8, 0, 1]}, "ours 0.5": {"readings": [7, 1, 1]}}
+        section = Section(1, "", "")
+        case.readings(section, {"widened": 9, "edge_mm": 0.1593}, errors)
+        (table,) = section.tables
+        self.assertEqual(table.rows, [["0.1 px", 9, 8, 0, 1], ["0.5 px", 9, 7, 1, 1]])
+        self.assertIn("up to 0.16 mm", table.text)
+        case.readings(section, {"widened": 0}, {})
+        self.assertEqual(len(section.tables), 1)
+
     def test_later_rounds_repeat_some_settings(self):
         case = object.__new__(surfaces.Case)
         case.begun, case.model, case.camera, case.context = set(), None, None, mock.MagicMock()

@@ -2,7 +2,8 @@
 
     job      model, seconds (for the rays of the truth, and for the searches of each picture),
              views: {name: {camera, pictures: {name: {path, own}}}}
-    results  {view, boundary, sampled, alone, pictures: {name: {worst_px, p999_px, off, searched, beyond}}}, one a view
+    results  {view, boundary, sampled, alone, widened, edge_mm,
+             pictures: {name: {worst_px, p999_px, off, searched, beyond, readings}}}, one a view
 
 Sampled are the pixels at changes of face, found by halving the cells of a grid whose corners see different faces,
 cell by cell in random order until the time is up. Where a picture shows another face than the ray at a pixel's
@@ -10,10 +11,17 @@ centre, the picture's face is looked for around it: the least distance at which 
 `p999_px` is the error that one in a thousand of the boundary's pixels exceeds. Errors are distances of the list
 below, rounded up; beyond the last one, a pixel counts as `beyond`, and as twice that distance.
 
-Pictures that are `own` number faces in another way: each of the kernel's faces is the number that most rays through
-the inside of the picture's faces find. A pixel at which the last picture and the last `own` one are both wrong is
-left out, and counted as `alone`: where two independent pictures agree, the kernel's ray is at fault. Their order is
-from coarse to fine.
+The kernel counts a point as one of a face if it is within the tolerance of an edge, too. That tolerance bounds the
+distance between an edge's curves at the same parameter: curves in one place that run at other speeds make it wide.
+Here the curves in (u, v) alone bound a face. `widened` counts the boundary's pixels where the tolerance of an edge, of
+at most `edge_mm`, puts another face in front; `readings` of a picture are the pixels of these at which it shows the
+face within the curves, the widened one, and neither. The errors are those by the curves, at these pixels as at others.
+
+Pictures that are `own` number faces in another way, all in the same one: each of the kernel's faces is the number that
+most rays through the inside of the pictures' faces find, in the finest picture that shows them; for a face that no ray
+through a pixel's centre meets, the rays close beside it. A pixel at which the last picture and the last `own` one are
+both wrong is left out, and counted as `alone`: where two independent pictures agree, the kernel's ray is at fault.
+Their order is from coarse to fine.
 """
 
 import math
@@ -41,6 +49,8 @@ TOLERANCE = 1e-7
 FAR = 1e9
 # rays through the inside of each face of a picture, and how far inside, pixels
 NAMING, INSIDE = 6, 2
+# how far beside a pixel's centre the rays look for a face that none met, pixels: the smallest tolerances are within it
+SLIVER = 1 / 4
 
 
 def unit(v):
@@ -73,6 +83,8 @@ class Rays(View):
     def __init__(self, found, camera, tie):
         super().__init__(camera)
         self.tie, self.found, self.made = tie, found, {}
+        # by point of the picture, the face that only the tolerance of an edge puts in front
+        self.widened = {}
         self.tiles = {}
         for number, face in enumerate(found):
             for tile in self.covered(face):
@@ -102,23 +114,37 @@ class Rays(View):
         if not faces:
             return [-1]
         line = gp_Lin(gp_Pnt(*map(float, self.eye)), gp_Dir(*map(float, self.ray(x, y))))
-        hits = []
-        for number in faces:
-            held = self.made.get(number)
-            if held is None:
-                held = self.made[number] = IntCurvesFace_Intersector(self.found[number], TOLERANCE)
-            try:
-                held.Perform(line, 0.0, FAR)
-            except Exception:  # the kernel's own: a surface that it cannot intersect has no hit
-                continue
-            if held.IsDone():
-                for k in range(1, held.NbPnt() + 1):
-                    if held.State(k) in (TopAbs_IN, TopAbs_ON):
-                        hits.append((held.WParameter(k), number))
+        wide = [(number, *hit) for number in faces for hit in self.met(number, line, True)]
+        # on an edge, or only within its tolerance
+        doubted = {number for number, _, state in wide if state == TopAbs_ON}
+        hits = [(depth, number) for number, depth, _ in wide if number not in doubted]
+        hits += [(depth, number) for number in doubted for depth, _ in self.met(number, line, False)]
+        first = self.first(hits)
+        front = self.first([(depth, number) for number, depth, _ in wide])
+        if front[0] != first[0]:
+            self.widened[x, y] = front[0]
+        return first
+
+    def met(self, number, line, wide):
+        """Depths and states at which a line meets a face, with the tolerances of its edges or without."""
+        held = self.made.get((number, wide))
+        if held is None:
+            held = IntCurvesFace_Intersector(self.found[number], TOLERANCE, True, wide)
+            self.made[number, wide] = held
+        try:
+            held.Perform(line, 0.0, FAR)
+        except Exception:  # the kernel's own: a surface that it cannot intersect has no hit
+            return []
+        if not held.IsDone():
+            return []
+        points = [(held.WParameter(k), held.State(k)) for k in range(1, held.NbPnt() + 1)]
+        return [(depth, state) for depth, state in points if state in (TopAbs_IN, TopAbs_ON)]
+
+    def first(self, hits):
+        """The numbers of the nearest faces, the nearest first."""
         if not hits:
             return [-1]
         nearest = min(hits)[0]
-        # the nearest first
         return [number for depth, number in sorted(hits) if depth <= nearest + self.tie]
 
 
@@ -152,22 +178,41 @@ def boundary(rays, seconds):
     return {pixel: seen[pixel] for pixel in changes}, seen
 
 
-def named(rays, image):
-    """For a picture with numbers of its own, that of each of the kernel's faces; 0 is its background."""
-    inner = numpy.ones(image.shape, bool)
-    for shift in range(-INSIDE, INSIDE + 1):
-        inner &= (numpy.roll(image, shift, 0) == image) & (numpy.roll(image, shift, 1) == image)
-    votes, draw = {}, numpy.random.default_rng(1)
-    for number in numpy.unique(image):
-        if number == 0:
-            continue
-        pixels = numpy.argwhere((image == number) & inner)
-        if not len(pixels):
-            pixels = numpy.argwhere(image == number)
-        for y, x in draw.permutation(pixels)[:NAMING]:
-            of = votes.setdefault(rays.centre((x, y))[0], {})
-            of[int(number)] = of.get(int(number), 0) + 1
-    return {**{face: max(of, key=of.get) for face, of in votes.items()}, -1: 0}
+def named(rays, images):
+    """For pictures with numbers of their own, from coarse to fine, that of each of the kernel's faces; 0 is their
+    background."""
+    votes, draw, sizes, sampled = {}, numpy.random.default_rng(1), {}, {}
+    for image in reversed(images):
+        inner = numpy.ones(image.shape, bool)
+        for shift in range(-INSIDE, INSIDE + 1):
+            inner &= (numpy.roll(image, shift, 0) == image) & (numpy.roll(image, shift, 1) == image)
+        for number in map(int, numpy.unique(image)):
+            if number == 0 or number in sampled:
+                continue
+            pixels = numpy.argwhere((image == number) & inner)
+            if not len(pixels):
+                pixels = numpy.argwhere(image == number)
+            sizes[number] = len(pixels)
+            sampled[number] = [(int(x), int(y)) for y, x in draw.permutation(pixels)[:NAMING]]
+    for number, pixels in sampled.items():
+        for pixel in pixels:
+            of = votes.setdefault(rays.centre(pixel)[0], {})
+            of[number] = of.get(number, 0) + 1
+    # of as many votes, the larger face's: the pixels of a small one may all be at its boundary
+    names = {face: max(of, key=lambda number: (of[number], sizes[number])) for face, of in votes.items()}
+    names[-1] = 0
+    # a face narrower than a pixel: the rays through its pixels' centres may meet another one
+    for number in sorted(set(sampled) - set(names.values())):
+        found = (unnamed(rays, pixel, names) for pixel in sampled[number])
+        beside = next((face for face in found if face is not None), None)
+        if beside is not None:
+            names[beside] = number
+    return names
+
+
+def unnamed(rays, pixel, names):
+    """The nearest face beside a pixel's centre that has no name; None if there is none."""
+    return next((faces[0] for _, faces in around(rays, pixel, SLIVER) if faces[0] not in names), None)
 
 
 def judged(rays, image, names, wrong, count, seconds):
@@ -190,32 +235,54 @@ def judged(rays, image, names, wrong, count, seconds):
     return result
 
 
-def shift(rays, pixel, right):
-    """The least of the distances at which a ray meets the right face; infinite beyond them."""
-    for distance in DISTANCES:
+def around(rays, pixel, most):
+    """Distances up to the most, and the faces that a ray meets there."""
+    for distance in (d for d in DISTANCES if d <= most):
         for k in range(DIRECTIONS):
             turn = 2 * math.pi * k / DIRECTIONS
-            if right(rays.at(pixel[0] + 0.5 + distance * math.cos(turn), pixel[1] + 0.5 + distance * math.sin(turn))):
-                return distance
-    return math.inf
+            x, y = pixel[0] + 0.5 + distance * math.cos(turn), pixel[1] + 0.5 + distance * math.sin(turn)
+            yield distance, rays.at(x, y)
+
+
+def shift(rays, pixel, right):
+    """The least of the distances at which a ray meets the right face; infinite beyond them."""
+    return next((distance for distance, faces in around(rays, pixel, DISTANCES[-1]) if right(faces)), math.inf)
+
+
+def readings(image, names, truth, widened):
+    """Pixels at which a picture shows the face within the curves, the one that is widened, and neither."""
+    name = lambda face: face if names is None else names.get(face)
+    counts = [0, 0, 0]
+    for pixel, front in widened.items():
+        drawn = int(image[pixel[1], pixel[0]])
+        counts[0 if drawn in map(name, truth[pixel]) else 1 if drawn == name(front) else 2] += 1
+    return counts
 
 
 def view(found, diagonal, camera, pictures, seconds):
     """All pictures of one camera."""
     rays = Rays(found, camera, TIE * diagonal)
     truth, seen = boundary(rays, seconds)
-    images, wrong, last = {}, {}, {}
-    for name, picture in pictures.items():
-        image = numpy.load(picture["path"]).astype(numpy.int64)
-        names = named(rays, image) if picture["own"] else None
-        last[picture["own"]] = name
-        images[name] = (image, names)
+    images = {name: numpy.load(picture["path"]).astype(numpy.int64) for name, picture in pictures.items()}
+    own = named(rays, [images[name] for name, picture in pictures.items() if picture["own"]])
+    names_of = {name: own if picture["own"] else None for name, picture in pictures.items()}
+    wrong, last = {}, {}
+    for name, image in images.items():
+        names = names_of[name]
+        last[pictures[name]["own"]] = name
         right = lambda face: face if names is None else names.get(face)
         wrong[name] = {p for p, faces in truth.items() if int(image[p[1], p[0]]) not in map(right, faces)}
     alone = set.intersection(*(wrong[name] for name in last.values())) if len(last) > 1 else set()
     count = len(truth) - len(alone)
-    errors = {n: judged(rays, image, names, wrong[n] - alone, count, seconds) for n, (image, names) in images.items()}
-    return {"boundary": count, "sampled": len(seen), "alone": len(alone), "pictures": errors}
+    centres = {(x, y): (x + 0.5, y + 0.5) for x, y in truth}
+    widened = {pixel: rays.widened[at] for pixel, at in centres.items() if at in rays.widened}
+    edge_mm = max((shapes.edge_mm(found[number]) for number in set(widened.values())), default=0.0)
+    errors = {}
+    for name, image in images.items():
+        errors[name] = judged(rays, image, names_of[name], wrong[name] - alone, count, seconds)
+        errors[name]["readings"] = readings(image, names_of[name], truth, widened)
+    head = {"boundary": count, "sampled": len(seen), "alone": len(alone), "widened": len(widened), "edge_mm": edge_mm}
+    return {**head, "pictures": errors}
 
 
 def main():

@@ -11,7 +11,7 @@ from OCP.BRepTools import BRepTools
 from OCP.IGESControl import IGESControl_Reader
 from OCP.Message import Message, Message_Gravity
 from OCP.STEPControl import STEPControl_Reader
-from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_REVERSED
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
@@ -40,6 +40,16 @@ def faces(shape):
         found.append((getattr(TopoDS, "Face_s", None) or TopoDS.Face)(explorer.Current()))
         explorer.Next()
     return found
+
+
+def edge_mm(face):
+    """The largest tolerance of the face's edges."""
+    explorer, most = TopExp_Explorer(face, TopAbs_EDGE), 0.0
+    while explorer.More():
+        edge = (getattr(TopoDS, "Edge_s", None) or TopoDS.Edge)(explorer.Current())
+        most = max(most, BRep_Tool.Tolerance_s(edge))
+        explorer.Next()
+    return most
 
 
 def box(shape):

@@ -44,6 +44,12 @@ FACETED = 1e-3
 WALL = "wall clock, with read-back"
 VIEWERS = {"occ": "Open CASCADE", "vtk": "VTK"}
 RIGHT = "no boundary pixel beyond the tolerance, by the kernel's rays"
+# why the judge has two readings of a file
+WIDE = """\
+The kernel widens each face by the tolerance of its edges. It is as large as the distance between an edge's curves in
+space and in (u, v) at the same parameter, though the curves may lie in one place. We judge by the curves in (u, v).
+Here are the pixels at which an edge, by a tolerance of up to {mm:.2g} mm, puts another face in front. They are judged
+by the curves with all others; none is left out for this."""
 TITLE = "Time against error, surfaces"
 TEXT = """\
 *First picture* is from the file: of ours the whole process, with the device, the driver's pipelines and the PNG; of
@@ -249,7 +255,7 @@ class Case:
         try:
             head, errors = self.judged(pictures)
         except Unmeasurable as error:
-            head, errors = {"boundary": 0, "sampled": 0, "alone": 0}, {}
+            head, errors = {"boundary": 0, "sampled": 0, "alone": 0, "widened": 0}, {}
             section.contests.append(Contest(f"errors, {self.what}", "the kernel", "px", why=str(error)))
         competitors = {"selvedge": ("ours", results["ours"])}
         for name in VIEWERS.values():
@@ -257,6 +263,7 @@ class Case:
             competitors[name] = ("mesh", found if isinstance(found, Unmeasurable) else [one[name] for one in found])
         competitors["F3D"] = ("mesh", results["F3D"])
         self.table(section, competitors, head, errors)
+        self.readings(section, head, errors)
         causes = {}
         try:
             causes = self.spent(section)
@@ -313,6 +320,16 @@ class Case:
             "pixels off",
         ]
         section.tables.append(Table(self.what, columns, rows, text))
+
+    def readings(self, section, head, errors):
+        """Adds what our pictures show where the kernel's tolerance of an edge hides what its curves show."""
+        if not head["widened"]:
+            return
+        of = {tolerance: errors.get(f"ours {tolerance}") for tolerance in self.tolerances}
+        rows = [[f"{tolerance:g} px", head["widened"], *error["readings"]] for tolerance, error in of.items() if error]
+        columns = ["selvedge within", "pixels", "by the curves", "by the tolerance of an edge", "neither"]
+        title = f"{self.what}: where the kernel's edges are wide"
+        section.tables.append(Table(title, columns, rows, WIDE.format(mm=head["edge_mm"])))
 
     def curve(self, kind, found, errors, k):
         """`(error, time)` of each setting, times of one round or the medians of those that timed it."""
