@@ -235,7 +235,8 @@ impl Ui {
                 (self.measurement, self.verdict, self.save) = (None, None, None);
             }
             Command::Next { back, add } => {
-                if step(session, self.filter, back, add) {
+                let is_other = step(session, self.filter, back, add);
+                if is_other {
                     self.selected(session, None);
                 }
             }
