@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use selvedge::model::Camera as View;
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Outputs, Samples, SceneSettings, Smooth, Style};
 use selvedge_jobs::{
-    self as session, Ambient, Backdrop, CameraFile, DeviceOptions, Drawn, Image, Job, JobError, Ticket, Verdict,
+    self as jobs, Ambient, Backdrop, CameraFile, DeviceOptions, Drawn, Image, Job, JobError, Ticket, Verdict,
     Viewpoint, Worker, lines, smooth,
 };
 use std::str::FromStr;
@@ -229,7 +229,7 @@ impl Renderer {
 /// The time of a file's pictures, which share it; see ``selvedge.render_files``.
 #[pyclass(frozen, module = "selvedge._native")]
 pub struct Limits {
-    inner: session::Limits,
+    inner: jobs::Limits,
 }
 
 #[pymethods]
@@ -239,7 +239,7 @@ impl Limits {
     #[pyo3(signature = (file, most_s, spent_s))]
     fn new(file: String, most_s: Option<f64>, spent_s: f64) -> Self {
         let duration = |seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
-        let inner = session::Limits::new(&file, most_s.map(duration), None);
+        let inner = jobs::Limits::new(&file, most_s.map(duration), None);
         inner.spend(duration(spent_s));
         Self { inner }
     }

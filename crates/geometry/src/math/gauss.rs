@@ -11,6 +11,8 @@ use std::sync::OnceLock;
 const POINTS: usize = 16;
 /// [`integrate`] halves a piece at most so often. If the answers still differ, the returned error shows it.
 const HALVINGS: u32 = 14;
+/// Halvings of all pieces together, at most: where rounding is above the tolerance, each step would double them.
+const MOST_HALVED: u32 = 1 << HALVINGS;
 
 /// Abscissae in `[-1, 1]` and weights, roots of the Legendre polynomial by Newton's method.
 ///
@@ -59,7 +61,8 @@ pub fn integrate<const N: usize>(
 }
 
 /// The same with absolute tolerances. Pieces are halved, at most `halvings` times, while the last two answers differ by
-/// more than `allowed`, which each half shares equally. An answer that is not a number ends the halving.
+/// more than `allowed`, which each half shares equally. An answer that is not a number ends the halving, and so do 2^14
+/// halvings of all pieces together.
 pub fn within<const N: usize>(
     f: &impl Fn(f64) -> [f64; N],
     (a, b): (f64, f64),
@@ -67,7 +70,8 @@ pub fn within<const N: usize>(
     halvings: u32,
 ) -> ([f64; N], [f64; N]) {
     let mut total = ([0.0; N], [0.0; N]);
-    halve(f, (a, b), rule(f, a, b), &allowed, halvings, &mut total);
+    let mut remaining = MOST_HALVED;
+    halve(f, (a, b), rule(f, a, b), &allowed, (halvings, &mut remaining), &mut total);
     total
 }
 
@@ -76,23 +80,24 @@ fn halve<const N: usize>(
     (a, b): (f64, f64),
     whole: [f64; N],
     allowed: &[f64; N],
-    depth: u32,
+    (depth, remaining): (u32, &mut u32),
     total: &mut ([f64; N], [f64; N]),
 ) {
     let middle = 0.5 * (a + b);
     let (left, right) = (rule(f, a, middle), rule(f, middle, b));
     let apart: [f64; N] = std::array::from_fn(|i| (left[i] + right[i] - whole[i]).abs());
-    let is_far = apart.iter().zip(allowed).any(|(d, most)| d > most);
-    if depth == 0 || !is_far {
+    let is_far = apart.iter().zip(allowed).any(|(d, limit)| d > limit);
+    if depth == 0 || *remaining == 0 || !is_far {
         for i in 0..N {
             total.0[i] += left[i] + right[i];
             total.1[i] += apart[i];
         }
         return;
     }
-    let allowed = allowed.map(|most| 0.5 * most);
-    halve(f, (a, middle), left, &allowed, depth - 1, total);
-    halve(f, (middle, b), right, &allowed, depth - 1, total);
+    *remaining -= 1;
+    let allowed = allowed.map(|limit| 0.5 * limit);
+    halve(f, (a, middle), left, &allowed, (depth - 1, &mut *remaining), total);
+    halve(f, (middle, b), right, &allowed, (depth - 1, remaining), total);
 }
 
 #[cfg(test)]
@@ -124,5 +129,19 @@ mod tests {
         };
         let ([sum], _) = within(&f, (0.0, 1.0), [1e-12], 16);
         assert!(sum.is_nan() && values.get() == 3 * POINTS, "{}", values.get());
+    }
+
+    /// No piece of this is smooth: halving to the end would take sixty million values.
+    #[test]
+    fn noise_is_not_halved_to_the_end() {
+        let values = std::cell::Cell::new(0);
+        let f = |t: f64| {
+            values.set(values.get() + 1);
+            [(1e9 * t).floor() % 2.0]
+        };
+        let (_, [error]) = within(&f, (0.0, 1.0), [1e-12], 20);
+        // a rule for the whole and two for each piece; each halving makes two pieces of one
+        let most = (1 + 2 * (1 + 2 * MOST_HALVED as usize)) * POINTS;
+        assert!(error > 1e-12 && values.get() <= most, "{error} {} {most}", values.get());
     }
 }

@@ -5,8 +5,8 @@
 //!     b╭╯  ╰╮c    row 2: b, c                only edges of the point's own row can be among them
 //! ```
 //!
-//! A face with a hundred thousand holes asks its border some millions of times. Cost: that of the edges at the point's
-//! height, a few for a border that does not turn to and fro.
+//! In a face with a hundred thousand holes, millions of points are compared with the border. Cost of a point: that of
+//! the edges at its height, a few for a border that does not turn to and fro.
 //!
 //! Source: M. Shimrat, *Algorithm 112: position of point relative to polygon*, 1962.
 
@@ -38,7 +38,7 @@ struct Rows {
 }
 
 /// The box of points.
-pub(super) fn bounds(polygon: &[DVec2]) -> (DVec2, DVec2) {
+fn bounds(polygon: &[DVec2]) -> (DVec2, DVec2) {
     polygon.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)))
 }
 
@@ -174,7 +174,7 @@ mod tests {
         assert!(outline.encloses(DVec2::ZERO));
         let rows = outline.rows.get().unwrap().as_ref().unwrap();
         assert!(rows.edges.len() < 6 * 5000, "{}", rows.edges.len());
-        // a point asks a few edges of thousands
+        // a point is compared with a few edges of thousands
         let most = (0..5000).map(|row| rows.starts[row + 1] - rows.starts[row]).max().unwrap();
         assert!(most < 400, "{most}");
     }

@@ -16,32 +16,39 @@ const WHY: &str = "a control point lies more than 1e14 mm from the origin";
 pub(super) fn leave_out(import: &mut Import, name: &str) {
     let near = |b: Bounds| b.is_empty() || (b.min.abs().max_element() <= MOST && b.max.abs().max_element() <= MOST);
     let Import { model, warnings, report, .. } = import;
-    let mut told = Warnings::new(name);
+    let mut losses = Warnings::new(name);
     let mut lost = HashSet::new();
     for (index, part) in model.parts.iter_mut().enumerate() {
+        let count = part.faces.len() + part.meshes.len();
         part.faces.retain(|face| {
             let (min, max) = face.surface.bounds();
             let keep = near(Bounds { min, max });
             if !keep {
                 lost.insert((index, face.id));
                 report.dropped.add(WHY);
-                told.push(FACE_LOST, || Place::File, || format!("#{}: {WHY}", face.id));
+                losses.push(FACE_LOST, || Place::File, || format!("#{}: {WHY}", face.id));
             }
             keep
         });
         part.meshes.retain(|mesh| {
             let keep = near(mesh.bounds());
             if !keep {
-                told.push("mesh left out", || Place::File, || "a vertex lies more than 1e14 mm from the origin".into());
+                losses.push(
+                    "mesh left out",
+                    || Place::File,
+                    || "a vertex lies more than 1e14 mm from the origin".into(),
+                );
             }
             keep
         });
+        // what is left has a hole
+        part.closed &= part.faces.len() + part.meshes.len() == count;
     }
     model.instances.retain(|instance| {
         let keep = instance.transform.to_cols_array().iter().all(|x| x.abs() <= MOST);
         if !keep {
             let why = || format!("`{}` is placed more than 1e14 mm from the origin", instance.name);
-            told.push("occurrence left out", || Place::File, why);
+            losses.push("occurrence left out", || Place::File, why);
         }
         keep
     });
@@ -49,7 +56,7 @@ pub(super) fn leave_out(import: &mut Import, name: &str) {
         record.kind = None;
         record.notes.push(WHY.to_owned());
     }
-    warnings.append(&mut told.finish(report));
+    warnings.append(&mut losses.finish(report));
 }
 
 #[cfg(test)]
@@ -73,5 +80,17 @@ mod tests {
         let mesh = read("v 0 0 0\nv 1 0 0\nv 0 1e300 0\nf 1 2 3\n", "t.obj");
         assert!(mesh.summary().draws_nothing() && !mesh.summary().is_complete());
         assert!(mesh.warnings[0].message.starts_with("mesh left out: "), "{:?}", mesh.warnings);
+    }
+
+    /// A tetrahedron of a red side and three others.
+    #[cfg(feature = "meshes")]
+    #[test]
+    fn what_lacks_a_mesh_is_not_closed() {
+        let sides = "3 0 2 1 255 0 0\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+        for (tip, meshes) in [("1", 2), ("1e15", 1)] {
+            let import = read(&format!("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 {tip}\n{sides}"), "t.off");
+            let part = &import.model.parts[0];
+            assert_eq!((part.meshes.len(), part.closed), (meshes, meshes == 2), "{tip}");
+        }
     }
 }

@@ -82,8 +82,15 @@ pub struct Ui {
     pub notice: Option<String>,
     /// The file to save the model to, while its dialog is open.
     pub save: Option<PathBuf>,
-    /// The text field of the dialog that was just opened takes the keys.
-    focuses: bool,
+    /// The dialog that was just opened: its text field takes the keys.
+    just_opened: Option<Dialog>,
+}
+
+/// The dialogs with a text that Enter carries out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Dialog {
+    Picture,
+    Model,
 }
 
 /// The dialog for writing a picture.
@@ -137,7 +144,7 @@ impl Default for Ui {
             chosen: None,
             notice: None,
             save: None,
-            focuses: false,
+            just_opened: None,
         }
     }
 }
@@ -272,11 +279,11 @@ impl Ui {
             Command::Trims => self.trims = !self.trims,
             Command::SaveAs => {
                 self.save = if self.save.is_none() { Some(PathBuf::from("edited.selvedge")) } else { None };
-                self.focuses = self.save.is_some();
+                self.just_opened = self.save.is_some().then_some(Dialog::Model);
             }
             Command::Screenshot => {
                 self.shot.open = !self.shot.open;
-                self.focuses = self.shot.open;
+                self.just_opened = self.shot.open.then_some(Dialog::Picture);
             }
             Command::Measure => match self.measurement.clone() {
                 Some(measurement) => self.keep(measurement),

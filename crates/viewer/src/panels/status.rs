@@ -1,6 +1,6 @@
 //! The line below the picture, and the windows that it opens: warnings, messages, help.
 
-use super::{Facts, Ui};
+use super::{Dialog, Facts, Ui};
 use crate::commands::{Command, shortcuts};
 use crate::describe;
 use crate::session::Session;
@@ -165,9 +165,9 @@ pub fn windows(ctx: &egui::Context, ui: &mut Ui, session: &Session, settings: &S
     ui.help = open;
 }
 
-/// Whether Enter ends the text of a dialog. The text of a dialog that was just opened takes the keys.
-fn is_entered(field: &egui::Response, focuses: &mut bool) -> bool {
-    if std::mem::take(focuses) {
+/// Whether Enter ends the text of a dialog. The text of the dialog that was just opened takes the keys.
+fn is_entered(field: &egui::Response, dialog: Dialog, just_opened: &mut Option<Dialog>) -> bool {
+    if just_opened.take_if(|opened| *opened == dialog).is_some() {
         field.request_focus();
     }
     field.lost_focus() && field.ctx.input(|input| input.key_pressed(egui::Key::Enter))
@@ -184,7 +184,7 @@ fn shot(ctx: &egui::Context, ui: &mut Ui) {
         if field.changed() {
             shot.path = path.into();
         }
-        if is_entered(&field, &mut ui.focuses) {
+        if is_entered(&field, Dialog::Picture, &mut ui.just_opened) {
             wanted = Some(Command::WritePicture);
         }
         window.horizontal(|row| {
@@ -216,7 +216,7 @@ fn save(ctx: &egui::Context, ui: &mut Ui) {
         if field.changed() {
             *path = text.into();
         }
-        let entered = is_entered(&field, &mut ui.focuses);
+        let entered = is_entered(&field, Dialog::Model, &mut ui.just_opened);
         wanted = window.button("Save").clicked() || entered;
     });
     if wanted {

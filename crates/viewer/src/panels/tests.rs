@@ -114,18 +114,19 @@ impl Bench {
         self.frame(vec![egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }])
     }
 
-    /// Presses Tab until something of this size has the keys.
+    /// Presses Tab until something of this size in the picture has the keys: boxes of the tree are as large as handles.
     fn tab_to(&mut self, size: egui::Vec2) {
         for _ in 0..1000 {
             self.press(egui::Key::Tab);
             let focused = self.ctx.memory(|memory| memory.focused());
             let rect = focused.and_then(|id| self.ctx.read_response(id)).map(|response| response.rect);
-            if rect.is_some_and(|rect| (rect.size() - size).length() < 0.1) {
+            let is_in_picture = |rect: &egui::Rect| self.rect.contains(rect.center());
+            if rect.filter(is_in_picture).is_some_and(|rect| (rect.size() - size).length() < 0.1) {
                 self.frame(Vec::new());
                 return;
             }
         }
-        panic!("Tab leads to nothing of {size}");
+        panic!("Tab leads to nothing of {size} in the picture");
     }
 
     fn click(&mut self, what: &str) {
@@ -429,6 +430,7 @@ fn a_dialog_is_used_by_keys_alone() {
     assert_eq!(bench.ui.commands, []);
     bench.press(egui::Key::Enter);
     assert_eq!(std::mem::take(&mut bench.ui.commands), [Command::WritePicture]);
+    // the first one is open still, and Enter is the second one's
     bench.ui.obey(Command::SaveAs, &mut bench.session);
     (0..3).for_each(|_| drop(bench.frame(Vec::new())));
     bench.press(egui::Key::Enter);

@@ -147,10 +147,7 @@ fn part(list: &mut egui::Ui, ui: &mut Ui, session: &mut Session, instance: usize
             item(menu, "Isolate", Command::Isolate);
             item(menu, "See through", Command::SeeThrough);
             item(menu, "Zoom to", Command::FitSelection);
-            if menu.button("Own colour").clicked() {
-                session.scene.change(|state| _ = state.colours.remove(&instance));
-                menu.close();
-            }
+            item(menu, "Own colour", Command::OwnColours);
         });
     });
 }

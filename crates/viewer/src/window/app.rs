@@ -293,13 +293,13 @@ impl App {
             fault: self.options.faults.as_ref().and_then(|faults| (faults.0)()),
         };
         let free = output.textures_delta.free;
-        let drawn = match screen.draw(window, picture, &frame) {
-            Ok(drawn) => drawn,
+        let (drawn, in_picture) = match screen.draw(window, picture, &frame) {
+            Ok(drawn) => (drawn, in_picture),
             Err(Failure::Picture(error)) => {
                 self.ui.tell(format!("This view cannot be drawn: {error}"));
                 // shown until the view changes
                 self.picture = Some(wanted);
-                true
+                (true, None)
             }
             Err(Failure::Screen(error)) => return Err(error),
         };

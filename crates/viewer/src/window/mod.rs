@@ -42,7 +42,7 @@ pub struct ViewOptions {
     pub validation: bool,
     /// The file of settings; `None` stores none.
     pub settings: Option<PathBuf>,
-    /// The folder of the desktop's settings, which may ask for less motion; `None` reads none of them.
+    /// The folder of the desktop's settings: less motion, dark or light. `None` reads none of them.
     pub desktop: Option<PathBuf>,
     /// Width and height of the window, points; `None` leaves them to the system.
     pub size: Option<(u32, u32)>,

@@ -196,8 +196,12 @@ impl Screen {
 
     pub(super) fn begin(&self) -> Result<(), ViewError> {
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        // SAFETY: the command buffer is not in use; to begin it resets it.
-        Ok(unsafe { self.context.device.begin_command_buffer(self.context.cmd, &begin) }?)
+        let Context { device, cmd, .. } = &self.context;
+        // SAFETY: the command buffer is not in use. It may be recording, where a picture failed: it is reset.
+        unsafe {
+            device.reset_command_buffer(*cmd, vk::CommandBufferResetFlags::empty())?;
+            Ok(device.begin_command_buffer(*cmd, &begin)?)
+        }
     }
 
     /// The number of the targets of this size.

@@ -137,7 +137,7 @@ fn colour(value: &str) -> Option<Colour> {
 }
 
 /// The colour, or a warning.
-fn told_colour(value: &str, line: usize, warnings: &mut Warnings) -> Option<Colour> {
+fn colour_or_warning(value: &str, line: usize, warnings: &mut Warnings) -> Option<Colour> {
     let found = colour(value);
     if found.is_none() {
         let shown: String = value.chars().take(40).collect();
@@ -168,7 +168,7 @@ pub(super) fn read<'a>(
                 } else {
                     None
                 };
-                let own = value("rgb").and_then(|rgb| told_colour(rgb, line, warnings));
+                let own = value("rgb").and_then(|rgb| colour_or_warning(rgb, line, warnings));
                 database.add(record, combination, own, report, warnings);
             }
             "put" => return Err(Fault::new(line, "`put` without name and kind")),
@@ -188,7 +188,7 @@ pub(super) fn read<'a>(
                 };
                 for pair in words[3..].chunks_exact(2) {
                     if matches!(pair[0], "rgb" | "color") {
-                        object.colour = told_colour(pair[1], line, warnings).or(object.colour);
+                        object.colour = colour_or_warning(pair[1], line, warnings).or(object.colour);
                     }
                     object.combination.iter_mut().for_each(|c| attribute(c, pair[0], pair[1]));
                 }

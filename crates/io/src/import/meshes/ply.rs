@@ -65,7 +65,7 @@ impl PropertyAccess for Element {
     }
 }
 
-/// -1 replaces a value that is no whole number.
+/// A list of other numbers has one value, which is no vertex and ends no strip.
 fn numbers(list: Property) -> Vec<i64> {
     match list {
         Property::ListChar(l) => l.into_iter().map(i64::from).collect(),
@@ -74,7 +74,7 @@ fn numbers(list: Property) -> Vec<i64> {
         Property::ListUShort(l) => l.into_iter().map(i64::from).collect(),
         Property::ListInt(l) => l.into_iter().map(i64::from).collect(),
         Property::ListUInt(l) => l.into_iter().map(i64::from).collect(),
-        _ => vec![-1],
+        _ => vec![i64::MIN],
     }
 }
 

@@ -22,7 +22,7 @@ static SIGNATURES: [Signature; 19] = [
     (
         "linear_extrude",
         &["height"],
-        &["center", "convexity", "twist", "slices", "scale", "file", "layer", "origin", "timestamp"],
+        &["center", "convexity", "twist", "slices", "segments", "scale", "file", "layer", "origin", "timestamp"],
     ),
     ("rotate_extrude", &["angle"], &["start", "convexity", "file", "layer", "origin", "scale", "timestamp"]),
     ("multmatrix", &["m"], &[]),

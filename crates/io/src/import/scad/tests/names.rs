@@ -40,7 +40,12 @@ fn arguments_that_nothing_uses_are_reported() {
         assert_eq!(told(&import), [format!("t.csg:1: argument left out: {what}")], "{text}");
         assert!(!import.summary().is_complete() && import.model.solids.len() == 1);
     }
-    for text in ["cube(sizo = undef);", "cube(size = 2, segments = 0, id = \"\");", "*cube(sizo = 3); cube();"] {
+    for text in [
+        "cube(sizo = undef);",
+        "cube(size = 2, segments = 0, id = \"\");",
+        "*cube(sizo = 3); cube();",
+        "linear_extrude(height = 1, segments = 8) { square(); }",
+    ] {
         assert!(told(&import(text)).is_empty(), "{text}");
     }
 }
