@@ -43,7 +43,7 @@ pub fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture 
     picture
 }
 
-/// With the first budget, of 4000 bytes and each a tenth less than the one before, for which lists are made band by band.
+/// With the first budget, of 4000 bytes and each a tenth less than the last, for which lists are made band by band.
 pub fn draw_in_bands(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
     let mut renderer = watched(&Model::default());
     let outputs = Outputs { edge: true, ..Outputs::ALL };
