@@ -413,8 +413,8 @@ pub struct FrameStats {
     /// occlusion test. Patches of [`hidden_parts`](Self::hidden_parts) are not among them.
     pub hidden_patches: u64,
     /// Placed parts in the picture that other surfaces hide as a whole, so that no pass looked at their patches. Of a
-    /// part of many patches, each group of faces counts as a part. 0 in the first frames of a scene, and in scenes of few
-    /// placed parts, with few patches a part, with several samples a pixel, or with spline operands.
+    /// part of many patches, each group of faces counts as a part. 0 in the first frames of a scene, and in scenes of
+    /// few placed parts, with few patches a part, with several samples a pixel, or with spline operands.
     pub hidden_parts: u64,
     /// Patches that passes looked at: those of placed parts, and of groups of faces, in the picture, without
     /// `hidden_parts`.

@@ -23,8 +23,8 @@ vec2 pixels_of(vec4 q, vec4 change) {
     return px;
 }
 
-// Factors of `remainder_px` along u and v, and across: `ends` are the ways of the homogeneous pixel over ASIDE less what
-// the derivatives at both ends say, `twist` the difference of the two mixed derivatives.
+// Factors of `remainder_px` along u and v, and across: `end_u` and `end_v` are the ways of the homogeneous pixel over
+// ASIDE less what the derivatives at both ends say, `twist` the difference of the two mixed derivatives.
 vec3 third_order(vec4 q, vec4 end_u, vec4 end_v, vec4 twist) {
     vec2 u = pixels_of(q, end_u);
     vec2 v = pixels_of(q, end_v);

@@ -6,11 +6,11 @@
 //      x
 //      ●
 //
-// Operands without equations have edges of their own, which pass `edge_line` draws. So have faces and meshes that are of
-// no solid; where a solid meets one of them, the line is drawn here.
+// Operands without equations have edges of their own, which pass `edge_line` draws. So have faces and meshes that are
+// of no solid; where a solid meets one of them, the line is drawn here.
 //
-// Of solids that are seen through (SEEN_THROUGH), the nearest faces are looked at, and by themselves the farthest ones in
-// front of what is opaque. Beside the nearest ones, what is opaque counts as it does without them.
+// Of solids that are seen through (SEEN_THROUGH), the nearest faces are looked at, and by themselves the farthest ones
+// in front of what is opaque. Beside the nearest ones, what is opaque counts as it does without them.
 #ifndef EDGE_CHANGE_GLSL
 #define EDGE_CHANGE_GLSL
 
@@ -111,8 +111,8 @@ uint drawn_as(uint style, float share) {
 uint style_of(float cosine) {
     bool smooth_ = cosine >= SMOOTH_COSINE;
     if ((push.drawn & LINES_SHARP) == 0u) return LINE_NONE;
-    if (!smooth_) return LINE_FULL;
-    return (push.drawn & LINES_SMOOTH_FULL) != 0u ? LINE_FULL : (push.drawn & LINES_SMOOTH) != 0u ? LINE_THIN : LINE_NONE;
+    if (!smooth_ || (push.drawn & LINES_SMOOTH_FULL) != 0u) return LINE_FULL;
+    return (push.drawn & LINES_SMOOTH) != 0u ? LINE_THIN : LINE_NONE;
 }
 
 uint change(ivec2 at, ivec2 beside, PixelSees seen, PixelSees next) {
@@ -173,7 +173,8 @@ uint change(ivec2 at, ivec2 beside, PixelSees seen, PixelSees next) {
         vec2 from = c.first ? a : b;
         vec2 to = c.first ? b : a;
         reach = c.why != CHANGE_FOLD ? 1.0 : c.first ? c.share : 1.0 - c.share;
-        end = end_of(f, from, mix(from, to, max(reach - 1.0 / 256.0, 0.0)), tile_near(c.first ? at : beside), cosine, cut);
+        to = mix(from, to, max(reach - 1.0 / 256.0, 0.0));
+        end = end_of(f, from, to, tile_near(c.first ? at : beside), cosine, cut);
     }
     if (end <= 1.0) {
         end *= reach;

@@ -115,8 +115,8 @@ uint fate_of(View view, uint n, out bool near) {
     return max(uint(chords), 1u);
 }
 
-// Of a side of triangles (EDGE_TURNS): one of both faces the eye and the other does not. In the picture, they lie on one
-// side of it. Pixels are times W, and relative to the first end.
+// Of a side of two triangles (EDGE_TURNS): one of them faces the eye and the other does not. In the picture, both lie
+// on one side of it. Pixels are times W, and relative to the first end.
 bool is_outline(EdgePiece piece, View view) {
     vec4 end = texelFetch(edge_points, int(piece.first));
     vec4 q = to_pixel(view, end);

@@ -2,8 +2,8 @@
 // solid meets it. Needs solid_sheet.glsl, solid_change.glsl, and buffers `MeshInstance mesh_instances[]`,
 // `uint mesh_triangles[]`, `vec3 mesh_positions[]`.
 //
-//   pixel ·  · place      the tangent plane at the pixel meets the solid at a place; the face is followed to it by Newton's
-//       ───╲──╱           method, and its plane there meets the solid closer to where the face does
+//   pixel ·  · place      the tangent plane at the pixel meets the solid at a place; the face is followed to it by
+//       ───╲──╱           Newton's method, and its plane there meets the solid closer to where the face does
 //           ╲╱ solid
 #ifndef FACE_SHEET_GLSL
 #define FACE_SHEET_GLSL
@@ -16,8 +16,8 @@ layout(constant_id = 46) const bool SCENE_HAS_FACES = false;
 const uint FACE_PLANES = 3u;
 // So far from a place a point of a face is at it: pixels.
 const float FACE_AT_PX = 0.05;
-// Of a triangle whose cosine with the ray is less, a meeting beyond its sides is none: there the mesh ends or turns away.
-// Beside the outline of a mesh whose triangles turn by 20 degrees it is less than the sine of that.
+// A triangle whose normal has a smaller cosine with the ray meets nothing beyond its sides: there the mesh ends or
+// turns away. Beside the outline of a mesh whose triangles turn by 20 degrees it is less than the sine of that.
 const float FACING = 0.35;
 // Rounding of shares of a triangle's corners.
 const float SHARE_ROUNDING = 1e-3;
@@ -81,8 +81,8 @@ bool triangle_reaches(Sheet s, vec2 place) {
     return faces_eye || is_within;
 }
 
-// Follows the face to a place: false where it does not get there. `moved`: by how many pixels across the place its plane
-// there is off the plane before.
+// Follows the face to a place: false where it does not get there. `moved`: by how many pixels' width its plane there is
+// off the plane before.
 bool follow_face(inout Sheet s, vec2 place, out float moved) {
     moved = 0.0;
     if (SCENE_HAS_MESHES && sees_mesh(s.face.x)) return triangle_reaches(s, place);

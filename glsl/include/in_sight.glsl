@@ -1,4 +1,5 @@
-// Numbers the listed patch instances without gaps: those of the faces in sight, or of a list of parts (parts.glsl). Others have no thread and no place in lists. Needs the frame's constants, and RUNS_BINDING. Twin:
+// Numbers the listed patch instances without gaps: those of the faces in sight, or of a list of parts (parts.glsl).
+// Others have no thread and no place in lists. Needs the frame's constants, and RUNS_BINDING. Twin:
 // src/twin/in_sight.rs.
 //
 //   instances   0 1 2 3 4 5 6 7 8 9 …    listed parts: runs of consecutive patch instances

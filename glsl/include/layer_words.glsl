@@ -1,5 +1,5 @@
-// What a pixel sees of solids that are seen through, as four floats that hold whole numbers: the words of visible.glsl, the
-// (u, v) of an operand's patch, and the depth. 0 in all of them: nothing.
+// What a pixel sees of solids that are seen through, as four floats: the first word of visible.glsl, the (u, v) of an
+// operand's patch, and the depth. 0 in all of them: nothing. All but the depth hold whole numbers.
 //
 //   x   the word's bits 0 to 23        z   bits 16 to 31 of (u, v)
 //   y   24 to 31, and above them       w   depth along the view axis

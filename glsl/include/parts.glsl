@@ -1,6 +1,5 @@
 // The placed parts in sight, and the lists of those whose patches a frame looks at. A part of many patches is several
-// of them: groups of its faces. Structs: src/abi/parts.rs; twin:
-// src/twin/parts.rs.
+// of them: groups of its faces. Structs: src/abi/parts.rs; twin: src/twin/parts.rs.
 //
 //   hidden before   hidden now     LIST_FIRST is made before this frame's test, from the last result. The other two are
 //        no            no   first  made after it.

@@ -142,8 +142,8 @@ float end_of(Sheet f, vec2 from, vec2 to, uint tile, out float cosine, out bool 
     return best;
 }
 
-// Between pixels that see two surfaces, or nothing at one of them. `a` and `b` are their centres. `order`: 1 where of two
-// surfaces the nearer one is seen, -1 where it is the farther one.
+// Between pixels that see two surfaces, or nothing at one of them. `a` and `b` are their centres. `order`: 1 where of
+// two surfaces the nearer one is seen, -1 where it is the farther one.
 Change change_between(Sheet sheets[2], vec2 a, vec2 b, float order) {
     Change c = Change(CHANGE_NONE, 0.5, sheets[0].is_there, 0.0);
     bool two = sheets[0].is_there && sheets[1].is_there;

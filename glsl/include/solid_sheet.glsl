@@ -1,7 +1,6 @@
-// What a pixel sees of a Boolean solid, followed to other places of the picture. face_sheet.glsl has the sheets of faces
-// and meshes that are of no solid. Needs scene.glsl, view.glsl,
-// solids.glsl, boundary_operands.glsl, eye_ray.glsl, sides.glsl, refine.glsl, visible.glsl, `frame`, and what
-// sides.glsl and patch.glsl need.
+// What a pixel sees of a Boolean solid, followed to other places of the picture. face_sheet.glsl has the sheets of
+// faces and meshes that are of no solid. Needs scene.glsl, view.glsl, solids.glsl, boundary_operands.glsl,
+// eye_ray.glsl, sides.glsl, refine.glsl, visible.glsl, `frame`, and what sides.glsl and patch.glsl need.
 //
 //        pixel        place                       a side with an equation: the same root of the ray through the place
 //   ───────┼────────────┼───                      triangles, spline faces: the tangent plane, which over a pixel or two
@@ -47,13 +46,12 @@ vec3 normal_on(Sheet s, vec3 p) {
     return normalize(surface_gradient(surface_at(surfaces, s.surface), p - place_at(surface_places, s.surface).xyz));
 }
 
-// A spline face at a pixel: the point of it, model axes, its normal, and the operand that it bounds.
+// The point of a spline face at a pixel.
 struct PatchPoint {
-    vec3 n;
-    uint operand;
-    float t;    // depth
-    vec2 uv;    // of the patch
-    float miss; // distance from the pixel, pixels
+    vec3 n;       // normal, model axes
+    uint operand; // that the face bounds
+    float t;      // depth
+    float miss;   // distance from the pixel, pixels
 };
 
 PatchPoint patch_point(uint patch_instance, vec2 uv, vec2 pixel) {
@@ -61,7 +59,7 @@ PatchPoint patch_point(uint patch_instance, vec2 uv, vec2 pixel) {
     Patch patch_ = patch_at(faces[fi.face].first_patch + patch_instance - fi.first_patch_instance);
     Sample s = refine(patch_, views[fi.instance], uv, pixel);
     vec3 n = normalize(instances[fi.instance].normal * cross(normalize(s.jet.du), normalize(s.jet.dv)));
-    return PatchPoint(n, instances[fi.instance].operand, s.q.z, s.uv, length(s.miss));
+    return PatchPoint(n, instances[fi.instance].operand, s.q.z, length(s.miss));
 }
 
 // `seen` and `uv` are those of the pixel.

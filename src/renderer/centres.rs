@@ -22,8 +22,8 @@ pub(super) struct SlotCentres {
 }
 
 impl SlotCentres {
-    /// Writes them for a camera and a sun with or without `shadows`; what was too small or is not needed any more goes to
-    /// `retired`.
+    /// Writes them for a camera and a sun with or without `shadows`; what was too small or is not needed any more goes
+    /// to `retired`.
     pub(super) fn write(
         &mut self,
         device: &Device,

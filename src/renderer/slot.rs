@@ -158,8 +158,8 @@ impl Slot {
         Ok(())
     }
 
-    /// Writes the placed parts in sight, as groups of faces, for occlusion culling of whole groups. A frame that reuses its
-    /// view does not read them, and only a frame that tests for occlusion reads where they may be drawn.
+    /// Writes the placed parts in sight, as groups of faces, for occlusion culling of whole groups. A frame that reuses
+    /// its view does not read them, and only a frame that tests for occlusion reads where they may be drawn.
     fn write_parts(
         &mut self,
         device: &Device,

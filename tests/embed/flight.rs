@@ -213,8 +213,8 @@ fn a_part_moves_while_frames_are_in_flight() {
     assert_eq!(host.shutdown(), [""; 0]);
 }
 
-/// A point of a plate's hole moves, one place a frame, while the other slot's frame is in flight: each frame has the loop
-/// as it was when that frame was recorded, as an upload has it. Places that are none leave it.
+/// A point of a plate's hole moves, one place a frame, while the other slot's frame is in flight: each frame has the
+/// loop as it was when that frame was recorded, as an upload has it. Places that are none leave it.
 #[test]
 fn a_control_point_moves_while_frames_are_in_flight() {
     let host = Host::new();

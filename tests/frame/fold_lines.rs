@@ -1,5 +1,5 @@
-//! Outlines where a face is narrow beside a smooth edge or a seam: no pixel's centre leads to the fold, and it counts only
-//! where the face's trims leave it.
+//! Outlines where a face is narrow beside a smooth edge or a seam: no pixel's centre leads to the fold, and it counts
+//! only where the face's trims leave it.
 
 use crate::edge_lines::{centres, draw, faults_of_outline, lines, of_wider_cylinder, rounded_block, with};
 use crate::shapes;
@@ -54,8 +54,8 @@ fn a_fold_beyond_another_trim_is_no_line() {
     }
 }
 
-/// A cylinder so near that windows are cut out of it, of which half a pixel beyond its seam is seen, between the centres
-/// of pixels: the seam leads to the outline.
+/// A cylinder so near that windows are cut out of it, of which half a pixel beyond its seam is seen, between the
+/// centres of pixels: the seam leads to the outline.
 #[test]
 fn an_outline_close_beyond_a_seam_is_a_line_in_a_deep_zoom() {
     let model = shapes::cylinder();

@@ -1,8 +1,11 @@
 //! Lines of solids that are seen through: of their nearest faces, and of the farthest ones.
 
+use crate::edge_lines::centres;
 use crate::layers::{BLUE, glass, model, one, painted};
 use crate::shapes::solids::{ball, block, post, solid};
-use crate::solid_lines::{HALF, JUNCTION, OFF, OFF_AT_JUNCTIONS, SIZE, SOLID, draw, judged_by_program, lines, with};
+use crate::solid_lines::{
+    HALF, JUNCTION, OFF, OFF_AT_JUNCTIONS, SIZE, SOLID, away, draw, draw_in_bands, judged_by_program, lines, with,
+};
 use crate::support::{assert_silent, orthographic, perspective, render, watched_with};
 use glam::{DVec2, DVec3};
 use selvedge::model::{Camera, Model};
@@ -40,9 +43,7 @@ fn all_edges_of_a_glass_block_have_lines() {
         let picture = draw(&block, with(settings), &camera);
         let edges = edges_of_block(&camera);
         let corners: Vec<DVec2> = edges.chunks(1001).flat_map(|edge| [edge[0], edge[1000]]).collect();
-        let at = |k: usize| DVec2::new((k % SIZE.0 as usize) as f64, (k / SIZE.0 as usize) as f64) + 0.5;
-        let marked: Vec<DVec2> = (0..picture.edge.len()).filter(|k| picture.edge[*k] == SOLID).map(at).collect();
-        let away = |p: DVec2, all: &[DVec2]| all.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
+        let marked: Vec<DVec2> = centres(&picture).filter(|(_, edge)| *edge == SOLID).map(|(at, _)| at).collect();
         let near_corner = |p: DVec2| away(p, &corners) < JUNCTION;
         let is_bare = |p: &&DVec2| !near_corner(**p) && away(**p, &marked) > HALF + 0.5;
         let is_stray = |p: &&DVec2| {
@@ -103,7 +104,7 @@ fn lines_are_the_same_in_bands() {
     let camera = perspective(&both, SIZE);
     let settings = EdgeSettings { silhouettes: true, ..lines() };
     let whole = draw(&both, with(settings), &camera);
-    let banded = draw(&both, SceneSettings { solid_budget: Some(8_000), ..with(settings) }, &camera);
+    let banded = draw_in_bands(&both, with(settings), &camera);
     assert!(whole.edge.iter().filter(|edge| **edge == SOLID).count() > 300);
     assert!(banded.edge == whole.edge && banded.colour == whole.colour);
 }

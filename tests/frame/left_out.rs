@@ -129,7 +129,8 @@ fn what_is_left_out_behind_glass_is_as_if_the_scene_had_it_not() {
     assert_silent(renderer);
 }
 
-/// With several samples the pixels' centres are drawn for lines, and for images; for a colour without lines they are not.
+/// With several samples the pixels' centres are drawn for lines, and for images; for a colour without lines they are
+/// not.
 #[test]
 fn without_lines_several_samples_draw_no_centres() {
     let model = crowd();

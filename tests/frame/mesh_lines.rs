@@ -1,7 +1,8 @@
 //! Outlines of meshes: sides of triangles of which one faces the eye and the other does not.
 
+use crate::edge_lines::centres;
 use crate::shapes::{ball_mesh, block_mesh, whole_mesh};
-use crate::solid_lines::{HALF, OFF, SIZE, draw, lines, with};
+use crate::solid_lines::{HALF, OFF, SIZE, away, draw, lines, with};
 use crate::support::{orthographic, perspective};
 use glam::{DAffine3, DVec2, DVec3};
 use selvedge::model::{Camera, Instance, Model};
@@ -20,8 +21,7 @@ fn outlines() -> EdgeSettings {
 }
 
 fn marked(picture: &Picture, number: u32) -> Vec<DVec2> {
-    let at = |k: usize| DVec2::new((k % SIZE.0 as usize) as f64, (k / SIZE.0 as usize) as f64) + 0.5;
-    (0..picture.edge.len()).filter(|k| picture.edge[*k] == number).map(at).collect()
+    centres(picture).filter(|(_, edge)| *edge == number).map(|(at, _)| at).collect()
 }
 
 /// The circle at which rays from the eye touch the unit ball.
@@ -53,7 +53,6 @@ fn a_ball_of_triangles_has_the_balls_outline() {
     for (view, camera) in [("from afar", perspective(&model, SIZE)), ("parallel", orthographic(&model, SIZE))] {
         let picture = draw(&model, with(outlines()), &camera);
         let (marked, outline) = (marked(&picture, OUTLINE), outline_of_ball(&camera));
-        let away = |p: DVec2, all: &[DVec2]| all.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
         let bare = outline.iter().filter(|p| away(**p, &marked) > HALF + 0.5 + OFF_BALL).count();
         let stray = marked.iter().filter(|p| away(**p, &outline) > HALF + 0.5 + OFF_BALL + OFF).count();
         assert!(marked.len() > 100, "{view}: {}", marked.len());

@@ -1,8 +1,9 @@
 //! Lines where a Boolean solid meets a face or mesh that is of no solid: circles, in closed form.
 
+use crate::edge_lines::centres;
 use crate::shapes::solids::{ball, block, solid};
 use crate::shapes::{SPHERE_RADIUS, block_mesh, one, placed, sphere, whole_mesh};
-use crate::solid_lines::{HALF, OFF, SIZE, SOLID, draw, lines, with};
+use crate::solid_lines::{HALF, OFF, SIZE, SOLID, away, draw, lines, with};
 use crate::support::orthographic;
 use glam::{DAffine3, DVec2, DVec3, DVec4};
 use selvedge::model::{Camera, Face, Model, Projection, SurfaceKind};
@@ -75,13 +76,11 @@ fn lines_are_where_solids_meet_faces() {
         let camera = camera_of(&model);
         let settings = EdgeSettings { which: EdgeChoice::Sharp, silhouettes: false, ..lines() };
         let picture = draw(&model, with(settings), &camera);
-        let at = |k: usize| DVec2::new((k % SIZE.0 as usize) as f64, (k / SIZE.0 as usize) as f64) + 0.5;
-        let marked: Vec<DVec2> = (0..picture.edge.len()).filter(|k| picture.edge[*k] != 0).map(at).collect();
+        let marked: Vec<DVec2> = centres(&picture).map(|(at, _)| at).collect();
         assert!(picture.edge.iter().all(|edge| [0, SOLID].contains(edge)), "{name}: a line of another kind");
         let circle = circle(&camera);
         let of = |least: f64| circle.iter().filter(move |(_, turned)| *turned > least).map(|(p, _)| *p);
         let (seen, may): (Vec<DVec2>, Vec<DVec2>) = (of(SEEN).collect(), of(HIDDEN).collect());
-        let away = |p: DVec2, all: &[DVec2]| all.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
         let bare = seen.iter().filter(|p| away(**p, &marked) > HALF + 0.5).count();
         let stray = marked.iter().filter(|p| away(**p, &may) > HALF + 0.5 + OFF).count();
         assert!(seen.len() > 1500 && marked.len() > 80, "{name}: {} points, {} pixels", seen.len(), marked.len());

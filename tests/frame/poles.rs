@@ -19,8 +19,8 @@ use selvedge_check::Tracer;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const SIZE: (u32, u32) = (96, 72);
-/// Sixteen points are 0.031 off beside a random straight line, and more beside lines along rows and columns, which round
-/// outlines have.
+/// Sixteen points are 0.031 off beside a random straight line, and more beside lines along rows and columns, which
+/// round outlines have.
 const MEAN: f64 = 1.0 / 22.0;
 /// Sixteen points are up to 0.139 off beside a straight line; opacities are rounded to eight bits.
 const WORST: f64 = 0.145;

@@ -63,7 +63,8 @@ struct Params {
 }
 
 impl Change {
-    /// `surfaces`: the most general kind of the solids' surfaces, `abi::SURFACE_*`. `seen_through`: for solids that are.
+    /// `surfaces`: the most general kind of the solids' surfaces, `abi::SURFACE_*`. `seen_through`: for solids that are
+    /// seen through.
     pub(crate) fn new(
         device: &Device,
         data: &SceneData,

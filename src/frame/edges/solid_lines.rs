@@ -96,18 +96,26 @@ impl Passes {
     ) {
         let Some(solids) = frame.solids() else { return };
         let into = (&images.changes, best);
+        self.count_again(frame, cmd);
         self.lines(frame, cmd, (&solids, &self.change), into, None);
         self.join.record(cmd, frame.constants, into, half_px);
         let clear = (&self.seen_through, &images.layers, &frame.stages.transparency);
         let (Some(passes), Some(layers), Some(transparency)) = clear else { return };
-        // they were read back
-        let counters = &frame.stages.common.counters;
-        barrier::buffers(cmd, &[(counters, Access::TRANSFER_READ, Access::FRAGMENT_WRITE | Access::COMPUTE_WRITE)]);
         for (faces, pass) in &passes.faces {
             nearest_or_farthest(frame, cmd, (transparency, pass, &solids), layers);
             barrier::images(cmd, &[(best, Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE)]);
             self.lines(frame, cmd, (&solids, &passes.change), into, Some((layers, *faces)));
             self.join.record(cmd, frame.constants, into, half_px);
+        }
+    }
+
+    /// Orders what is counted here after the counters were read back: by lists of bands, and by rays through solids.
+    fn count_again(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        let counters = &frame.stages.common.counters;
+        let of_bands = frame.bands().any(|band| !band.is_whole).then_some(Access::COMPUTE_WRITE);
+        let of_rays = self.seen_through.as_ref().map(|_| Access::FRAGMENT_WRITE);
+        for written in of_bands.into_iter().chain(of_rays) {
+            barrier::buffers(cmd, &[(counters, Access::TRANSFER_READ, written)]);
         }
     }
 
@@ -172,9 +180,6 @@ fn each_band(frame: &Frame<'_>, cmd: &Commands<'_>, solids: &SolidParts<'_>, dra
     for band in frame.bands() {
         if !band.is_whole {
             if !std::mem::replace(&mut counted_again, true) {
-                // they were read back
-                let counters = &frame.stages.common.counters;
-                barrier::buffers(cmd, &[(counters, Access::TRANSFER_READ, Access::COMPUTE_WRITE)]);
                 frame.count_bands_again(cmd);
             }
             solids.lists(frame, cmd, &band);

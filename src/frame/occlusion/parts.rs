@@ -60,8 +60,8 @@ impl Passes {
 /// Their buffers.
 pub(crate) struct Parts {
     passes: Arc<Passes>,
-    /// One word a group of faces of a placed part: whether it was hidden in the previous frame that had it in sight, and
-    /// whether it is now.
+    /// One word a group of faces of a placed part: whether it was hidden in the previous frame that had it in sight,
+    /// and whether it is now.
     hidden_before: Buffer,
     hidden_now: Buffer,
     /// Two words a group in sight, and their prefix sums.

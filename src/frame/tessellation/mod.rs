@@ -1,5 +1,5 @@
-//! Divides each patch of the faces in sight, without those of parts that are hidden as a whole, and makes the sub-patches
-//! and draws.
+//! Divides each patch of the faces in sight, without those of parts that are hidden as a whole, and makes the
+//! sub-patches and draws.
 //!
 //! ```text
 //!   occlusion::list_parts: parts that were not hidden, in scenes of many placed parts

@@ -3,9 +3,9 @@
 //! ```text
 //!   edge of the whole model ─▶ outside the view? left out ─▶ wider than a window? halved ─▶ a piece with its own placement
 //! ```
-//! Edges refer to faces by their numbers in the whole model, so all windows of a face count as that face.
-//! Own faces have the numbers of the whole model's, so windows of one face are one face to an edge. Folds beside a piece
-//! of a smooth edge or a seam are looked for from the windows that its middle lies in, as `scene/fold_seeds.rs` has it.
+//! Edges refer to faces by their numbers in the whole model, so all windows of a face count as that face. Folds beside
+//! a piece of a smooth edge or a seam are looked for from the windows that its middle lies in, as `scene/fold_seeds.rs`
+//! has it.
 
 use super::{Cut, MOST_DEPTH, Sight, WINDOW_PX};
 use crate::abi;

@@ -1,5 +1,5 @@
-//! Culled parts and faces are nowhere in the picture, and visible ones are not culled: compared with pass `bound`, patch
-//! by patch.
+//! Culled parts and faces are nowhere in the picture, and visible ones are not culled: compared with pass `bound`,
+//! patch by patch.
 
 use super::drawn::rounding_beyond;
 use super::*;
