@@ -13,7 +13,7 @@ const float ASIDE = 0.015625;
 // way, so it is less than a tenth of this over half of the way, and sixteen points are as far off on their own.
 const float REMAINDER_PX = 0.25;
 // From the middle of a patch, of the patch: the surface beyond the patches beside it is another one.
-const float MOST_BESIDE = 1.5;
+const float MOST_FROM_MIDDLE = 1.5;
 
 // A change of a homogeneous pixel, in pixels.
 vec2 pixels_of(vec4 q, vec4 change) {
@@ -47,7 +47,7 @@ float remainder_px(vec3 third, vec2 uv) {
 // Whether the terms of second order hold at (u, v) from the middle, which is at `middle` of the patch.
 bool is_in_reach(vec3 third, vec2 middle, vec2 uv) {
     precise vec2 beside = abs(middle + uv - 0.5);
-    return remainder_px(third, uv) <= REMAINDER_PX && max(beside.x, beside.y) <= MOST_BESIDE;
+    return remainder_px(third, uv) <= REMAINDER_PX && max(beside.x, beside.y) <= MOST_FROM_MIDDLE;
 }
 
 // Of a place beyond the domain of a face whose sides meet there: the same place, over the seam.

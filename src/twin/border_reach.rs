@@ -23,7 +23,7 @@
 //!     third order          the same, times its factor, and 3 d of itself
 //! ```
 
-pub use crate::abi::constants::border_reach::{ASIDE, MOST_BESIDE, REMAINDER_PX};
+pub use crate::abi::constants::border_reach::{ASIDE, MOST_FROM_MIDDLE, REMAINDER_PX};
 use crate::abi::{BORDER_U0, BORDER_U1, BORDER_V0, BORDER_V1, FACE_MEETS_U, FACE_MEETS_V, FACE_POINTS};
 
 /// Factors of [`third_order`]'s sizes.
@@ -56,7 +56,7 @@ pub fn remainder_px(third: [f32; 3], uv: [f32; 2]) -> f32 {
 /// Whether the terms of second order hold at `(u, v)` from the middle, which is at `middle` of the patch.
 pub fn is_in_reach(third: [f32; 3], middle: [f32; 2], uv: [f32; 2]) -> bool {
     let beside = [0, 1].map(|axis| (middle[axis] + uv[axis] - 0.5).abs());
-    remainder_px(third, uv) <= REMAINDER_PX && beside[0].max(beside[1]) <= MOST_BESIDE
+    remainder_px(third, uv) <= REMAINDER_PX && beside[0].max(beside[1]) <= MOST_FROM_MIDDLE
 }
 
 /// Of a place beyond the domain of a face whose sides meet there: the same place, over the seam.
