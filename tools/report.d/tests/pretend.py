@@ -8,7 +8,7 @@ from pathlib import Path
 
 from report.turns import Unmeasurable
 
-KERNEL = {"worst_px": 0.25, "p999_px": 0.125, "off": 3, "searched": 3, "beyond": 0, "readings": [1, 0, 0]}
+KERNEL = {"worst_px": 0.25, "p999_px": 0.125, "off": 3, "searched": 3, "beyond": 0, "distances_px": [0.0625, 0.125, 0.25], "readings": [1, 0, 0]}
 # files of a hundred kilobytes, and their work beside that of the others
 LIGHT, LIGHTER = {"bracket.step", "occt_screw.step", "panel.step"}, 0.5
 # seconds to read a file and mesh it within a share of its diagonal

@@ -2,6 +2,8 @@
 
 import unittest
 
+from report.sections import surfaces
+
 try:
     import numpy
     from OCP.TopAbs import TopAbs_IN, TopAbs_ON
@@ -55,6 +57,12 @@ class Edges(unittest.TestCase):
         image = numpy.array([[50, 40, 60]])
         truth, widened = {(x, 0): [5] for x in range(3)}, {(x, 0): 4 for x in range(3)}
         self.assertEqual(kernel.readings(image, {4: 40, 5: 50, 6: 60}, truth, widened), [1, 1, 1])
+
+
+class Distances(unittest.TestCase):
+    def test_tolerances_are_among_them(self):
+        judged = {*surfaces.TOLERANCES_QUICK, *surfaces.TOLERANCES, *surfaces.TOLERANCES_OTHER}
+        self.assertLessEqual(judged, {*kernel.DISTANCES})
 
 
 class Names(unittest.TestCase):

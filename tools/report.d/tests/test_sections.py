@@ -191,9 +191,8 @@ class Surfaces(unittest.TestCase):
         self.assertIn("takes 40 ms of passes, 30 of them resolve", surfaces.standing_cause(stands))
 
     def test_pixels_beyond_the_tolerance_are_counted(self):
-        self.assertEqual(surfaces.beyond({"beyond": 0, "worst_px": 0.5}, 0.5), 0)
-        self.assertEqual(surfaces.beyond({"beyond": 0, "worst_px": 0.75}, 0.5), 1)
-        self.assertEqual(surfaces.beyond({"beyond": 7, "worst_px": 16.0}, 0.5), 7)
+        error = {"distances_px": [0.1, 0.5, 0.75, 1.0, 16.0]}
+        self.assertEqual([surfaces.beyond(error, tolerance) for tolerance in (0.1, 0.5, 4.0)], [4, 3, 1])
 
 
 class Sized:

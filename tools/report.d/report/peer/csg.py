@@ -3,7 +3,7 @@ separate code.
 
     job      scene: {primitives, tree} (scenes.py), camera, seconds,
              pictures: {name: path of a PNG, or of an image of faces as .npy}
-    results  {boundary, sampled, pictures: {name: {worst_px, p999_px, off, searched, beyond}}}
+    results  {boundary, sampled, pictures: {name: {worst_px, p999_px, off, searched, beyond, distances_px}}}
 
 Only the outline is judged: whether a pixel shows the solid. A PNG shows the background where it has the colour of
 its upper left corner; in an image of faces that is 0.

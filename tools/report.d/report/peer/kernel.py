@@ -3,13 +3,14 @@
     job      model, seconds (for the rays of the truth, and for the searches of each picture),
              views: {name: {camera, pictures: {name: {path, own}}}}
     results  {view, boundary, sampled, alone, widened, edge_mm,
-             pictures: {name: {worst_px, p999_px, off, searched, beyond, readings}}}, one a view
+             pictures: {name: {worst_px, p999_px, off, searched, beyond, distances_px, readings}}}, one a view
 
 Sampled are the pixels at changes of face, found by halving the cells of a grid whose corners see different faces,
 cell by cell in random order until the time is up. Where a picture shows another face than the ray at a pixel's
 centre, the picture's face is looked for around it: the least distance at which a ray sees it is the error there.
 `p999_px` is the error that one in a thousand of the boundary's pixels exceeds. Errors are distances of the list
-below, rounded up; beyond the last one, a pixel counts as `beyond`, and as twice that distance.
+below, rounded up; beyond the last one, a pixel counts as `beyond`, and as twice that distance. `distances_px` are those
+of all pixels searched, ascending.
 
 The kernel counts a point as one of a face if it is within the tolerance of an edge, too. That tolerance bounds the
 distance between an edge's curves at the same parameter: curves in one place that run at other speeds make it wide.
@@ -35,7 +36,8 @@ from OCP.TopAbs import TopAbs_IN, TopAbs_ON
 
 from . import job, shapes, tell
 
-DISTANCES = [1 / 16, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 3 / 4, 1, 1.5, 2, 3, 4, 6, 8]
+# the tolerances that are judged are among them
+DISTANCES = [1 / 16, 0.1, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 3 / 4, 1, 1.5, 2, 3, 4, 6, 8]
 DIRECTIONS = 16
 # cells of the grid that is halved, and tiles of faces, pixels
 CELL, TILE = 16, 32
@@ -228,6 +230,7 @@ def judged(rays, image, names, wrong, count, seconds):
         found.append(shift(rays, pixel, lambda faces: any(name(face) == drawn for face in faces)))
     result = {"off": len(wrong), "searched": len(found), "beyond": sum(math.isinf(s) for s in found)}
     found = sorted(min(s, 2 * DISTANCES[-1]) for s in found)
+    result["distances_px"] = found
     result["worst_px"] = found[-1] if found else 0.0
     # each searched pixel represents this many
     rank = int(0.001 * count * len(found) / len(wrong)) if wrong and found else 0

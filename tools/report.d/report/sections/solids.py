@@ -193,7 +193,7 @@ class Case:
             error = errors.get(f"selvedge, {way}")
             if error:
                 section.promises[0].cases += judged
-                section.promises[0].violations += error["beyond"] or int(error["worst_px"] > 0.5)
+                section.promises[0].violations += sum(distance > 0.5 for distance in error["distances_px"])
             for report in self.benches[:1]:
                 section.promises[1].cases += report[way]["error"]["judged_pixels"]
                 section.promises[1].violations += report[way]["error"]["wrong_pixels"]

@@ -276,7 +276,6 @@ class Case:
         for tolerance in self.tolerances:
             error = errors.get(f"ours {tolerance}")
             if error:
-                # a search finds a boundary no nearer than the next of its distances
                 promise.violations += beyond(error, tolerance)
                 promise.cases += head["boundary"]
         if promise.cases:
@@ -460,5 +459,5 @@ def front(curve):
 
 
 def beyond(error, tolerance):
-    """Pixels that were searched and are right nowhere within the tolerance: what is `worst` beyond it counts as one."""
-    return error["beyond"] if error["beyond"] else int(error["worst_px"] > tolerance)
+    """Pixels that were searched and are right nowhere within the tolerance."""
+    return sum(distance > tolerance for distance in error["distances_px"])
