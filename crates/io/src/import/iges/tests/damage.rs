@@ -36,7 +36,11 @@ fn each_damage_names_what_it_costs() {
     first("514,3,5,", "514,9,5,", &body("#3: parameter 1 is not a count that its record can hold"));
     first("514,3,5,", "514,x,5,", &body("#3: parameter 1 is not an integer"));
     first("186,3,1,0;", "186,5,1,0;", &body("#5 is of type 510, not 514, a shell"));
-    one("186,3,1,0;", "186,1,1,0;", "c.igs:67: #3: entity without its owner not drawn: type 514");
+    let both = [
+        "c.igs:67: #3: entity without its owner not drawn: type 514",
+        "c.igs:66: #1: entity left out: #1 refers to itself",
+    ];
+    assert_eq!(after("186,3,1,0;", "186,1,1,0;"), both);
 }
 
 #[test]
