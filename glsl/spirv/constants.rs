@@ -56,7 +56,7 @@ pub mod border_pixel {
 }
 pub mod border_reach {
     pub const ASIDE: f32 = 0.015625;
-    pub const MOST_BESIDE: f32 = 1.5;
+    pub const MOST_FROM_MIDDLE: f32 = 1.5;
     pub const REMAINDER_PX: f32 = 0.25;
 }
 pub mod border_seen {
