@@ -13,7 +13,7 @@
 use crate::shapes::{self, PLATE_HALF, TOUCHING_END, TOUCHING_GAP, TOUCHING_STRIP};
 use crate::support::{assert_silent, orthographic, perspective, render, watched, watched_with};
 use glam::{DAffine3, DMat3, DVec3};
-use selvedge::construct::shapes::{Body, block, cylinder, tube};
+use selvedge::construct::shapes::{block, cylinder, tube};
 use selvedge::model::{Camera, Instance, Model, Projection};
 use selvedge::picture::{Picture, SceneSettings, TrimWay};
 use selvedge_check::{JudgeOptions, Tracer, judge};
@@ -73,7 +73,7 @@ fn welded() -> Model {
     let post = |radius: f64, height| cylinder(radius, height).unwrap();
     let pipe = |radius: f64, height| tube(radius, 0.7 * radius, height).unwrap();
     let cube = |half: f64, height| block(DVec3::new(-half, -half, 0.0), DVec3::new(half, half, height)).unwrap();
-    let stacks: [((f64, f64), Vec<(Body, f64)>); 4] = [
+    let stacks = [
         ((-10.0, -8.0), vec![(pipe(5.3, 7.1), 7.1), (pipe(5.3, 4.7), 4.7), (post(3.1, 2.9), 2.9)]),
         ((9.0, -9.0), vec![(post(6.4, 5.2), 5.2), (post(6.4, 3.3), 3.3), (cube(4.1, 6.0), 6.0)]),
         ((-9.0, 10.0), vec![(cube(5.7, 3.9), 3.9), (pipe(5.7, 8.2), 8.2)]),
