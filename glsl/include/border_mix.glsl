@@ -48,6 +48,7 @@ layout(scalar, binding = 10) readonly buffer Grids { BorderGrids grids; };
 // BORDER_POINTS a pixel of the list: where others than patches are asked, too
 layout(scalar, binding = 11) writeonly buffer SeenPoints { BorderPoint seen_points[]; };
 
+// two words of BORDER_POINTS bits a sheet are kept
 const uint MOST_SHEETS = 4u;
 // Required distance of a sheet's middle to the pixel's centre, in pixels: far less than a sixteenth.
 const float CLOSE_PX = 0.02;
@@ -109,20 +110,20 @@ Sheet sheet_at(ivec2 at, vec2 centre) {
 }
 
 // Whether the face is there at (u, v) of a patch, or where its surface goes on over a seam.
-bool is_in_face(Sheet s, uint patch_instance, Patch patch_, vec2 uv) {
+bool is_in_face(FaceInstance fi, Face face, uint patch_instance, Patch patch_, vec2 uv) {
     vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
-    vec2 there = over_seams(s.face.flags, at);
-    if (there == at) return is_there(s.fi, s.face, patch_instance, patch_, uv);
+    vec2 there = over_seams(face.flags, at);
+    if (there == at) return is_there(fi, face, patch_instance, patch_, uv);
     if (clamp(there, 0.0, 1.0) != there) return false;
-    ivec2 count = ivec2(s.face.count_u, s.face.count_v);
+    ivec2 count = ivec2(face.count_u, face.count_v);
     ivec2 way = mix(ivec2(0), way_beyond(uv, 0.0), notEqual(there, at));
-    ivec2 place = (place_of(s.face, int(patch_instance - s.fi.first_patch_instance)) + way + count) % count;
-    uint side = side_of(patch_at(patch_in(s.face, place)).shape);
-    if ((s.face.flags & FACE_TRIMMED) == 0u || side != SIDE_BOUNDARY) return side != SIDE_OUTSIDE;
+    ivec2 place = (place_of(face, int(patch_instance - fi.first_patch_instance)) + way + count) % count;
+    uint side = side_of(patch_at(patch_in(face, place)).shape);
+    if ((face.flags & FACE_TRIMMED) == 0u || side != SIDE_BOUNDARY) return side != SIDE_OUTSIDE;
 #ifdef TRIM_BY_TABLE
-    if (!table_covers(s.fi.first_bin, s.face.strips, there)) return false;
+    if (!table_covers(fi.first_bin, face.strips, there)) return false;
 #endif
-    return trim_inside(s.fi, s.face, there);
+    return trim_inside(fi, face, there);
 }
 
 // Depth of a sheet at a point of the picture; UNSEEN if it is not there. `is_open`: its terms do not tell.
@@ -145,11 +146,15 @@ float depth_at(Sheet s, vec2 pixel, out bool is_open) {
     }
     // a paraboloid also meets the ray behind the eye
     bool meets = q.w > 0.0 && length(miss) <= ON_PIXEL_PX;
-    is_open = !is_in_reach(s.third, s.middle, meets ? uv : nearest);
-    vec2 at = s.middle + uv;
-    bool over = is_over_pole(s.face.flags, s.patch_.domain.xy + at * s.patch_.domain.zw);
-    is_open = is_open || meets && over;
-    bool is = meets && !is_open && is_in_face(s, s.patch_instance, s.patch_, at);
+    vec2 way = meets ? uv : nearest;
+    vec2 of_face = s.patch_.domain.xy + (s.middle + way) * s.patch_.domain.zw;
+    vec2 there = over_seams(s.face.flags, of_face);
+    // beyond the ends of its domain the face is not there, whatever surface goes on
+    bool has_left = clamp(there, 0.0, 1.0) != there;
+    bool holds = has_left ? remainder_px(s.third, way) <= REMAINDER_PX : is_in_reach(s.third, s.middle, way);
+    bool goes_on = is_over_pole(s.face.flags, of_face) || there != of_face;
+    is_open = !holds || meets && goes_on;
+    bool is = meets && !is_open && is_there(s.fi, s.face, s.patch_instance, s.patch_, s.middle + uv);
 #ifdef WITHIN_VOLUME
     is = is && in_volume(q, ON_PX);
 #endif
@@ -157,14 +162,15 @@ float depth_at(Sheet s, vec2 pixel, out bool is_open) {
 }
 
 // The same by the exact surface, followed from where a pixel sees the face.
-float exact_depth_at(Sheet s, ivec2 from, vec2 pixel) {
+float exact_depth_at(ivec2 from, vec2 pixel) {
     uvec2 seen = imageLoad(visibility, from).xy;
     uint patch_instance = seen_patch_instance(seen.x);
-    View view = view_at(s.fi.instance);
-    Sample there = refine_across(s.fi, s.face, view, patch_instance, unpack_uv(seen.y), pixel);
-    Patch patch_ = patch_at(s.face.first_patch + patch_instance - s.fi.first_patch_instance);
+    FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
+    Face face = face_at(fi.face);
+    Sample there = refine_across(fi, face, view_at(fi.instance), patch_instance, unpack_uv(seen.y), pixel);
+    Patch patch_ = patch_at(face.first_patch + patch_instance - fi.first_patch_instance);
     bool is = there.q.w > 0.0 && length(there.miss) <= ON_PIXEL_PX;
-    is = is && is_in_face(s, patch_instance, patch_, there.uv);
+    is = is && is_in_face(fi, face, patch_instance, patch_, there.uv);
 #ifdef WITHIN_VOLUME
     is = is && in_volume(there.q, ON_PX);
 #endif
@@ -217,32 +223,37 @@ void main() {
         met[met_count] = face;
         met_from[met_count++] = from;
     }
+    uvec2 open = uvec2(0u); // bits of points, of two sheets a word
     // a separate loop: threads that run together find their sheets at different pixels
     for (uint n = 0u; n < met_count; ++n) {
         Sheet s = sheet_at(around(at, met_from[n]), vec2(at) + 0.5);
-        uint open = 0u; // bits of points
         for (uint i = 0u; i < BORDER_POINTS; ++i) {
             bool is_open;
             float depth = depth_at(s, vec2(at) + 0.5 + point_of(i), is_open);
-            if (is_open) open |= 1u << i;
+            if (is_open) open[n / 2u] |= 1u << (i + BORDER_POINTS * (n % 2u));
             if (!(depth < depths[i])) continue;
             depths[i] = depth;
             shown[i] = met_from[n];
         }
+    }
+    // of all sheets together: a driver may run the body of a loop once where no thread needs it
+    while ((open.x | open.y) != 0u) {
+        uint word = open.x != 0u ? 0u : 1u;
+        uint bit = uint(findLSB(open[word]));
+        open[word] &= open[word] - 1u;
+        uint n = 2u * word + bit / BORDER_POINTS;
+        uint i = bit % BORDER_POINTS;
         // from another pixel: beyond a pole or a tip the surface is not the one that goes on from here
         uint others = 0u;
         for (uint k = 0u; k < AROUND; ++k) {
             if (k != met_from[n] && placed[k] == (met[n] >> 1) + 1u) others |= 1u << k;
         }
-        for (; open != 0u; open &= open - 1u) {
-            uint i = uint(findLSB(open));
-            uint from = nearest_of(others, point_of(i));
-            if (from == NOBODY) from = met_from[n];
-            float depth = exact_depth_at(s, around(at, from), vec2(at) + 0.5 + point_of(i));
-            if (!(depth < depths[i])) continue;
-            depths[i] = depth;
-            shown[i] = from;
-        }
+        uint from = nearest_of(others, point_of(i));
+        if (from == NOBODY) from = met_from[n];
+        float depth = exact_depth_at(around(at, from), vec2(at) + 0.5 + point_of(i));
+        bool nearer = depth < depths[i];
+        if (nearer) depths[i] = depth;
+        if (nearer) shown[i] = from;
     }
     if (SCENE_HAS_MESHES_OR_SOLIDS) {
         uint first = n * BORDER_POINTS;
