@@ -73,7 +73,7 @@ static SelvedgeTargets targets_of(const Images* images)
     };
 }
 
-// Begins a command buffer with the host's black, and records the model over it.
+// Begins a command buffer with the host's black and no instance, and records the model over it.
 static int record(const Device* d, const Images* images, const SelvedgeHost* host)
 {
     if (begin_commands(d) != 0) {
@@ -83,7 +83,11 @@ static int record(const Device* d, const Images* images, const SelvedgeHost* hos
     const VkClearColorValue black = { .float32 = { 0.0f, 0.0f, 0.0f, 1.0f } };
     vkCmdClearColorImage(d->commands, images->colour.image, CLEAR.layout, &black, 1, &WHOLE);
     barrier(d, &images->colour, CLEAR, DRAW);
-    barrier(d, &images->instance, NEW, DRAW);
+    // without a background each image stays as it is where the model is not
+    barrier(d, &images->instance, NEW, CLEAR);
+    const VkClearColorValue none = { .uint32 = { 0 } };
+    vkCmdClearColorImage(d->commands, images->instance.image, CLEAR.layout, &none, 1, &WHOLE);
+    barrier(d, &images->instance, CLEAR, DRAW);
     const SelvedgeView view = above();
     const SelvedgeTargets targets = targets_of(images);
     SELVEDGE(selvedge_host_record(host, d->commands, 0, &view, &targets));

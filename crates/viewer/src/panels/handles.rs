@@ -45,7 +45,8 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, session: &mut Session) {
         let (Some(from), Some(to)) = (place.of(foot), place.of(tip)) else { continue };
         let along = to - from;
         let area = egui::Area::new(egui::Id::new(("section", i))).fixed_pos(from - Vec2::splat(0.5 * SIZE));
-        let response = area.order(egui::Order::Middle).constrain(false).show(ctx, |ui| {
+        let area = area.order(egui::Order::Middle).constrain(false).sense(egui::Sense::hover());
+        let response = area.show(ctx, |ui| {
             let (rect, response) = ui.allocate_exact_size(Vec2::splat(SIZE), egui::Sense::drag());
             let lit = response.hovered() || response.dragged() || response.has_focus();
             let colour = if lit { Color32::from_rgb(255, 150, 20) } else { Color32::from_rgb(40, 170, 90) };

@@ -328,6 +328,10 @@ fn arrows(handle: &egui::Response) -> Option<egui::Vec2> {
     if !handle.has_focus() {
         return None;
     }
+    if handle.gained_focus() {
+        // it keeps the arrows from the frame after the next on
+        handle.ctx.request_repaint();
+    }
     let filter = egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
     handle.ctx.memory_mut(|memory| memory.set_focus_lock_filter(handle.id, filter));
     let by = handle.ctx.input(|input| {

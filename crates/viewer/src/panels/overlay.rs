@@ -171,27 +171,30 @@ fn curve(painter: &egui::Painter, place: &Place<'_>, edge: &Edge, transform: DAf
 
 fn view_cube(ctx: &egui::Context, rect: Rect, ui: &mut Ui, camera: &Camera) {
     let corner = Pos2::new(rect.max.x - CUBE - 8.0, rect.min.y + 8.0);
-    egui::Area::new("cube".into()).fixed_pos(corner).order(egui::Order::Middle).show(ctx, |area| {
-        let (own, response) = area.allocate_exact_size(egui::Vec2::splat(CUBE), egui::Sense::click());
-        let to_panel = |p: DVec2| own.center() + egui::Vec2::new(p.x as f32, p.y as f32) * (0.5 * CUBE);
-        let at = response.hover_pos().map(|p| (p - own.center()) / (0.5 * CUBE));
-        let under = at.and_then(|p| cube::direction_at(camera, DVec2::new(f64::from(p.x), f64::from(p.y))));
-        let painter = area.painter();
-        for side in cube::sides(camera) {
-            let lit = under.is_some_and(|d| d.dot(side.normal) > 0.5);
-            let base = if lit { HOVERED } else { area.visuals().widgets.inactive.bg_fill };
-            let shade = base.gamma_multiply(0.75 + 0.25 * side.facing as f32);
-            let stroke = Stroke::new(1.0, area.visuals().widgets.active.fg_stroke.color);
-            painter.add(Shape::convex_polygon(side.corners.map(to_panel).to_vec(), shade, stroke));
-            if side.facing > 0.35 {
-                let middle = to_panel(cube::place(camera, side.normal));
-                let font = egui::FontId::proportional(10.0);
-                let colour = area.visuals().strong_text_color();
-                painter.text(middle, egui::Align2::CENTER_CENTER, side.name, font, colour);
+    egui::Area::new("cube".into()).fixed_pos(corner).order(egui::Order::Middle).sense(egui::Sense::hover()).show(
+        ctx,
+        |area| {
+            let (own, response) = area.allocate_exact_size(egui::Vec2::splat(CUBE), egui::Sense::click());
+            let to_panel = |p: DVec2| own.center() + egui::Vec2::new(p.x as f32, p.y as f32) * (0.5 * CUBE);
+            let at = response.hover_pos().map(|p| (p - own.center()) / (0.5 * CUBE));
+            let under = at.and_then(|p| cube::direction_at(camera, DVec2::new(f64::from(p.x), f64::from(p.y))));
+            let painter = area.painter();
+            for side in cube::sides(camera) {
+                let lit = under.is_some_and(|d| d.dot(side.normal) > 0.5);
+                let base = if lit { HOVERED } else { area.visuals().widgets.inactive.bg_fill };
+                let shade = base.gamma_multiply(0.75 + 0.25 * side.facing as f32);
+                let stroke = Stroke::new(1.0, area.visuals().widgets.active.fg_stroke.color);
+                painter.add(Shape::convex_polygon(side.corners.map(to_panel).to_vec(), shade, stroke));
+                if side.facing > 0.35 {
+                    let middle = to_panel(cube::place(camera, side.normal));
+                    let font = egui::FontId::proportional(10.0);
+                    let colour = area.visuals().strong_text_color();
+                    painter.text(middle, egui::Align2::CENTER_CENTER, side.name, font, colour);
+                }
             }
-        }
-        if response.clicked() {
-            ui.commands.extend(under.map(Command::LookFrom));
-        }
-    });
+            if response.clicked() {
+                ui.commands.extend(under.map(Command::LookFrom));
+            }
+        },
+    );
 }

@@ -122,7 +122,8 @@ impl Bench {
             let rect = focused.and_then(|id| self.ctx.read_response(id)).map(|response| response.rect);
             let is_in_picture = |rect: &egui::Rect| self.rect.contains(rect.center());
             if rect.filter(is_in_picture).is_some_and(|rect| (rect.size() - size).length() < 0.1) {
-                self.frame(Vec::new());
+                // only what had the keys a frame before keeps the arrows
+                (0..2).for_each(|_| _ = self.frame(Vec::new()));
                 return;
             }
         }
@@ -413,7 +414,8 @@ fn menus_open_and_choose_by_keys_alone() {
     assert!(!bench.says("Open..."));
     bench.press(egui::Key::Enter);
     assert!(bench.says("Open..."), "the first menu is open");
-    bench.press(egui::Key::Tab);
+    // the menu itself, then its first entry
+    (0..2).for_each(|_| _ = bench.press(egui::Key::Tab));
     bench.frame(Vec::new());
     bench.press(egui::Key::Enter);
     assert_eq!(bench.ui.commands, [Command::OpenDialog]);

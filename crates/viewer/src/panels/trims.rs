@@ -138,7 +138,8 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, ui: &mut Ui, session: &mut S
     for (handle, at) in nearest(all, cursor, gripped) {
         let id = egui::Id::new(("trim", nth, handle.curve, handle.point));
         let area = egui::Area::new(id).fixed_pos(at - Vec2::splat(0.5 * SIZE)).order(egui::Order::Middle);
-        let response = area.constrain(false).show(ctx, |ui| {
+        // Tab leads to the handle, not to its area, too
+        let response = area.constrain(false).sense(egui::Sense::hover()).show(ctx, |ui| {
             let (rect, response) = ui.allocate_exact_size(Vec2::splat(SIZE), egui::Sense::drag());
             let lit = response.hovered() || response.dragged() || response.has_focus();
             let fill = if lit { Color32::from_rgb(255, 150, 20) } else { Color32::WHITE };
