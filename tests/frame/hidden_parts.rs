@@ -240,12 +240,12 @@ fn sheets() -> Model {
 fn groups_of_faces_are_hidden() {
     let block = place_of_block() * DAffine3::from_scale(DVec3::splat(BLOCK_HALF / shapes::CUBE_HALF));
     let model = hall_of([sheets(), shapes::cube()], (shapes::cube(), block));
-    let steps = [0.0, 1.0, 90.0, 93.0].map(|x| before_the_block(DVec3::X * x));
+    let steps = [0.0, 1.0, 90.0].map(|x| before_the_block(DVec3::X * x));
     let views: Vec<Camera> = steps.into_iter().chain([behind_the_hall(), steps[0]]).collect();
     let pictures = same_as_alone(&model, editable(), &views);
     let hidden: Vec<u64> = pictures.iter().map(|[_, second]| second.stats.hidden_parts).collect();
     // more than there are placed parts
-    assert!(hidden[1] > 250 && hidden[4] + 50 < hidden[1], "{hidden:?} groups are hidden");
+    assert!(hidden[1] > 250 && hidden[3] + 50 < hidden[1], "{hidden:?} groups are hidden");
 }
 
 /// A large plate stands before the hall. Its hole moves, and shows other parts in the frame of the edit.
