@@ -88,16 +88,21 @@ fn pictures_in_flight_are_those_of_each_alone() {
         assert_same(drawn, expected, &format!("picture {nth}"));
         assert!(drawn.draw_s > 0.0 && drawn.upload_s > 0.0);
     }
-    // there is room for each view now; the second of two equal pictures frees what the first replaced
+    // there is room for each view now; the second of two equal pictures frees what the first replaced, and flights end
+    // where no order waits
     let rest = || {
-        draw(&jobs[..1]);
-        transient(&draw(&jobs[..1])[0])
+        let alone = |_| {
+            std::thread::sleep(Duration::from_millis(50));
+            draw(&jobs[..1]);
+            transient(&draw(&jobs[..1])[0])
+        };
+        (0..5).map(alone).min()
     };
-    let before = rest();
+    let before = rest().expect("pictures");
     let most = draw(&jobs).iter().map(transient).max().expect("pictures");
     let colour = u64::from(SIZE.0) * u64::from(SIZE.1) * 4;
     assert!(most > before + colour, "no two pictures were in flight: {most} bytes, alone {before}");
-    assert_eq!(rest(), before, "what further flights had is freed");
+    assert_eq!(rest(), Some(before), "what further flights had is freed");
 }
 
 /// Between jobs that are drawn together: a camera that shows nothing, a job that is stopped, settings that no picture
