@@ -96,7 +96,7 @@ pub(crate) struct Frame<'a> {
     pub parts_in_sight: Option<(&'a Buffer, u32)>,
     /// Constants and transforms for each of a pixel's samples; empty with one sample.
     pub samples: &'a [ViewBuffers],
-    /// With several samples: the last drawing is of the pixels' centres, for what is no mean of samples.
+    /// With several samples: the last drawing is of the pixels' centres. Lines and images other than colour need it.
     pub draws_centres: bool,
     /// The view for which the trim table is made; `None` if it is this view.
     pub table_view: Option<&'a ViewBuffers>,

@@ -37,7 +37,7 @@ layout(scalar, binding = 11) readonly buffer OperandMeshes { OperandMesh operand
 layout(scalar, binding = 12) readonly buffer Triangles { uint triangles[]; };
 layout(scalar, binding = 13) readonly buffer Positions { vec3 positions[]; };
 layout(scalar, binding = 14) readonly buffer Planes { uint planes[]; };
-// of those that are spline parts
+// (u, v) of operands that are spline parts
 layout(binding = 15, r32ui) readonly uniform uimage2D operand_uv;
 layout(scalar, binding = 16) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 17) readonly buffer Faces { Face faces[]; };

@@ -22,7 +22,7 @@ const float FOLD_COSINE = 0.2;
 const float FOLD_FAR_PX = 16.0;
 
 // Where a face ends in a fold, rounding decides on which side of its end the fold is. So the place is tested that is a
-// hundredth of a pixel before it: this share of the way back, of which the picture shows the square.
+// hundredth of a pixel before it. This is the share of the way back; in the picture that way is the share's square.
 const float BEFORE_FOLD = 1.0 / 16.0;
 
 float fold_at(Sample s, View view) {

@@ -62,7 +62,7 @@ fn the_programs_judge_finds_no_fault() {
     let clear = |p| painted(BLUE, p);
     let shapes = [
         ("a block with a round hole", solid("A-B", vec![clear(block(LOW, HIGH)), clear(post(0.6, -2.0, 4.0))]), 0),
-        // a pixel beside each outline of the post, where it goes into the block: docs/design/edges.md, "Limits"
+        // one pixel beside each outline of the post; their cause is not known: docs/design/edges.md, "Limits"
         ("an opaque post through a block", model(vec![glass(BLUE, LOW, HIGH), one(post(0.5, -1.5, 3.0))]), 2),
         ("an opaque ball within a block", model(vec![glass(BLUE, LOW, HIGH), one(ball(0.6, 0.0))]), 0),
         ("two blocks", model(vec![glass(BLUE, LOW, [0.2, 1.0, 1.0]), glass(BLUE, [-0.3; 3], [1.4, 0.5, 0.5])]), 0),

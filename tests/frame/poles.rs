@@ -26,7 +26,7 @@ const MEAN: f64 = 1.0 / 20.0;
 const WORST: f64 = 0.145;
 /// Where there may be two lines in a pixel: beside a tip and at corners.
 const WORST_OF_TWO: f64 = 0.2;
-/// In the one pixel that has a tip: its points find the surface from pixels below it, some of them not.
+/// In the one pixel that has a tip: 0.30 was measured, and its cause is not known.
 const WORST_OF_TIP: f64 = 0.35;
 
 /// At azimuth and elevation.

@@ -1,5 +1,5 @@
-//! Placed parts that other surfaces hide as a whole: no pass looks at their patches. A part of many patches is several
-//! groups of faces (`scene/in_sight.rs`), each of which counts as a part here.
+//! Placed parts that other surfaces hide as a whole: no pass looks at their patches. A part of many patches has
+//! several groups of faces (`scene/in_sight.rs`); each group counts as a part here.
 //!
 //! ```text
 //!   parts in sight ─▶ part_counts ──(scan)──▶ part_runs: runs of patch instances, dispatches      a list of parts

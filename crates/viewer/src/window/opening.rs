@@ -85,7 +85,7 @@ impl App {
         self.watch_panels();
         let (root, scale) = (egui::ViewportId::ROOT, Some(window.scale_factor() as f32));
         let mut input = egui_winit::State::new(self.context.clone(), root, &window, scale, window.theme(), None);
-        // the system tells of later changes alone
+        // the system reports changes of the focus, not the focus that a new window has
         input.egui_input_mut().focused = window.has_focus();
         self.opened = Some(Opened { window, input, waiter, engine, screen });
         self.forget_frames();

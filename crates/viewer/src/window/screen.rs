@@ -187,7 +187,7 @@ impl Screen {
             }
         }
         self.record_window(image, frame)?;
-        // Wayland then asks for the next frame only when it can be seen
+        // by this call Wayland delays the next frame until the window can show it
         window.pre_present_notify();
         let presented = self.submit(image)?;
         self.lost(window, presented)?;

@@ -1,4 +1,4 @@
-//! Names of arguments: of each node those that OpenSCAD has, and the order in which values without a name stand.
+//! The arguments that OpenSCAD knows of each node, and the order of values without a name.
 //!
 //! ```text
 //!   cylinder(5, d = 3, bottom = 2)    ▶    h = 5, r = 1.5; `bottom` is not known
