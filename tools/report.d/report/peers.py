@@ -25,6 +25,7 @@ PACKAGES = {
     "VTK": ("vtk", "vtkmodules"),
     "F3D": ("f3d", "f3d"),
     "Manifold": ("manifold3d", "manifold3d"),
+    "pyrender": ("pyrender", "pyrender"),
 }
 DEBIAN = {"OpenSCAD": "openscad", "POV-Ray": "povray"}
 SCREEN = "-screen 0 3840x2160x24"

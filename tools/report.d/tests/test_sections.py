@@ -1,10 +1,16 @@
 """Sections with made-up measurements: no process runs."""
 
+import importlib.machinery
+import importlib.util
+import json
+import sys
+import tempfile
 import unittest
 from pathlib import Path
 from unittest import mock
 
-from report import moving
+from report import budget, moving
+from report.machine import ROOT
 from report.rows import Contest, Missing, Section
 from report.sections import packages, stability, surfaces, trims, zoom
 
@@ -213,10 +219,78 @@ class Packages(unittest.TestCase):
         self.assertEqual((row[:3], len(row)), (["part.step", "f3d", Missing("no device")], 9))
 
     def test_ours_has_the_verdict_of_the_judge(self):
-        judge = {"judged": 2000, "wrong": 3}
+        judge = {"judged": 2000, "wrong": 3, "depth_px": {"mean": 0.001, "worst": 0.02}}
         times = {"first_s": 0.5, "next_s": 4.0, "peak_mib": 300.0}
         row = packages.row_of({"file": "part.step", "package": "selvedge", "judge": judge} | times)
-        self.assertEqual(row[2:7], [0.5, 4.0, 300.0, "3 wrong", "2,000 judged"])
+        self.assertEqual(row[2:], [0.5, 4.0, 300.0, "3 wrong", "2,000 judged", 0.001, 0.02])
+
+    def test_a_comparison_that_is_ended_keeps_its_rows(self):
+        """Of two files: one that is ended after its first package, and one before."""
+        begun = iter([True, False])
+
+        def ended(command, limit_s):
+            if next(begun):
+                row = {"file": "panel.step", "package": "selvedge", "error": "pretended"}
+                Path(command[2]).write_text(json.dumps({"rows": [row], "missing": {}}))
+            return "", f"not done in {limit_s:.0f} s", limit_s
+
+        with tempfile.TemporaryDirectory() as folder:
+            context = mock.Mock(quick=False, budget=budget.Budget(100, lambda: 0.0))
+            folders = iter(("a", "b"))
+            context.program.folder = lambda: made(Path(folder) / next(folders))
+            context.model = lambda name: Path(name) if name.startswith("samples/") else None
+            with mock.patch.object(packages, "run", ended), mock.patch.object(packages, "FILES", packages.FILES[:2]):
+                rows = packages.compared(context, Section(11, "", ""))
+        # the files have 50 s and 100 s, and 10 s more to begin
+        self.assertEqual(
+            [row[:3] for row in rows],
+            [
+                ["panel.step", "selvedge", Missing("pretended")],
+                ["panel.step", "others", Missing("tools/compare_python: not done in 60 s")],
+                ["bracket.step", "others", Missing("tools/compare_python: not done in 100 s")],
+            ],
+        )
+
+    def test_the_packages_of_a_file_share_its_time(self):
+        compare = comparison()
+        now = [0.0]
+        left = compare.Left(50.0, lambda: now[0])
+        limits = []
+
+        def draw(limit):
+            limits.append(limit)
+            now[0] += 30.0
+            return {"first_s": 1.0}
+
+        rows = [left.row(draw, 45.0) for _ in range(3)]
+        self.assertEqual(limits, [45.0, 20.0])
+        self.assertEqual(rows[2], {"error": "the file's 50 s were used up"})
+        self.assertEqual(compare.Left(None).limit(45.0), 45.0)
+
+    def test_the_comparison_s_own_table_has_the_verdict(self):
+        judge = {"wrong": 3, "depth_px": {"mean": 0.001, "worst": 0.02}}
+        row = {"file": "part.step", "package": "selvedge", "outputs": "depth", "judge": judge}
+        row |= {"first_s": 0.5, "next_s": 4.0, "peak_mib": 300.0}
+        report = {"rows": [row], "missing": {"vtk": ["OCP"]}, "size": 9, "views": 2, "machine": "", "date": ""}
+        text = comparison().table(report)
+        self.assertIn("| 300 | 3 wrong | 0.001 | 0.020 |", text)
+        self.assertIn("vtk was not compared: OCP is not installed.", text)
+
+
+def made(folder):
+    folder.mkdir()
+    return folder
+
+
+def comparison():
+    """tools/compare_python as a module."""
+    path = str(ROOT / "tools/compare_python")
+    loader = importlib.machinery.SourceFileLoader("compare_python", path)
+    spec = importlib.util.spec_from_loader(loader.name, loader)
+    module = importlib.util.module_from_spec(spec)
+    with mock.patch.object(sys, "dont_write_bytecode", True):
+        spec.loader.exec_module(module)
+    return module
 
 
 class Moving(unittest.TestCase):
