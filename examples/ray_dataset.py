@@ -70,8 +70,9 @@ def run(files, out, views, size, workers, draw=Draw):
     out = Path(out)
     (out / "shards").mkdir(parents=True, exist_ok=True)
     jobs = ray.data.from_items([{"file": str(file)} for file in files], override_num_blocks=len(files))
-    settings = {"fn_constructor_args": (str(out), list(views), tuple(size)), "concurrency": workers, "num_cpus": 1}
-    rows = jobs.map_batches(draw, batch_size=1, **settings).take_all()
+    settings = {"fn_constructor_args": (str(out), list(views), tuple(size)), "num_cpus": 1}
+    pool = ray.data.ActorPoolStrategy(size=workers)
+    rows = jobs.map_batches(draw, batch_size=1, compute=pool, **settings).take_all()
     for left in (out / "shards").glob("*.part"):  # workers that died leave these behind
         left.unlink()
     manifest = pa.Table.from_pylist(sorted(rows, key=lambda row: row["file"]))

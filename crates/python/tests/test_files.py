@@ -7,6 +7,7 @@ import pathlib
 import re
 import sys
 
+import needs
 import numpy as np
 import pytest
 import selvedge
@@ -175,7 +176,7 @@ def test_a_parquet_manifest_without_pyarrow_names_the_package(files, tmp_path, m
 
 
 def test_a_parquet_manifest_has_the_rows_with_their_types(renderer, files, tmp_path):
-    pq = pytest.importorskip("pyarrow.parquet", reason="pyarrow is not installed: pip install pyarrow")
+    pq = needs.package("pyarrow", "pyarrow.parquet")
     path = tmp_path / "all.parquet"
     rows = selvedge.render_files(files, tmp_path / "{stem}.png", manifest=path, renderer=renderer, size=SIZE)
     table = pq.read_table(path)

@@ -5,6 +5,7 @@ import pathlib
 import sys
 import types
 
+import needs
 import numpy as np
 import pytest
 import selvedge
@@ -142,10 +143,12 @@ def test_shapes_of_open_cascade_go_through_step(package, monkeypatch):
         assert len(selvedge.open(source).faces) == len(selvedge.open(BRACKET).faces)
 
 
-def test_a_cadquery_solid_is_read():
-    cadquery = pytest.importorskip("cadquery")
-    solid = cadquery.Workplane().box(1, 2, 3)
-    assert sorted(face.area for face in selvedge.open(solid).faces) == pytest.approx([2, 2, 3, 3, 6, 6])
+def test_a_shape_of_the_real_kernel_is_read():
+    """As pythonocc holds it, as build123d does, and on the stack of a cadquery Workplane."""
+    shape = needs.package("ocp", "OCP.BRepPrimAPI").BRepPrimAPI_MakeBox(1.0, 2.0, 3.0).Shape()
+    wrapping = types.SimpleNamespace(wrapped=shape)
+    for source in (shape, wrapping, types.SimpleNamespace(val=lambda: wrapping)):
+        assert sorted(face.area for face in selvedge.open(source).faces) == pytest.approx([2, 2, 3, 3, 6, 6])
 
 
 def test_a_view_snaps_to_vertices_centres_and_edges(bracket):

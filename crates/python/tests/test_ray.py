@@ -1,7 +1,4 @@
-"""examples/ray_dataset.py with local Ray: two workers, forty files, one worker killed in the middle.
-
-Needs `pip install "ray[data]"`; without it pytest reports the test as skipped.
-"""
+"""examples/ray_dataset.py with local Ray: two workers, forty files, one worker killed in the middle."""
 
 import importlib.util
 import os
@@ -9,10 +6,8 @@ import pathlib
 import signal
 import sys
 
+import needs
 import pytest
-
-ray = pytest.importorskip("ray", reason='ray is not installed: pip install "ray[data]"')
-pq = pytest.importorskip("pyarrow.parquet")
 
 EXAMPLE = pathlib.Path(__file__).parents[3] / "examples/ray_dataset.py"
 FILES, VIEWS, SIZE = 40, ["iso", "top"], (48, 32)
@@ -28,6 +23,8 @@ def block(k):
 
 @pytest.fixture(scope="module")
 def example():
+    ray = needs.package("ray", "ray")
+    needs.package("pyarrow", "pyarrow")
     spec = importlib.util.spec_from_file_location("ray_dataset", EXAMPLE)
     module = importlib.util.module_from_spec(spec)
     sys.modules["ray_dataset"] = module
@@ -40,6 +37,7 @@ def example():
 
 
 def test_a_worker_dies_and_every_file_is_there_once(example, tmp_path):
+    pq = example.pq
     source = tmp_path / "models"
     source.mkdir()
     files = [source / f"block{k:02}.obj" for k in range(FILES)]
