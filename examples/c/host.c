@@ -13,15 +13,6 @@
 
 #define BORDER 16u
 
-static const Use NEW = { VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, 0, VK_IMAGE_LAYOUT_UNDEFINED };
-static const Use CLEAR = { VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL };
-static const Use DRAW = { VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
-                          VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
-                          VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL };
-static const Use COPY = { VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT,
-                          VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL };
-
 // Draws one frame and waits for it: the host's blue, and the model in a rectangle of the image.
 static int frame(const Device* d, const Image* image, SelvedgeHost* renderer)
 {

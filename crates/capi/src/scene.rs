@@ -6,12 +6,12 @@
 //!   selvedge_host_pick(x, y) ─▶ the next record ─▶ … the host's fence ─▶ selvedge_host_picked(slot) ─▶ SelvedgeHit
 //! ```
 
-use crate::border::{Failure, SelvedgeStatus, Sized, argument, border, given, handle};
+use crate::border::{Failure, Outcome, SelvedgeStatus, Sized, argument, border, given, handle};
 use crate::host::{SelvedgeHost, render};
 use crate::model::SelvedgeModel;
 use glam::{DAffine3, DVec3};
 use selvedge::model::Colour;
-use selvedge::renderer::{Hit, ModelId};
+use selvedge::renderer::{Hit, InstanceError, ModelId, Renderer};
 use std::collections::HashMap;
 
 /// What a frame shows at a pixel. Numbers are those of the images, counted from 1; 0 is none.
@@ -84,9 +84,20 @@ impl Added {
     }
 }
 
-/// An index of the host's; one beyond all where it does not fit.
-fn index(instance: u64) -> usize {
-    usize::try_from(instance).unwrap_or(usize::MAX)
+/// Changes one instance of the scene. A number that is no index stands for one beyond all.
+///
+/// # Safety
+/// The pointer is null, or this library made it and it was not freed.
+unsafe fn changed(
+    host: *const SelvedgeHost,
+    instance: u64,
+    change: impl FnOnce(&mut Renderer, usize) -> Result<(), InstanceError>,
+) -> Outcome {
+    // SAFETY: as the caller promises
+    let host = unsafe { handle("host", host) }?;
+    host.model()?;
+    let index = usize::try_from(instance).unwrap_or(usize::MAX);
+    change(&mut host.renderer(), index).map_err(|error| argument(error.to_string()))
 }
 
 /// Moves an instance, counted from 0. `columns` takes part to model coordinates: the columns x, y, z and the
@@ -102,12 +113,11 @@ pub unsafe extern "C" fn selvedge_host_set_transform(
 ) -> SelvedgeStatus {
     border(|| {
         // SAFETY: as the caller promises
-        let (host, columns) = unsafe { (handle("host", host)?, columns.cast::<[f64; 12]>().as_ref()) };
+        let columns = unsafe { columns.cast::<[f64; 12]>().as_ref() };
         let columns = columns.ok_or_else(|| argument("the transform is a null pointer"))?;
-        host.model()?;
         let [x, y, z, t] = [0, 3, 6, 9].map(|k| DVec3::from_slice(&columns[k..k + 3]));
-        let changed = host.renderer().set_transform(index(instance), DAffine3::from_cols(x, y, z, t));
-        changed.map_err(|error| argument(error.to_string()))
+        // SAFETY: as the caller promises
+        unsafe { changed(host, instance, |renderer, i| renderer.set_transform(i, DAffine3::from_cols(x, y, z, t))) }
     })
 }
 
@@ -123,9 +133,7 @@ pub unsafe extern "C" fn selvedge_host_set_visible(
 ) -> SelvedgeStatus {
     border(|| {
         // SAFETY: as the caller promises
-        let host = unsafe { handle("host", host) }?;
-        host.model()?;
-        host.renderer().set_visible(index(instance), visible != 0).map_err(|error| argument(error.to_string()))
+        unsafe { changed(host, instance, |renderer, i| renderer.set_visible(i, visible != 0)) }
     })
 }
 
@@ -142,9 +150,9 @@ pub unsafe extern "C" fn selvedge_host_set_colour(
 ) -> SelvedgeStatus {
     border(|| {
         // SAFETY: as the caller promises
-        let (host, colour) = unsafe { (handle("host", host)?, colour.cast::<Colour>().as_ref()) };
-        host.model()?;
-        host.renderer().set_colour(index(instance), colour.copied()).map_err(|error| argument(error.to_string()))
+        let colour = unsafe { colour.cast::<Colour>().as_ref() }.copied();
+        // SAFETY: as the caller promises
+        unsafe { changed(host, instance, |renderer, i| renderer.set_colour(i, colour)) }
     })
 }
 
@@ -161,9 +169,9 @@ pub unsafe extern "C" fn selvedge_host_set_selected(
 ) -> SelvedgeStatus {
     border(|| {
         // SAFETY: as the caller promises
-        let (host, colour) = unsafe { (handle("host", host)?, colour.cast::<Colour>().as_ref()) };
-        host.model()?;
-        host.renderer().set_selected(index(instance), colour.copied()).map_err(|error| argument(error.to_string()))
+        let colour = unsafe { colour.cast::<Colour>().as_ref() }.copied();
+        // SAFETY: as the caller promises
+        unsafe { changed(host, instance, |renderer, i| renderer.set_selected(i, colour)) }
     })
 }
 

@@ -2,27 +2,8 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <selvedge.h>
-
-#define WANT(status, call, words)                                                                            \
-    do {                                                                                                     \
-        SelvedgeStatus got = (call);                                                                         \
-        const char* said = selvedge_last_error();                                                            \
-        if (got != (status) || strstr(said, (words)) == NULL || ((status) == SELVEDGE_STATUS_OK) != !*said) { \
-            fprintf(stderr, "line %d: status %d: \"%s\"\n", __LINE__, (int)got, said);                       \
-            return 1;                                                                                        \
-        }                                                                                                    \
-    } while (0)
-
-#define OK SELVEDGE_STATUS_OK
-#define ARGUMENT SELVEDGE_STATUS_ARGUMENT
-#define FILE_ERROR SELVEDGE_STATUS_FILE
-
-static const char BLOCK[] = "v 0 0 0\nv 0 0 5\nv 0 3 0\nv 0 3 5\nv 2 0 0\nv 2 0 5\nv 2 3 0\nv 2 3 5\n"
-                            "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
+#include "check.h"
 
 // an older program's view, and a newer one's
 typedef struct {
@@ -225,7 +206,7 @@ static int little(const SelvedgeModel* model)
     WANT(OK, selvedge_renderer_new(&options, &renderer), "");
     SelvedgePicture* picture = NULL;
     SelvedgeView view = { .struct_size = sizeof view, .width = 12000, .height = 12000 };
-    WANT(SELVEDGE_STATUS_RENDER, selvedge_render(renderer, model, &view, &picture), "are left of");
+    WANT(RENDER, selvedge_render(renderer, model, &view, &picture), "are left of");
     assert(picture == NULL);
     view.width = view.height = 40;
     WANT(OK, selvedge_render(renderer, model, &view, &picture), "");

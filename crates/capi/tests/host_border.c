@@ -1,21 +1,7 @@
 // Calls with null pointers, null handles and wrong sizes return a status and a sentence, and do not crash. No device is
 // made.
 
-#include <assert.h>
-#include <stdio.h>
-#include <string.h>
-
-#include <selvedge.h>
-
-#define WANT(call, words)                                                                  \
-    do {                                                                                   \
-        SelvedgeStatus got = (call);                                                       \
-        const char* said = selvedge_last_error();                                          \
-        if (got != SELVEDGE_STATUS_ARGUMENT || strstr(said, (words)) == NULL) {            \
-            fprintf(stderr, "line %d: status %d: \"%s\"\n", __LINE__, (int)got, said);     \
-            return 1;                                                                      \
-        }                                                                                  \
-    } while (0)
+#include "check.h"
 
 static void nothing(void) { }
 
@@ -30,40 +16,40 @@ int main(void)
 {
     SelvedgeHost* host = (SelvedgeHost*)1;
     SelvedgeVulkan vulkan = { .struct_size = sizeof vulkan };
-    WANT(selvedge_host_new(&vulkan, &host), "get_instance_proc_addr is null");
-    assert(host == NULL);
-    WANT(selvedge_vulkan_missing(&vulkan), "get_instance_proc_addr is null");
+    WANT(ARGUMENT, selvedge_host_new(&vulkan, &host), "get_instance_proc_addr is null");
+    HOLDS(host == NULL);
+    WANT(ARGUMENT, selvedge_vulkan_missing(&vulkan), "get_instance_proc_addr is null");
     vulkan.get_instance_proc_addr = no_function;
-    WANT(selvedge_vulkan_missing(&vulkan), "null handle");
-    WANT(selvedge_host_new(&vulkan, NULL), "null pointer");
-    WANT(selvedge_host_new(NULL, &host), "get_instance_proc_addr is null");
+    WANT(ARGUMENT, selvedge_vulkan_missing(&vulkan), "null handle");
+    WANT(ARGUMENT, selvedge_host_new(&vulkan, NULL), "null pointer");
+    WANT(ARGUMENT, selvedge_host_new(NULL, &host), "get_instance_proc_addr is null");
     vulkan.struct_size = 3;
-    WANT(selvedge_host_new(&vulkan, &host), "struct_size");
+    WANT(ARGUMENT, selvedge_host_new(&vulkan, &host), "struct_size");
     char features[4096] = { 0 };
-    WANT(selvedge_vulkan_features(NULL, features, features), "null pointer");
-    WANT(selvedge_vulkan_features(features, features, NULL), "null pointer");
+    WANT(ARGUMENT, selvedge_vulkan_features(NULL, features, features), "null pointer");
+    WANT(ARGUMENT, selvedge_vulkan_features(features, features, NULL), "null pointer");
 
     SelvedgeView view = { .struct_size = sizeof view, .width = 8, .height = 8 };
     SelvedgeTargets targets = { .struct_size = sizeof targets };
     SelvedgeReport report = { .struct_size = sizeof report };
     const double columns[12] = { 0 };
-    WANT(selvedge_host_upload(NULL, NULL, &view), "host is a null pointer");
-    WANT(selvedge_host_record(NULL, features, 0, &view, &targets), "host is a null pointer");
-    WANT(selvedge_host_report(NULL, 0, &report), "host is a null pointer");
-    WANT(selvedge_host_set_transform(NULL, 0, columns), "host is a null pointer");
-    WANT(selvedge_host_set_visible(NULL, 0, 1), "host is a null pointer");
+    WANT(ARGUMENT, selvedge_host_upload(NULL, NULL, &view), "host is a null pointer");
+    WANT(ARGUMENT, selvedge_host_record(NULL, features, 0, &view, &targets), "host is a null pointer");
+    WANT(ARGUMENT, selvedge_host_report(NULL, 0, &report), "host is a null pointer");
+    WANT(ARGUMENT, selvedge_host_set_transform(NULL, 0, columns), "host is a null pointer");
+    WANT(ARGUMENT, selvedge_host_set_visible(NULL, 0, 1), "host is a null pointer");
     const float colour[4] = { 0 };
-    WANT(selvedge_host_set_colour(NULL, 0, colour), "host is a null pointer");
-    WANT(selvedge_host_set_selected(NULL, 0, colour), "host is a null pointer");
+    WANT(ARGUMENT, selvedge_host_set_colour(NULL, 0, colour), "host is a null pointer");
+    WANT(ARGUMENT, selvedge_host_set_selected(NULL, 0, colour), "host is a null pointer");
     uint64_t number = 0;
-    WANT(selvedge_host_add(NULL, NULL, &number), "host is a null pointer");
-    WANT(selvedge_host_remove(NULL, 1), "host is a null pointer");
-    WANT(selvedge_host_instances(NULL, 1, &number, &number), "host is a null pointer");
+    WANT(ARGUMENT, selvedge_host_add(NULL, NULL, &number), "host is a null pointer");
+    WANT(ARGUMENT, selvedge_host_remove(NULL, 1), "host is a null pointer");
+    WANT(ARGUMENT, selvedge_host_instances(NULL, 1, &number, &number), "host is a null pointer");
     SelvedgeHit hit = { .struct_size = sizeof hit };
-    WANT(selvedge_host_pick(NULL, 0, 0), "host is a null pointer");
-    WANT(selvedge_host_picked(NULL, 0, &hit), "host is a null pointer");
-    WANT(selvedge_host_discard(NULL, 0), "host is a null pointer");
-    WANT(selvedge_host_device_lost(NULL), "host is a null pointer");
+    WANT(ARGUMENT, selvedge_host_pick(NULL, 0, 0), "host is a null pointer");
+    WANT(ARGUMENT, selvedge_host_picked(NULL, 0, &hit), "host is a null pointer");
+    WANT(ARGUMENT, selvedge_host_discard(NULL, 0), "host is a null pointer");
+    WANT(ARGUMENT, selvedge_host_device_lost(NULL), "host is a null pointer");
     selvedge_host_free(NULL);
     return 0;
 }

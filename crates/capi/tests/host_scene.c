@@ -2,43 +2,11 @@
 // read back, a frame that is discarded, a device that is lost.
 
 #include <math.h>
-#include <string.h>
 
 #include "../../../examples/c/commands.h"
-
-#define WANT(status, call, words)                                                                            \
-    do {                                                                                                     \
-        SelvedgeStatus got = (call);                                                                         \
-        const char* said = selvedge_last_error();                                                            \
-        if (got != (status) || strstr(said, (words)) == NULL || ((status) == SELVEDGE_STATUS_OK) != !*said) { \
-            fprintf(stderr, "line %d: status %d: \"%s\"\n", __LINE__, (int)got, said);                       \
-            return 1;                                                                                        \
-        }                                                                                                    \
-    } while (0)
-#define HOLDS(what)                                                       \
-    do {                                                                  \
-        if (!(what)) {                                                    \
-            return fprintf(stderr, "line %d: %s\n", __LINE__, #what), 1;  \
-        }                                                                 \
-    } while (0)
-
-#define OK SELVEDGE_STATUS_OK
-#define ARGUMENT SELVEDGE_STATUS_ARGUMENT
-#define RENDER SELVEDGE_STATUS_RENDER
+#include "check.h"
 
 enum { WIDTH = 64, HEIGHT = 48 };
-
-static const char BLOCK[] = "v 0 0 0\nv 0 0 5\nv 0 3 0\nv 0 3 5\nv 2 0 0\nv 2 0 5\nv 2 3 0\nv 2 3 5\n"
-                            "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
-
-static const Use NEW = { VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, 0, VK_IMAGE_LAYOUT_UNDEFINED };
-static const Use CLEAR = { VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL };
-static const Use DRAW = { VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
-                          VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
-                          VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL };
-static const Use COPY = { VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT,
-                          VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL };
 
 // From above, two pixels a millimetre: the top of the block is 4 x 6 pixels in the middle, 45 mm away.
 static SelvedgeView above(void)
