@@ -267,7 +267,7 @@ pub struct SceneSettings {
     /// them.
     pub sun: Option<DVec3>,
     /// Lines along edges; `None`: no lines. Edges of parts and meshes are found when the model is uploaded; later edits
-    /// of loops do not move lines. Boolean solids have none.
+    /// of loops do not move lines. Lines of Boolean solids are found in each frame.
     pub edges: Option<EdgeSettings>,
     /// Most bytes of the lists of [`SolidWay::Events`]: the primitives of each tile of 16 x 16 pixels, and the
     /// crossings of each pixel's ray with operands that are meshes or spline parts. If the lists would be larger, the

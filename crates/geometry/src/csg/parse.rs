@@ -24,6 +24,7 @@ pub struct Expression {
 /// Why a text is not an expression. Columns count characters from 1.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // the messages say what each field is
+#[non_exhaustive]
 pub enum ParseError {
     #[error("column {column}: `{found}` has no meaning here")]
     Character { column: usize, found: char },
@@ -35,6 +36,19 @@ pub enum ParseError {
     Close { column: usize },
     #[error(transparent)]
     Tree(#[from] TreeError),
+}
+
+impl ParseError {
+    /// Where it is; column 1 for an expression that is too large as a whole.
+    pub fn column(&self) -> usize {
+        match *self {
+            Self::Character { column, .. }
+            | Self::Operand { column }
+            | Self::Open { column }
+            | Self::Close { column } => column,
+            Self::Tree(_) => 1,
+        }
+    }
 }
 
 /// An operator or bracket that waits for its right side.

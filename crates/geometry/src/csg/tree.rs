@@ -57,6 +57,7 @@ pub enum Node {
 /// Why nodes are not a tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)]
+#[non_exhaustive]
 pub enum TreeError {
     #[error("the solid needs more than {} nodes once its symmetric differences are written out", Tree::MOST_NODES)]
     TooLarge,

@@ -151,6 +151,7 @@ impl Default for EdgeLimits {
 /// How many edges of each kind there are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct EdgeCounts {
     /// [`EdgeKind::Sharp`]
     pub sharp: usize,

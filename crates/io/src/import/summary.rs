@@ -18,6 +18,7 @@ pub struct Tally {
 
 /// The result of reading a file, in counts.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Summary {
     /// Faces with a surface.
     pub faces: Tally,

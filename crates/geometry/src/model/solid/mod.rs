@@ -54,6 +54,7 @@ impl TryFrom<SolidData> for Solid {
 /// Why primitives and a tree do not make a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // the messages say what each field is
+#[non_exhaustive]
 pub enum SolidError {
     /// A leaf names a primitive that does not exist.
     #[error("a leaf names primitive {primitive} of {count}")]

@@ -11,7 +11,7 @@ use super::items::{File, Scene, Thing};
 use super::text::{Fault, Outcome, Table, Value};
 use super::{place, shapes, trim};
 use crate::construct::{extruded_solid, lathed_solid};
-use crate::csg::{self, Expression, Node, Op, ParseError};
+use crate::csg::{self, Expression, Node, Op};
 use crate::import::solid::{Assembly, Placed};
 use crate::model::{Colour, Face, Mesh, Model, Part, Primitive, Quadric, Shape, ShapeError, Solid, SolidError};
 use glam::{DAffine3, DVec3};
@@ -141,16 +141,8 @@ fn block(table: &mut Table<'_>, unit: f64) -> Outcome<Shape> {
 /// An expression and its operands.
 fn boolean<'a>(scene: &mut Scene<'a>, table: &mut Table<'a>) -> Outcome<Form> {
     let value = table.need("of")?;
-    let expression = csg::parse(value.text()?).map_err(|e| {
-        let column = match e {
-            ParseError::Character { column, .. }
-            | ParseError::Operand { column }
-            | ParseError::Open { column }
-            | ParseError::Close { column } => column,
-            ParseError::Tree(_) => 1,
-        };
-        Fault::new(value.column(scene.text, column), format!("`of`: {e}"))
-    })?;
+    let expression = csg::parse(value.text()?)
+        .map_err(|e| Fault::new(value.column(scene.text, e.column()), format!("`of`: {e}")))?;
     let operands = table.read("with", Value::table)?;
     let mut things = Vec::new();
     for name in &expression.names {
