@@ -33,7 +33,7 @@ pub fn run(file: &Path, size: (u32, u32)) -> Result<BTreeMap<u32, Seen>, Box<dyn
     let model = selvedge_io::import::open(file)?.model;
     let mut renderer = HeadlessRenderer::new(&HeadlessOptions::default())?;
     renderer.upload(&model)?;
-    let camera = Camera::framing(&model, DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, size);
+    let camera = Camera::framing(&model, Camera::FROM, DVec3::Z, Camera::FOV_DEG.to_radians(), size);
     let outputs = Outputs { depth: true, face: true, ..Outputs::default() };
     let picture = renderer.render(&camera, &FrameSettings::default(), outputs)?;
     let mut faces = BTreeMap::new();

@@ -36,6 +36,6 @@ pub fn run(size: (u32, u32)) -> Result<Picture, Box<dyn Error>> {
     let model = Model { solids: vec![solid], ..Model::default() };
     let mut renderer = HeadlessRenderer::new(&HeadlessOptions::default())?;
     renderer.upload(&model)?;
-    let camera = Camera::framing(&model, DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, size);
+    let camera = Camera::framing(&model, Camera::FROM, DVec3::Z, Camera::FOV_DEG.to_radians(), size);
     Ok(renderer.render(&camera, &FrameSettings::default(), Outputs::ALL)?)
 }

@@ -39,7 +39,7 @@ pub fn run(file: &Path, size: (u32, u32)) -> Result<Edit, Box<dyn Error>> {
 
     let mut renderer = HeadlessRenderer::new(&HeadlessOptions::default())?;
     renderer.upload_with(&model, SceneSettings { editable: true, ..SceneSettings::default() })?;
-    let camera = Camera::framing(&model, DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, size);
+    let camera = Camera::framing(&model, Camera::FROM, DVec3::Z, Camera::FOV_DEG.to_radians(), size);
     let draw =
         |renderer: &mut HeadlessRenderer| renderer.render(&camera, &FrameSettings::default(), Outputs::default());
     let before = draw(&mut renderer)?;

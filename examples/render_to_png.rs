@@ -22,7 +22,7 @@ pub fn run(file: &Path, png: &Path, size: (u32, u32)) -> Result<(), Box<dyn Erro
     read.warnings.iter().for_each(|warning| eprintln!("{warning:?}"));
     let mut renderer = HeadlessRenderer::new(&HeadlessOptions::default())?;
     renderer.upload(&read.model)?;
-    let camera = Camera::framing(&read.model, DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, size);
+    let camera = Camera::framing(&read.model, Camera::FROM, DVec3::Z, Camera::FOV_DEG.to_radians(), size);
     let picture = renderer.render(&camera, &FrameSettings::default(), Outputs::default())?;
     let mut encoder = png::Encoder::new(File::create(png)?, size.0, size.1);
     encoder.set_color(png::ColorType::Rgba);

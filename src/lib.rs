@@ -28,7 +28,7 @@
 //! fn draw(model: &Model) -> Result<Picture, HeadlessError> {
 //!     let mut renderer = HeadlessRenderer::new(&HeadlessOptions::default())?;
 //!     renderer.upload(model)?;
-//!     let camera = Camera::framing(model, DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, (1920, 1080));
+//!     let camera = Camera::framing(model, Camera::FROM, DVec3::Z, Camera::FOV_DEG.to_radians(), (1920, 1080));
 //!     renderer.render(&camera, &FrameSettings::default(), Outputs::ALL)
 //! }
 //! ```

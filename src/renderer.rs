@@ -211,8 +211,9 @@ impl Renderer {
     /// call.
     ///
     /// # Panics
-    /// When no model was uploaded, the slot does not exist, or the targets are not those of
-    /// [`TargetFormats`].
+    /// When no model was uploaded, the slot does not exist, the targets are not those of [`TargetFormats`], or these have
+    /// a thickness and the scene is uploaded without
+    /// [`SceneSettings::thickness`](crate::picture::SceneSettings::thickness).
     ///
     /// # Safety
     /// `cmd` is recording outside a render pass, on the host's queue family, and is submitted once;

@@ -43,7 +43,7 @@ pub fn run(file: &Path, frames: usize, size: (u32, u32)) -> Result<Timing, Box<d
     // SAFETY: the device meets the requirements, and outlives the renderer.
     let mut renderer = unsafe { Renderer::new(engine.lend(), TargetFormats::new(FORMAT), SLOTS)? };
     renderer.upload(&model)?;
-    let camera = Camera::framing(&model, DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, size);
+    let camera = Camera::framing(&model, Camera::FROM, DVec3::Z, Camera::FOV_DEG.to_radians(), size);
     let settings = FrameSettings { background: None, ..FrameSettings::default() };
     let (mut changing, mut recording, mut whole) = (Duration::ZERO, Duration::ZERO, 0);
     for frame in 0..frames + SLOTS {
