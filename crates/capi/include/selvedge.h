@@ -105,7 +105,8 @@ typedef struct SelvedgeVulkan {
     uint32_t colour_format;
     // VkFormat of a depth target of the host's, reversed: 1 near, 0 far. 0: there is none.
     uint32_t depth_format;
-    // Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on. SELVEDGE_THICKNESS is refused.
+    // Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on. With SELVEDGE_THICKNESS rays are followed
+    // through all solids, and closed parts stay as they were uploaded.
     uint32_t outputs;
 } SelvedgeVulkan;
 
@@ -203,6 +204,8 @@ typedef struct SelvedgeTargets {
     struct SelvedgeTarget part;
     // R32_UINT.
     struct SelvedgeTarget instance;
+    // R32_SFLOAT. A frame may leave it out.
+    struct SelvedgeTarget thickness;
 } SelvedgeTargets;
 
 // The counts of a finished frame.

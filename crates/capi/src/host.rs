@@ -10,13 +10,14 @@
 
 use crate::border::{Failure, SelvedgeStatus, Sized, argument, border, free, given, handle, place, taken};
 use crate::model::SelvedgeModel;
+use crate::picture::images;
 use crate::renderer::{NO_VIEW, SelvedgeView};
 use crate::scene::Added;
 use selvedge::ash::vk;
 use selvedge::ash::vk::Handle;
 use selvedge::gpu::{HostDevice, Image, RawDevice, Requirements, load_instance};
 use selvedge::model::Model;
-use selvedge::picture::Outputs;
+use selvedge::picture::SceneSettings;
 use selvedge::renderer::{Aovs, FrameInput, Renderer, TargetFormats, Targets};
 use std::ffi::{c_char, c_void};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -47,7 +48,8 @@ pub struct SelvedgeVulkan {
     pub colour_format: u32,
     /// VkFormat of a depth target of the host's, reversed: 1 near, 0 far. 0: there is none.
     pub depth_format: u32,
-    /// Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on. SELVEDGE_THICKNESS is refused.
+    /// Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on. With SELVEDGE_THICKNESS rays are followed
+    /// through all solids, and closed parts stay as they were uploaded.
     pub outputs: u32,
 }
 
@@ -96,6 +98,8 @@ pub struct SelvedgeTargets {
     pub part: SelvedgeTarget,
     /// R32_UINT.
     pub instance: SelvedgeTarget,
+    /// R32_SFLOAT. A frame may leave it out.
+    pub thickness: SelvedgeTarget,
 }
 
 /// The counts of a finished frame.
@@ -151,6 +155,7 @@ const NO_TARGETS: SelvedgeTargets = SelvedgeTargets {
     edge: NO_TARGET,
     part: NO_TARGET,
     instance: NO_TARGET,
+    thickness: NO_TARGET,
 };
 
 // SAFETY: each begins with its size and consists of numbers and pointers; a null function pointer is `None`
@@ -254,7 +259,7 @@ pub unsafe extern "C" fn selvedge_host_new(
         if !family.is_some_and(|f| f.queue_flags.contains(Requirements::QUEUE_FLAGS)) {
             return Err(argument(format!("queue family {} is not one for graphics and compute", vulkan.queue_family)));
         }
-        let outputs = outputs(vulkan.outputs)?;
+        let outputs = selvedge_jobs::Image::outputs(images(vulkan.outputs)?);
         let format = |number: u32| vk::Format::from_raw(number as i32);
         let depth = (vulkan.depth_format != 0).then(|| format(vulkan.depth_format));
         if vulkan.colour_format == 0 {
@@ -268,15 +273,6 @@ pub unsafe extern "C" fn selvedge_host_new(
         *place = Box::into_raw(Box::new(SelvedgeHost { renderer, added, formats, slots }));
         Ok(())
     })
-}
-
-/// Names the images that a host draws into.
-fn outputs(bits: u32) -> Result<Outputs, Failure> {
-    let outputs = selvedge_jobs::Image::outputs(crate::picture::images(bits)?);
-    if outputs.thickness {
-        return Err(argument("a host's frame has no image of thickness"));
-    }
-    Ok(outputs)
 }
 
 impl SelvedgeHost {
@@ -316,6 +312,7 @@ pub unsafe extern "C" fn selvedge_host_upload(
         let (host, model, view) = unsafe { (handle("host", host)?, handle("model", model)?, taken(view, NO_VIEW)?) };
         // SAFETY: as the caller promises
         let scene = unsafe { view.scene(host.formats.outputs.edge, &model.loaded.model) }?;
+        let scene = SceneSettings { thickness: host.formats.outputs.thickness, ..scene };
         host.renderer().upload_shared(Arc::clone(&model.loaded.model), scene, &|_| ()).map_err(render)?;
         host.added().clear();
         Ok(())
@@ -376,6 +373,8 @@ pub unsafe extern "C" fn selvedge_host_record(
         let edge = image("edge", targets.edge, outputs.edge.then_some(number))?;
         let part = image("part", targets.part, outputs.part.then_some(number))?;
         let instance = image("instance", targets.instance, outputs.instance.then_some(number))?;
+        let wanted = outputs.thickness && targets.thickness.image != 0; // a frame may leave it out
+        let thickness = image("thickness", targets.thickness, wanted.then_some(Renderer::THICKNESS_FORMAT))?;
         let Some(colour) = &colour else { return Err(argument("the frame lacks its image of colour")) };
         let aovs = Aovs {
             depth: depth.as_ref(),
@@ -386,7 +385,7 @@ pub unsafe extern "C" fn selvedge_host_record(
             part: part.as_ref(),
             instance: instance.as_ref(),
         };
-        let targets = Targets { depth: buffer.as_ref(), aovs, corner, ..Targets::new(colour) };
+        let targets = Targets { colour, depth: buffer.as_ref(), aovs, thickness: thickness.as_ref(), corner };
         let input = FrameInput { camera: &camera, settings, slot, targets };
         let commands = vk::CommandBuffer::from_raw(commands as u64);
         // SAFETY: as the caller promises

@@ -1,5 +1,5 @@
-// A scene that lives on a host's device: what is refused, instances that change, models that come and go, a pixel that is
-// read back, a frame that is discarded, a device that is lost.
+// A scene that lives on a host's device: what is refused, instances that change, models that come and go, a pixel that
+// is read back, a frame that is discarded, a device that is lost, lengths within solids.
 
 #include <math.h>
 
@@ -24,7 +24,8 @@ static SelvedgeView above(void)
 }
 
 typedef struct {
-    Image colour, instance;
+    Image colour, instance, thickness;
+    int has_thickness; // of the next frames
 } Images;
 
 static SelvedgeTarget target(const Image* image)
@@ -38,6 +39,7 @@ static SelvedgeTargets targets_of(const Images* images)
         .struct_size = sizeof(SelvedgeTargets),
         .colour = target(&images->colour),
         .instance = target(&images->instance),
+        .thickness = images->has_thickness ? target(&images->thickness) : (SelvedgeTarget){ 0, 0 },
     };
 }
 
@@ -56,6 +58,9 @@ static int record(const Device* d, const Images* images, const SelvedgeHost* hos
     const VkClearColorValue none = { .uint32 = { 0 } };
     vkCmdClearColorImage(d->commands, images->instance.image, CLEAR.layout, &none, 1, &WHOLE);
     barrier(d, &images->instance, CLEAR, DRAW);
+    if (images->has_thickness) {
+        barrier(d, &images->thickness, NEW, DRAW);
+    }
     const SelvedgeView view = above();
     const SelvedgeTargets targets = targets_of(images);
     SELVEDGE(selvedge_host_record(host, d->commands, 0, &view, &targets));
@@ -74,6 +79,10 @@ static int draw(const Device* d, const Images* images, const SelvedgeHost* host)
         read_back(d, &images->colour);
         barrier(d, &images->instance, DRAW, COPY);
         read_back(d, &images->instance);
+        if (images->has_thickness) {
+            barrier(d, &images->thickness, DRAW, COPY);
+            read_back(d, &images->thickness);
+        }
         if (submit_and_wait(d) != 0) {
             return 1;
         }
@@ -166,6 +175,7 @@ static int mistakes_of_frames(const Device* d, const Images* images, const Selve
     BAD(targets, colour.view, 0, ARGUMENT, "has no view");
     BAD(targets, depth.image, 1, ARGUMENT, "without an image of depth");
     BAD(targets, instance.image, 0, ARGUMENT, "lacks its image of instance");
+    BAD(targets, thickness.image, 1, ARGUMENT, "without an image of thickness");
     BAD(targets, x, 1, RENDER, "is not within it");
     BAD(targets, struct_size, 2, ARGUMENT, "struct_size");
     return 0;
@@ -282,15 +292,45 @@ static int losses(const Device* d, const Images* images, const SelvedgeHost* hos
     return 0;
 }
 
+// A host with lengths of rays within solids: the block is 5 mm high.
+static int lengths(const Device* d, Images* images, const SelvedgeModel* model, SelvedgeHost** second)
+{
+    SelvedgeVulkan vulkan = lent(d);
+    vulkan.outputs = SELVEDGE_INSTANCE | SELVEDGE_THICKNESS;
+    WANT(OK, selvedge_host_new(&vulkan, second), "");
+    const SelvedgeHost* host = *second;
+    const SelvedgeView view = above();
+    WANT(OK, selvedge_host_upload(host, model, &view), "");
+    Seen seen;
+    images->has_thickness = 1;
+    LOOK();
+    HOLDS(is_block(seen.left) && seen.instances[1] == 24);
+    void* bytes = NULL;
+    VK(vkMapMemory(d->device, images->thickness.copy_memory, 0, VK_WHOLE_SIZE, 0, &bytes));
+    size_t within = 0, outside = 0;
+    for (size_t i = 0; i < WIDTH * HEIGHT; ++i) {
+        const float length = ((const float*)bytes)[i];
+        within += fabsf(length - 5.0f) < 1e-4f;
+        outside += length == 0.0f;
+    }
+    vkUnmapMemory(d->device, images->thickness.copy_memory);
+    HOLDS(within == 24 && within + outside == WIDTH * HEIGHT);
+    images->has_thickness = 0;
+    LOOK();
+    HOLDS(is_block(seen.left) && seen.instances[1] == 24);
+    WANT(ARGUMENT, selvedge_host_set_visible(host, 0, 0), "rays are followed through instance 0");
+    return 0;
+}
+
 static int run(Device* d, Images* images, const SelvedgeModel* model, SelvedgeHost** host)
 {
     if (make_device(d) != 0 || make_commands(d) != 0 || make_image(d, &images->colour) != 0
-        || make_image(d, &images->instance) != 0) {
+        || make_image(d, &images->instance) != 0 || make_image(d, &images->thickness) != 0) {
         return 1;
     }
     SelvedgeVulkan vulkan = lent(d);
-    vulkan.outputs = SELVEDGE_THICKNESS;
-    WANT(ARGUMENT, selvedge_host_new(&vulkan, host), "thickness");
+    vulkan.outputs = 1u << 30;
+    WANT(ARGUMENT, selvedge_host_new(&vulkan, host), "no image");
     vulkan = lent(d);
     vulkan.queue_family = 99;
     WANT(ARGUMENT, selvedge_host_new(&vulkan, host), "queue family 99");
@@ -314,15 +354,18 @@ int main(void)
     SelvedgeModel* model = NULL;
     WANT(OK, selvedge_open_bytes(BLOCK, sizeof BLOCK - 1, "block.obj", NULL, &model), "");
     Images images = { .colour = { .width = WIDTH, .height = HEIGHT, .format = FORMAT },
-                      .instance = { .width = WIDTH, .height = HEIGHT, .format = VK_FORMAT_R32_UINT } };
+                      .instance = { .width = WIDTH, .height = HEIGHT, .format = VK_FORMAT_R32_UINT },
+                      .thickness = { .width = WIDTH, .height = HEIGHT, .format = VK_FORMAT_R32_SFLOAT } };
     Device device = { 0 };
-    SelvedgeHost* host = NULL;
-    const int bad = run(&device, &images, model, &host);
+    SelvedgeHost *host = NULL, *second = NULL;
+    const int bad = run(&device, &images, model, &host) != 0 || lengths(&device, &images, model, &second) != 0;
     selvedge_host_free(host);
+    selvedge_host_free(second);
     selvedge_model_free(model);
     if (device.device != NULL) {
         free_image(&device, &images.colour);
         free_image(&device, &images.instance);
+        free_image(&device, &images.thickness);
     }
     free_device(&device);
     return bad;
