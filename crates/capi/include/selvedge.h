@@ -70,7 +70,7 @@ typedef enum SelvedgeStatus {
     SELVEDGE_STATUS_INTERNAL = 5,
 } SelvedgeStatus;
 
-// A renderer on the host's device. One thread uses it at a time.
+// A renderer on the host's device. Calls of several threads follow each other.
 typedef struct SelvedgeHost SelvedgeHost;
 
 // A model. Free it with selvedge_model_free; renderers and pictures do not need it any more then.

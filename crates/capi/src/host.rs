@@ -117,7 +117,7 @@ pub struct SelvedgeReport {
     pub clamps: u64,
 }
 
-/// A renderer on the host's device. One thread uses it at a time.
+/// A renderer on the host's device. Calls of several threads follow each other.
 pub struct SelvedgeHost {
     renderer: Mutex<Renderer>,
     added: Mutex<Added>,

@@ -126,12 +126,13 @@ fn the_host_records_into_its_own_command_buffer() {
     assert!(String::from_utf8_lossy(&refused.stderr).contains("none.step"));
 }
 
-/// On a device of the host's: mistakes are refused, instances change, models come and go, and a pixel is read back.
+/// On a device of the host's: mistakes are refused, instances change, also while another thread draws, models come and
+/// go, and a pixel is read back.
 /// Needs Vulkan's header, too.
 #[test]
 fn the_hosts_scene_lives() {
     let into = tempfile::tempdir().expect("a folder");
-    let program = linked(&folder().join("tests/host_scene.c"), into.path(), &["-lvulkan"]);
+    let program = linked(&folder().join("tests/host_scene.c"), into.path(), &["-lvulkan", "-pthread"]);
     good(&watched(&program).output().expect("it runs"));
 }
 

@@ -2,6 +2,9 @@
 // is read back, a frame that is discarded, a device that is lost, lengths within solids.
 
 #include <math.h>
+#include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
 
 #include "../../../examples/c/commands.h"
 #include "check.h"
@@ -269,6 +272,45 @@ static int models(const Device* d, const Images* images, const SelvedgeHost* hos
     return 0;
 }
 
+typedef struct {
+    const SelvedgeHost* host;
+    atomic_int done;
+} Mover;
+
+static void* move_to_and_fro(void* with)
+{
+    Mover* mover = with;
+    double at[12] = { 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0 };
+    while (!atomic_load(&mover->done)) {
+        at[9] = 6.0 - at[9];
+        if (selvedge_host_set_transform(mover->host, 0, at) != OK || *selvedge_last_error() != 0) {
+            return "a transform was refused, or the error is the other thread's";
+        }
+        sched_yield();
+    }
+    return NULL;
+}
+
+// One thread moves the block while another draws: each frame shows it at one of its places.
+static int threads(const Device* d, const Images* images, const SelvedgeHost* host)
+{
+    Mover mover = { .host = host };
+    pthread_t thread;
+    HOLDS(pthread_create(&thread, NULL, move_to_and_fro, &mover) == 0);
+    int bad = 0;
+    for (int frame = 0; frame < 4 && !bad; ++frame) {
+        Seen seen;
+        bad = selvedge_host_set_visible(host, 9, 0) != ARGUMENT || strstr(selvedge_last_error(), "no instance 9") == NULL
+            || look(d, images, host, &seen) != 0
+            || !(is_block(seen.left) ? seen.right == 0 : seen.left == 0 && is_block(seen.right));
+    }
+    atomic_store(&mover.done, 1);
+    void* wrong = NULL;
+    HOLDS(pthread_join(thread, &wrong) == 0 && wrong == NULL);
+    HOLDS(!bad);
+    return 0;
+}
+
 // A frame that the host drops, and then a device that is lost.
 static int losses(const Device* d, const Images* images, const SelvedgeHost* host)
 {
@@ -346,7 +388,7 @@ static int run(Device* d, Images* images, const SelvedgeModel* model, SelvedgeHo
     const SelvedgeView view = above();
     WANT(OK, selvedge_host_upload(*host, model, &view), "");
     return mistakes_of_frames(d, images, *host) != 0 || changes(d, images, *host) != 0
-        || models(d, images, *host, model) != 0 || losses(d, images, *host) != 0;
+        || models(d, images, *host, model) != 0 || threads(d, images, *host) != 0 || losses(d, images, *host) != 0;
 }
 
 int main(void)
