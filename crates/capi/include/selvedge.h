@@ -108,6 +108,11 @@ typedef struct SelvedgeVulkan {
     // Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on. With SELVEDGE_THICKNESS rays are followed
     // through all solids, and closed parts stay as they were uploaded.
     uint32_t outputs;
+    // Most bytes of buffers and images on the device; 0: what its heaps have left, which bounds them in any case.
+    uint64_t limit_bytes;
+    // VkPipelineCache with which all pipelines are made; 0: none. It outlives the SelvedgeHost, and meanwhile the host
+    // does not merge into it.
+    uint64_t pipeline_cache;
 } SelvedgeVulkan;
 
 // A picture to be drawn. Zeros and null are the defaults, but for width and height.

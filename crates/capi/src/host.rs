@@ -51,6 +51,11 @@ pub struct SelvedgeVulkan {
     /// Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on. With SELVEDGE_THICKNESS rays are followed
     /// through all solids, and closed parts stay as they were uploaded.
     pub outputs: u32,
+    /// Most bytes of buffers and images on the device; 0: what its heaps have left, which bounds them in any case.
+    pub limit_bytes: u64,
+    /// VkPipelineCache with which all pipelines are made; 0: none. It outlives the SelvedgeHost, and meanwhile the host
+    /// does not merge into it.
+    pub pipeline_cache: u64,
 }
 
 /// An image of the host's; 0 where there is none.
@@ -136,6 +141,8 @@ const NO_VULKAN: SelvedgeVulkan = SelvedgeVulkan {
     colour_format: 0,
     depth_format: 0,
     outputs: 0,
+    limit_bytes: 0,
+    pipeline_cache: 0,
 };
 
 const NO_TARGET: SelvedgeTarget = SelvedgeTarget { image: 0, view: 0 };
@@ -253,6 +260,11 @@ pub unsafe extern "C" fn selvedge_host_new(
         }
         // SAFETY: as the caller promises
         let lent = unsafe { HostDevice::from_raw(raw) };
+        let lent = HostDevice {
+            pipeline_cache: vk::PipelineCache::from_raw(vulkan.pipeline_cache),
+            memory_budget: (vulkan.limit_bytes != 0).then_some(vulkan.limit_bytes),
+            ..lent
+        };
         // SAFETY: as the caller promises
         let families = unsafe { lent.instance.get_physical_device_queue_family_properties(lent.physical) };
         let family = families.get(vulkan.queue_family as usize);

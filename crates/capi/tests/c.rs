@@ -110,6 +110,21 @@ fn the_example_draws_a_picture() {
     assert!(String::from_utf8_lossy(&refused.stderr).contains("none.step"));
 }
 
+#[test]
+fn the_header_is_cpp_too() {
+    let into = tempfile::tempdir().expect("a folder");
+    let source = into.path().join("version.cpp");
+    let text =
+        "#include <selvedge.h>\nint main() { return selvedge_version() == nullptr || selvedge_last_error()[0]; }\n";
+    fs::write(&source, text).expect("written");
+    let program = into.path().join("version");
+    let mut compiler = Command::new("c++");
+    compiler.args(["-std=c++11", "-Wall", "-Wextra", "-Werror", "-pedantic", "-I"]).arg(folder().join("include"));
+    compiler.arg(&source).arg("-o").arg(&program).arg("-L").arg(libraries()).arg("-lselvedge_c");
+    good(&compiler.arg(format!("-Wl,-rpath,{}", libraries().display())).output().expect("c++ runs"));
+    good(&Command::new(program).env_remove("LD_LIBRARY_PATH").output().expect("it runs"));
+}
+
 /// Needs Vulkan's header: on Debian `apt install libvulkan-dev`.
 #[test]
 fn the_host_records_into_its_own_command_buffer() {
