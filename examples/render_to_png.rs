@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Draws `file` in so many pixels.
 pub fn run(file: &Path, png: &Path, size: (u32, u32)) -> Result<(), Box<dyn Error>> {
     let read = selvedge_io::import::open(file)?;
-    read.warnings.iter().for_each(|warning| eprintln!("{warning:?}"));
+    read.warnings.iter().for_each(|warning| eprintln!("{warning}"));
     let mut renderer = HeadlessRenderer::new(&HeadlessOptions::default())?;
     renderer.upload(&read.model)?;
     let camera = Camera::framing(&read.model, Camera::FROM, DVec3::Z, Camera::FOV_DEG.to_radians(), size);
