@@ -1,11 +1,12 @@
 """Renders a folder of CAD files with Ray Data: depth, normals and face numbers into Parquet shards, and a manifest.
 
     tools/wheel && pip install "ray[data]" out/selvedge-*.whl
-    python examples/ray_dataset.py FOLDER OUT --views iso front top --size 256 256 --workers 2
+    python examples/ray_dataset.py FOLDER OUT --views iso front top --size 256 256 --workers 2 [--gpus]
 
-Each worker has a renderer of its own, on a GPU or a CPU. Each file becomes one shard, OUT/shards/NAME-HASH.parquet, with
-a row for each view. A shard appears whole or not at all. If a worker dies, another worker draws its file again, so every
-file has one shard. OUT/manifest.parquet has a row for each file: SHA-256, shard, status, error, counts, seconds.
+Each worker has a renderer of its own, on the CPU or, with --gpus, on a GPU that no other worker has. Each file becomes
+one shard, OUT/shards/NAME-HASH.parquet, with a row for each view. A shard appears whole or not at all. If a worker dies,
+another one draws its file again, so every file has one shard. OUT/manifest.parquet has a row for each file: SHA-256,
+shard, status, error, counts, seconds.
 """
 
 import argparse
@@ -24,9 +25,14 @@ OUTPUTS = ["depth", "normal", "face"]
 class Draw:
     """A worker: draws files one after another with its own renderer."""
 
-    def __init__(self, out, views, size):
+    def __init__(self, out, views, size, gpus=False):
         self.out, self.views, self.size = Path(out), views, size
-        self.renderer = selvedge.Renderer()
+        device = None
+        if gpus:
+            import ray
+
+            device = f"#{ray.get_gpu_ids()[0]}"
+        self.renderer = selvedge.Renderer(device)
 
     def __call__(self, batch):
         rows = [self.one(Path(str(file))) for file in batch["file"]]
@@ -63,14 +69,14 @@ class Draw:
         return shard.name
 
 
-def run(files, out, views, size, workers, draw=Draw):
+def run(files, out, views, size, workers, draw=Draw, gpus=False):
     """Draws the files with `workers` workers; returns the manifest."""
     import ray
 
     out = Path(out)
     (out / "shards").mkdir(parents=True, exist_ok=True)
     jobs = ray.data.from_items([{"file": str(file)} for file in files], override_num_blocks=len(files))
-    settings = {"fn_constructor_args": (str(out), list(views), tuple(size)), "num_cpus": 1}
+    settings = {"fn_constructor_args": (str(out), list(views), tuple(size), gpus), "num_cpus": 1, "num_gpus": int(gpus)}
     pool = ray.data.ActorPoolStrategy(size=workers)
     rows = jobs.map_batches(draw, batch_size=1, compute=pool, **settings).take_all()
     for left in (out / "shards").glob("*.part"):  # workers that died leave these behind
@@ -87,12 +93,13 @@ def main():
     parser.add_argument("--views", nargs="+", default=["iso", "front", "top"])
     parser.add_argument("--size", nargs=2, type=int, default=[256, 256])
     parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--gpus", action="store_true", help="a GPU for each worker")
     asked = parser.parse_args()
     endings = {".step", ".stp", ".iges", ".igs", ".obj", ".stl", ".3mf", ".3dm", ".csg"}
     files = sorted(path for path in asked.folder.rglob("*") if path.suffix.lower() in endings)
     if not files:
         parser.error(f"{asked.folder} holds no CAD file")
-    manifest = run(files, asked.out, asked.views, asked.size, asked.workers)
+    manifest = run(files, asked.out, asked.views, asked.size, asked.workers, gpus=asked.gpus)
     failed = manifest.column("status").to_pylist().count("failed")
     print(f"{len(files) - failed} of {len(files)} files are drawn: {asked.out / 'manifest.parquet'}")
     raise SystemExit(failed > 0)

@@ -105,41 +105,58 @@ impl Instance {
         all.iter().any(|e| e.extension_name_as_c_str() == Ok(ash::khr::portability_subset::NAME))
     }
 
-    /// The device whose name holds `wanted`, or else the most capable kind of device that meets the
-    /// requirements.
+    /// The device that [`HeadlessOptions::device`] names.
     pub(super) fn choose(&self, wanted: Option<&str>) -> Result<vk::PhysicalDevice, HeadlessError> {
         // SAFETY: the instance is alive.
         let all = unsafe { self.raw.enumerate_physical_devices() }.named("vkEnumeratePhysicalDevices", "instance")?;
-        if all.is_empty() {
-            return Err(HeadlessError::NoDevice);
-        }
-        let mut names = Vec::new();
-        let mut lacking = Vec::new();
-        let mut usable = Vec::new();
-        for physical in all {
-            // SAFETY: the device belongs to this instance.
-            let properties = unsafe { self.raw.get_physical_device_properties(physical) };
-            let name = properties.device_name_as_c_str().unwrap_or(c"?").to_string_lossy().into_owned();
-            names.push(name.clone());
-            if wanted.is_some_and(|wanted| !name.to_lowercase().contains(&wanted.to_lowercase())) {
-                continue;
-            }
+        let found = all.iter().map(|physical| {
             // SAFETY: the device belongs to this instance, which was made for Vulkan 1.3.
-            let missing = unsafe { Requirements::missing(&self.raw, physical) };
-            if missing.is_empty() {
-                usable.push((rank(properties.device_type), physical));
-            } else {
-                lacking.push(format!("{name} lacks {}", lacks(&missing)));
-            }
+            let (properties, missing) = unsafe {
+                (self.raw.get_physical_device_properties(*physical), Requirements::missing(&self.raw, *physical))
+            };
+            let name = properties.device_name_as_c_str().unwrap_or(c"?").to_string_lossy().into_owned();
+            Found { name, rank: rank(properties.device_type), missing }
+        });
+        Ok(all[chosen(&found.collect::<Vec<_>>(), wanted)?])
+    }
+}
+
+/// A device of the system.
+struct Found {
+    name: String,
+    rank: u32,
+    missing: Vec<String>,
+}
+
+/// The index of the device that [`HeadlessOptions::device`] names.
+fn chosen(found: &[Found], wanted: Option<&str>) -> Result<usize, HeadlessError> {
+    if found.is_empty() {
+        return Err(HeadlessError::NoDevice);
+    }
+    let (name, nth) = wanted.map_or(("", 0), numbered);
+    let name = name.to_lowercase();
+    let (mut usable, lacking): (Vec<usize>, Vec<usize>) = (0..found.len())
+        .filter(|k| found[*k].name.to_lowercase().contains(&name))
+        .partition(|k| found[*k].missing.is_empty());
+    usable.sort_by_key(|k| found[*k].rank);
+    match (usable.get(nth), wanted) {
+        (Some(k), _) => Ok(*k),
+        (None, Some(wanted)) if !usable.is_empty() || lacking.is_empty() => {
+            let names: Vec<&str> = found.iter().map(|device| device.name.as_str()).collect();
+            Err(HeadlessError::NoSuchDevice { wanted: wanted.to_owned(), present: names.join(", ") })
         }
-        match (usable.iter().min_by_key(|(rank, _)| *rank), wanted) {
-            (Some((_, physical)), _) => Ok(*physical),
-            (None, Some(wanted)) if lacking.is_empty() => {
-                Err(HeadlessError::NoSuchDevice { wanted: wanted.to_owned(), present: names.join(", ") })
-            }
-            (None, _) => Err(HeadlessError::Lacking { devices: lacking.join("; ") }),
+        _ => {
+            let described = |k: &usize| format!("{} lacks {}", found[*k].name, lacks(&found[*k].missing));
+            let devices: Vec<String> = lacking.iter().map(described).collect();
+            Err(HeadlessError::Lacking { devices: devices.join("; ") })
         }
     }
+}
+
+/// `NAME#2` in parts; 0 without a number.
+fn numbered(wanted: &str) -> (&str, usize) {
+    let parts = wanted.rsplit_once('#').and_then(|(name, nth)| Some((name, nth.parse().ok()?)));
+    parts.unwrap_or((wanted, 0))
 }
 
 impl Drop for Instance {
@@ -169,5 +186,50 @@ pub(super) fn rank(kind: vk::PhysicalDeviceType) -> u32 {
         vk::PhysicalDeviceType::VIRTUAL_GPU => 2,
         vk::PhysicalDeviceType::CPU => 3,
         _ => 4,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_device_is_chosen_by_name_and_number() {
+        let of = |name: &str, rank, missing: &[&str]| Found {
+            name: name.to_owned(),
+            rank,
+            missing: missing.iter().map(|what| (*what).to_owned()).collect(),
+        };
+        let found = [
+            of("llvmpipe", 3, &[]),
+            of("Titan A", 0, &[]),
+            of("Old", 0, &["feature tessellation_shader"]),
+            of("Titan B", 0, &[]),
+            of("Iris", 1, &[]),
+        ];
+        let take = |wanted| chosen(&found, wanted).map_err(|error| error.to_string());
+        for (wanted, expected) in [
+            (None, 1),
+            (Some("#0"), 1),
+            (Some("#1"), 3),
+            (Some("#2"), 4),
+            (Some("#3"), 0),
+            (Some("titan"), 1),
+            (Some("TITAN#1"), 3),
+            (Some("titan b"), 3),
+            (Some("llvm#0"), 0),
+        ] {
+            assert_eq!(take(wanted), Ok(expected), "{wanted:?}");
+        }
+        for (wanted, told) in [
+            ("#4", "named like `#4`; there are: llvmpipe, Titan A, Old, Titan B, Iris"),
+            ("titan#2", "named like `titan#2`"),
+            ("titan#", "named like `titan#`"),
+            ("old", "Old lacks feature tessellation_shader"),
+            ("old#0", "Old lacks"),
+        ] {
+            assert!(take(Some(wanted)).is_err_and(|error| error.contains(told)), "{wanted}");
+        }
+        assert!(matches!(chosen(&[], Some("#0")), Err(HeadlessError::NoDevice)));
     }
 }

@@ -318,7 +318,8 @@ typedef struct SelvedgeImage {
 typedef struct SelvedgeRendererOptions {
     // sizeof(SelvedgeRendererOptions)
     size_t struct_size;
-    // Part of the device's name; null takes a discrete GPU, else an integrated one, else the CPU.
+    // Part of the device's name; null takes a discrete GPU, else an integrated one, else the CPU. Of several devices it
+    // is the first, and with "#1" behind it the second: "#1" alone is the second of all.
     const char *device;
     // Not 0: load Vulkan's validation layer; its messages about a picture give SELVEDGE_STATUS_RENDER.
     uint32_t validation;

@@ -26,7 +26,8 @@ pub struct SelvedgeRenderer {
 pub struct SelvedgeRendererOptions {
     /// sizeof(SelvedgeRendererOptions)
     pub struct_size: usize,
-    /// Part of the device's name; null takes a discrete GPU, else an integrated one, else the CPU.
+    /// Part of the device's name; null takes a discrete GPU, else an integrated one, else the CPU. Of several devices it
+    /// is the first, and with "#1" behind it the second: "#1" alone is the second of all.
     pub device: *const c_char,
     /// Not 0: load Vulkan's validation layer; its messages about a picture give SELVEDGE_STATUS_RENDER.
     pub validation: u32,

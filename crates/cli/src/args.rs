@@ -312,7 +312,7 @@ pub struct SweepArgs {
     /// Also the triangles a second beside those of an instanced grid with the same number
     #[arg(long)]
     pub rate: bool,
-    /// Part of the name of the Vulkan device to use
+    /// Part of the name of the Vulkan device to use; #1 behind it, or alone, is the second one
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
     /// Table to write
@@ -355,7 +355,7 @@ pub struct TrimsArgs {
     /// Pixels to judge in each view beside those at which the face changes
     #[arg(long, value_name = "N", default_value_t = 2_000, value_parser = at_least_one)]
     pub samples: usize,
-    /// Part of the name of the Vulkan device to use
+    /// Part of the name of the Vulkan device to use; #1 behind it, or alone, is the second one
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
     /// Folder for trims.json, trims.csv and the plots
@@ -419,7 +419,7 @@ pub struct FrameArgs {
     /// the sun. Without it the light of a scene file, or one that travels with the camera and casts no shadows
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub sun: Option<DVec3>,
-    /// Part of the name of the Vulkan device to use
+    /// Part of the name of the Vulkan device to use; #1 behind it, or alone, is the second one
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
     /// Load the Vulkan validation layer; a message from it counts as a broken promise

@@ -2,7 +2,6 @@
 
 import math
 import pathlib
-import signal
 import subprocess
 import sys
 import threading
@@ -249,9 +248,16 @@ def test_a_model_outlives_the_renderers_that_drew_it(block):
         selvedge.check(block, size=SIZE, judged=0)
 
 
-def test_no_such_device():
-    with pytest.raises(selvedge.DeviceError, match="no such"):
-        selvedge.Renderer("no such device")
+def test_a_device_is_chosen_by_name_and_number(block):
+    for wrong in ("no such device", "#99"):
+        with pytest.raises(selvedge.DeviceError, match=f"named like `{wrong}`"):
+            selvedge.Renderer(wrong)
+    pictures = []
+    for device in (None, "#0"):
+        with selvedge.Renderer(device) as one:
+            pictures.append(one.render(block, size=SIZE))
+    assert pictures[0].stats["device"] == pictures[1].stats["device"]
+    assert pictures[0].colour.tobytes() == pictures[1].colour.tobytes()
 
 
 def test_a_closed_renderer_says_so(block):
@@ -466,37 +472,3 @@ def test_the_judge_finds_the_promise_kept(renderer, bracket):
     assert verdict["kept"] and verdict["seen"] and verdict["wrong"] == 0
     assert verdict["judged"] >= 2000 and verdict["worst_shift_px"] <= 0.5
     assert verdict["judgement"]["agree"] > 0 and verdict["camera"]["size"] == [160, 120]
-
-
-INTERRUPTED = """
-import selvedge, signal, sys, threading, time
-spheres = "".join(f"v {i % 100} {i // 100} {(i * 7919) % 97 / 9}\\n" for i in range(100 * 100))
-quads = "".join(f"f {a+1} {a+2} {a+102} {a+101}\\n" for a in range(9800) if a % 100 < 99)
-model = selvedge.open((spheres + quads).encode(), name="sheet.obj")
-renderer = selvedge.Renderer()
-if sys.argv[1] == "render":
-    work = lambda: [renderer.render(model, size=(4000, 4000), samples=8, outputs=["depth"]) for _ in range(50)]
-elif sys.argv[1] == "many":
-    job = {"model": model, "size": (2000, 2000), "samples": 8, "outputs": ["depth"]}
-    work = lambda: [picture.size for picture in renderer.render_many([job] * 200)]
-else:
-    work = lambda: [selvedge.open(sys.argv[1]) for _ in range(1000)]
-print("ready", flush=True)
-begun = time.monotonic()
-try:
-    work()
-except KeyboardInterrupt:
-    print("interrupted", flush=True)
-    import os
-    os._exit(0)
-"""
-
-
-@pytest.mark.parametrize("work", ["render", "many", str(SAMPLES / "assembly.step")])
-def test_control_c_ends_it(work):
-    child = subprocess.Popen([sys.executable, "-c", INTERRUPTED, work], stdout=subprocess.PIPE, text=True)
-    assert child.stdout.readline() == "ready\n"
-    with pytest.raises(subprocess.TimeoutExpired):  # it is at work
-        child.wait(0.5)
-    child.send_signal(signal.SIGINT)
-    assert child.communicate(timeout=10)[0] == "interrupted\n"

@@ -11,7 +11,7 @@ pub struct ReportArgs {
     /// Smaller pictures, and fewer of them
     #[arg(long)]
     pub quick: bool,
-    /// Part of the name of the Vulkan device to use
+    /// Part of the name of the Vulkan device to use; #1 behind it, or alone, is the second one
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
     /// Folder for report.md, the tables as CSV, and plots

@@ -12,7 +12,7 @@ pub struct ThumbnailArgs {
     /// Width and height, pixels
     #[arg(value_parser = clap::value_parser!(u32).range(1..=2048))]
     pub size: u32,
-    /// Part of the name of the Vulkan device to use
+    /// Part of the name of the Vulkan device to use; #1 behind it, or alone, is the second one
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
 }

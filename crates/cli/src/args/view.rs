@@ -12,7 +12,7 @@ pub struct ViewArgs {
     /// Width and height of the window, in points of the display
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
-    /// Part of the name of the Vulkan device to use
+    /// Part of the name of the Vulkan device to use; #1 behind it, or alone, is the second one
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
     /// Turn on the validation layer; its messages make the exit status 1

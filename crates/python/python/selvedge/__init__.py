@@ -89,7 +89,8 @@ def _check_limits(**limits: float | None) -> None:
 class Renderer:
     """A Vulkan device that draws models; a context manager, which closes it.
 
-    device: part of the device's name; without it a discrete GPU, else an integrated one, else the CPU.
+    device: part of the device's name; without it a discrete GPU, else an integrated one, else the CPU. Of several
+        devices it is the first, and with "#1" behind it the second: "#1" alone is the second of all.
     validation: load Vulkan's validation layer; what it says of a picture is a RenderError.
     limit_mib: most MiB of buffers and images on the device, which never takes more than it has left. A picture that
         needs more is a RenderError.
