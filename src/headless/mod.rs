@@ -42,7 +42,7 @@ use std::sync::Arc;
 pub struct HeadlessOptions {
     /// Part of the device's name, in any case; `None` takes a discrete GPU, else an integrated one, else the CPU. Of
     /// several devices it is the first, and with `#1` behind it the second: `#1` alone is the second of all that the
-    /// engine runs on, in the order of [`devices`].
+    /// engine runs on, in the order of [`devices()`].
     pub device: Option<String>,
     /// Validation and synchronisation validation, collected in [`HeadlessDevice::messages`].
     pub validation: bool,
