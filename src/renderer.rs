@@ -8,11 +8,12 @@
 //!                                      report(slot) ─▶ complete? times, counts, bytes
 //! ```
 //!
-//! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the GPU can count (the
-//! trim table, the list of sub-patches) may be too small for a new view: the report of that frame says `complete:
-//! false`, and the next `record` into its slot makes them larger. A scene of more bytes than staging memory holds is
-//! copied by several frames, which report the same. A view from very near is resolved by what is cut out of the model for
-//! it: [`Renderer::prepare`]. Instances change, and models come and go, between frames: [`Renderer::add`].
+//! The renderer never submits, waits, or destroys what is the host's. Only the GPU can count how large some buffers
+//! must be (the trim table, the list of sub-patches), so they may be too small for a new view. Then the report of that
+//! frame says `complete: false`, and the next `record` into its slot makes them larger. A scene of more bytes than
+//! staging memory holds is copied by several frames, which report the same. A view from very near is drawn from what is
+//! cut out of the model for it: [`Renderer::prepare`]. Instances change, and models come and go, between frames:
+//! [`Renderer::add`].
 
 mod centres;
 mod constants;
@@ -215,9 +216,9 @@ impl Renderer {
     /// [`TargetFormats`].
     ///
     /// # Safety
-    /// `cmd` is recording outside a render pass, on the host's queue family, and is submitted once;
-    /// the frame recorded before into the same slot has finished on the GPU; frames are submitted in
-    /// the order in which they are recorded, to one queue.
+    /// * `cmd` is recording outside a render pass, on the host's queue family, and is submitted once.
+    /// * The frame recorded before into the same slot has finished on the GPU.
+    /// * Frames are submitted in the order in which they are recorded, to one queue.
     pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, input: &FrameInput<'_>) -> Result<(), RenderError> {
         input.camera.check()?;
         let tolerance = input.settings.tolerance_px;

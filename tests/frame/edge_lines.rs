@@ -55,8 +55,9 @@ pub fn centres(picture: &Picture) -> impl Iterator<Item = (DVec2, u32)> + '_ {
     picture.edge.iter().enumerate().filter(|(_, edge)| **edge != 0).map(move |(at, edge)| (centre(at), *edge))
 }
 
-/// Visible points without a line within half its width and half a pixel, and line pixels farther than that and a fifth from
-/// any point that may be seen: a tenth of a pixel for what chords may be off, a tenth for the points' own distance.
+/// Visible points without a line within half its width and half a pixel; line pixels farther than that and a fifth from
+/// any point that may be seen. Of the fifth, a tenth of a pixel is for what chords may be off, and a tenth for the
+/// points' own distance.
 fn faults(model: &Model, camera: &Camera, picture: &Picture) -> (usize, usize, usize) {
     let tracer = Tracer::new(model);
     let edges = EdgeTracer::new(model, &tracer).unwrap();

@@ -105,8 +105,8 @@ fn every_case(way: TrimWay, zooms: &[f64]) {
     assert_silent(renderer);
 }
 
-/// A thousand times closer a strip would need more than its 65,536 rows, which the frame counts as a clamp, and the
-/// comb more intercepts than a storage buffer of 128 MiB holds, which is an error.
+/// Not a thousand times closer. There a strip would need more than its 65,536 rows, which the frame counts as a clamp;
+/// the comb would need more intercepts than a storage buffer of 128 MiB holds, which is an error.
 #[test]
 fn by_table() {
     every_case(TrimWay::Table, &ZOOMS[..3]);

@@ -80,9 +80,9 @@ fn borders_are_as_the_frame_sixteen_times_as_large() {
     }
 }
 
-/// All images but the colour are the same with and without smooth borders, bit for bit. So is the colour of pixels that
-/// see nothing, as their eight neighbours do, and of pixels whose neighbours see the same face, in one colour where it is
-/// that of a mesh or a solid, which have creases, and in a nearly straight slope.
+/// All images but the colour are the same with and without smooth borders, bit for bit. The colour stays at pixels that
+/// see nothing, as their eight neighbours do, and at pixels whose neighbours see the same face in a nearly straight
+/// slope. Of a mesh or a solid, which have creases, the neighbours must have one colour, too.
 #[test]
 fn nothing_else_changes() {
     let (width, height) = (SIZE.0 as usize, SIZE.1 as usize);

@@ -1,5 +1,5 @@
-//! Patches of closed parts without trims that are turned away are left out, which changes no picture: it equals that of
-//! the same surface around a speck whose sides are not linked, so that nothing is left out.
+//! Patches of closed parts without trims that are turned away are left out, which changes no picture. The same surface
+//! around a speck whose sides are not linked has nothing left out, and the same picture.
 
 use crate::support::{assert_silent, perspective, render, watched};
 use crate::{cages, shapes};
