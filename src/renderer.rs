@@ -68,7 +68,7 @@ use viewport::Viewport;
 pub struct FrameInput<'a> {
     /// View and size.
     pub camera: &'a Camera,
-    /// Tolerance and background.
+    /// Tolerance, background, style, effects left out.
     pub settings: FrameSettings,
     /// Frame slot, below the number given to [`Renderer::new`]; the frame before in it has finished on the GPU.
     pub slot: usize,
@@ -76,7 +76,9 @@ pub struct FrameInput<'a> {
     pub targets: Targets<'a>,
 }
 
-/// A renderer on a host's device.
+/// A renderer on a host's device: one scene, drawn by any number of views. `README.md`, "In an engine", has an example.
+///
+/// Any thread may hold it; one at a time records. It must be dropped before the device.
 pub struct Renderer {
     device: Device,
     formats: TargetFormats,
@@ -161,7 +163,8 @@ impl Renderer {
     /// Format of the image of thickness.
     pub const THICKNESS_FORMAT: vk::Format = solid_layers::THICKNESS_FORMAT;
 
-    /// Takes the host's device on loan; `frame_slots` frames may be in flight.
+    /// Takes the host's device on loan; `frame_slots` frames, at least one, may be in flight. [`upload`](Self::upload)
+    /// a model next.
     ///
     /// # Errors
     /// [`GpuError`].
