@@ -268,9 +268,8 @@ pub struct SceneSettings {
     /// [`FrameStats::shadowless`] counts these. Shadows are made with the scene: later edits of loops do not change
     /// them.
     pub sun: Option<DVec3>,
-    /// Lines along edges; `None`: no lines. Edges of parts, of meshes and of operands without equations are found when
-    /// the model is uploaded; later edits of loops do not move lines. Other lines of Boolean solids are made by each
-    /// frame, where what its pixels see changes.
+    /// Lines along edges; `None`: no lines. Edges of parts and meshes are found when the model is uploaded; later edits
+    /// of loops do not move lines. Boolean solids have none.
     pub edges: Option<EdgeSettings>,
     /// Most bytes of the lists of [`SolidWay::Events`]: the primitives of each tile of 16 x 16 pixels, and the
     /// crossings of each pixel's ray with operands that are meshes or spline parts. If the lists would be larger, the

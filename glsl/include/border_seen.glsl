@@ -1,12 +1,12 @@
-// What the points of a pixel at a border see; each point has a row and a column of its own. In scenes with patches
-// alone pass `border_mix` tests the patches and makes the mean. In scenes with meshes or Boolean solids one pass tests
-// the patches, one the meshes and one the solids, and each keeps the nearest surface. Needs `frame`, `resolved`,
-// visible.glsl, shade.glsl and unmixed.glsl.
+// What the points of a pixel at a border see: each in a row and a column of its own. In scenes with meshes or Boolean solids
+// one pass asks the patches, one the meshes and one the solids, and each keeps what is nearest; else pass `border_mix` asks
+// the patches and makes the mean. Needs `frame`, `resolved`, visible.glsl,
+// shade.glsl and unmixed.glsl.
 //
 //     ┌────────┐
 //     │·       │     sixteen points; of scenes with patches alone Hammersley's
-//     │    ·   │     shown: which of the nine pixels around sees the same, and lends its colour; NOBODY: none of the
-//     │  ·     │            tested surfaces is there
+//     │    ·   │     shown: which of the nine pixels around sees the same, and lends its colour; NOBODY: none of what was
+//     │  ·     │            asked is there
 //     │      · │
 //     └────────┘
 #ifndef BORDER_SEEN_GLSL
@@ -49,8 +49,8 @@ uint nearest_of(uint pixels, vec2 from) {
     return nearest;
 }
 
-// Colour of point `k`, for which the pixel `shown` has one. `unasked`: bits of the pixels around that see what points are
-// not tested for.
+// Colour of point `k`, for which the pixel `shown` has one. `unasked`: bits of the pixels around that see what no point was
+// asked for.
 vec4 shown_at(ivec2 at, uint k, uint shown, uint unasked) {
     if (shown == NOBODY) shown = nearest_of(unasked, point_of(k));
     if (shown == NOBODY) shown = OWN; // a gap between faces

@@ -9,7 +9,7 @@ impl SceneData {
         self.smooth == Smooth::Trims && self.has_patches && self.trim_way() == Some(TakenWay::Exact)
     }
 
-    /// Pass `border_write` mixes pixels at borders. The scene has something that points are tested for, and one sample a
+    /// Pass `border_write` mixes pixels at borders. The scene has something that points are asked for, and one sample a
     /// pixel.
     pub(crate) fn smooths_borders(&self) -> bool {
         let alone = self.samples == Samples::One;
@@ -17,7 +17,7 @@ impl SceneData {
         self.smooth == Smooth::Borders && asked && alone
     }
 
-    /// The scene has Boolean solids that points are tested for: all operands have equations.
+    /// The scene has Boolean solids that points are asked for: all operands have equations.
     pub(crate) fn has_smooth_solids(&self) -> bool {
         self.solids.kinds().is_some() && self.solids.operand_leaves.is_empty()
     }
