@@ -126,8 +126,9 @@ fn is_told(error: &GpuError, fault: Fault) -> bool {
     told == fault.result && error.to_string().starts_with(&format!("{} failed for `", fault.call))
 }
 
-/// Each call of create, upload, frame, read back, edit and a sequence of frames fails in turn. Nothing crashes, no
-/// handle of the device leaks, and the error names the call.
+/// Each call of create, upload, frame, read back, edit and a sequence of frames fails in turn: the first of a name with
+/// each result, the others with one of the results in turn. Nothing crashes, no handle of the device leaks, and the error
+/// names the call.
 #[test]
 fn each_call_fails_once() {
     let script = Script::new("calls");
@@ -140,7 +141,8 @@ fn each_call_fails_once() {
     let mut tried = 0;
     for (&call, &count) in &calls {
         for nth in 0..count {
-            for result in RESULTS {
+            let is_tried = |k: usize| nth == 0 || nth as usize % RESULTS.len() == k;
+            for (_, result) in RESULTS.into_iter().enumerate().filter(|(k, _)| is_tried(*k)) {
                 let fault = Fault { call, nth, result };
                 driver.plan(Some(fault));
                 let error = script.run(&driver);
@@ -154,7 +156,7 @@ fn each_call_fails_once() {
             }
         }
     }
-    assert_eq!(tried, 3 * all);
+    assert_eq!(tried, all + 2 * calls.len() as u32);
 }
 
 /// No host memory leaks when the first call of any name fails.
@@ -167,15 +169,15 @@ fn no_failure_leaks_host_memory() {
     for call in driver.calls().into_keys() {
         for result in RESULTS {
             driver.plan(Some(Fault { call, nth: 0, result }));
-            // threads of the pool keep a block now and then; a leak would show in every run
+            // threads of the pool keep a block now and then; a leak would show in every run, and one without is enough
             let grows = |_| {
                 let before = memory::bytes();
                 script.run(&driver);
                 driver.plan(Some(Fault { call, nth: 0, result }));
                 memory::bytes() - before
             };
-            let least = (0..4).map(grows).min();
-            assert!(least <= Some(0), "{call}, {result:?}: {least:?} bytes more in each of four runs");
+            let more: Vec<_> = (0..4).map(grows).take_while(|bytes| *bytes > 0).collect();
+            assert!(more.len() < 4, "{call}, {result:?}: {more:?} bytes more in each of four runs");
         }
     }
 }
