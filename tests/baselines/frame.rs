@@ -96,7 +96,7 @@ fn baselines_leave_out_what_lies_behind() {
     }
     // the first one fills the picture
     let camera = Camera { depth_range: (camera(&one).depth_range.0, 1e4), ..camera(&one) };
-    let mut renderer = watched(&model, Way::Own(TrimWay::Auto));
+    let mut renderer = watched::renderer();
     let mut left_out = |way: Way| {
         renderer.upload_baseline(&model, way.settings(), way.options()).unwrap();
         let settings = FrameSettings { all_passes: true, ..FrameSettings::default() };
