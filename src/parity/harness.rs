@@ -154,7 +154,7 @@ impl Gpu {
     /// Records, submits, waits.
     pub(super) fn run(&self, record: impl FnOnce(&Commands<'_>)) {
         self.watched.submit(record).unwrap();
-        self.made.replace(self.device().made_pipelines());
+        *self.made.borrow_mut() = self.device().made_pipelines();
     }
 
     /// The first `count` values of a buffer written by a pass.
