@@ -126,9 +126,8 @@ fn is_told(error: &GpuError, fault: Fault) -> bool {
     told == fault.result && error.to_string().starts_with(&format!("{} failed for `", fault.call))
 }
 
-/// Each call of create, upload, frame, read back, edit and a sequence of frames fails in turn: the first of a name with
-/// each result, the others with one of the results in turn. Nothing crashes, no handle of the device leaks, and the error
-/// names the call.
+/// Each call of create, upload, frame, read back, edit and a sequence of frames fails in turn. Nothing crashes, no
+/// handle of the device leaks, and the error names the call.
 #[test]
 fn each_call_fails_once() {
     let script = Script::new("calls");
@@ -141,6 +140,7 @@ fn each_call_fails_once() {
     let mut tried = 0;
     for (&call, &count) in &calls {
         for nth in 0..count {
+            // the first call of a name fails with each result, the others with one of them in turn
             let is_tried = |k: usize| nth == 0 || nth as usize % RESULTS.len() == k;
             for (_, result) in RESULTS.into_iter().enumerate().filter(|(k, _)| is_tried(*k)) {
                 let fault = Fault { call, nth, result };
