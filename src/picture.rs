@@ -34,8 +34,8 @@ pub struct FrameSettings {
     /// How finely patches are divided.
     pub levels: Levels,
     /// Record every pass in every frame, for measurements. Otherwise a frame reuses results of the previous frame,
-    /// which gives the same picture, bit for bit, in less time: its visibility, if view and settings are the same and
-    /// no loop was edited; and its trim table, if that serves the view.
+    /// which gives the same picture, bit for bit, in less time. It reuses the visibility if view and settings are the
+    /// same and no loop was edited, and the trim table if that serves the view.
     pub all_passes: bool,
 }
 
@@ -178,10 +178,12 @@ pub enum SolidWay {
     /// operands that are meshes or spline parts, or with transparent solids, are drawn by events.
     Cst,
     /// Layers of faces, peeled from front to back; each is tested whether it bounds the solid, by labels in a stencil
-    /// image (Hable and Rossignac). The cost of a layer is that of all primitives. Scenes are drawn by events if an
-    /// operand is a spline part; if an operand is a mesh that is not closed and outward-oriented, intersects itself or
-    /// has coinciding faces; or if a solid is transparent. If a mesh's face coincides with another face, the other face
-    /// is drawn. A ray that enters and leaves a mesh within the rounding of a depth may show either side.
+    /// image (Hable and Rossignac). The cost of a layer is that of all primitives. If a mesh's face coincides with
+    /// another face, the other face is drawn. A ray that enters and leaves a mesh within the rounding of a depth may
+    /// show either side.
+    ///
+    /// Scenes are drawn by events if an operand is a spline part, or if a solid is transparent. So are scenes with an
+    /// operand that is a mesh which is not closed and outward-oriented, intersects itself or has coinciding faces.
     Blister,
 }
 
@@ -347,11 +349,12 @@ pub struct Picture {
     /// Length of the pixel's ray inside solids, between the near and the far plane, in model units. Solids are Boolean
     /// solids and closed parts; overlaps count once. 0 without any.
     pub thickness: Vec<f32>,
-    /// Number of the edge whose line covers at least a tenth of the pixel; 0 without a line. Edges are numbered from 1,
-    /// in the order of [`Model::parts`](crate::model::Model::parts); within a part first
-    /// [`Edges::edges`](crate::model::Edges::edges), then [`Edges::of_meshes`](crate::model::Edges::of_meshes), whether
-    /// drawn or not. 4294967295 is the outline of a curved face, 4294967294 a line of a Boolean solid. 0 everywhere
-    /// without [`SceneSettings::edges`].
+    /// Number of the edge whose line covers at least a tenth of the pixel; 0 without a line, and everywhere without
+    /// [`SceneSettings::edges`]. Edges are numbered from 1, in the order of
+    /// [`Model::parts`](crate::model::Model::parts), whether drawn or not. Within a part
+    /// [`Edges::edges`](crate::model::Edges::edges) come first, then
+    /// [`Edges::of_meshes`](crate::model::Edges::of_meshes). 4294967295 is the outline of a curved face, 4294967294 a
+    /// line of a Boolean solid.
     pub edge: Vec<u32>,
     /// Index into [`Model::parts`](crate::model::Model::parts), plus 1; 0 for background, Boolean solids and
     /// transparent parts.
@@ -476,11 +479,11 @@ pub struct PassTime {
     pub gpu_ms: f64,
 }
 
-/// Bytes in one pool.
+/// Bytes in one pool, or in one kind of list.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PoolBytes {
-    /// `persistent`, `ring`, `transient` or `staging`.
+    /// `persistent`, `ring`, `transient` or `staging`; in [`FrameStats::solid_bytes`] what that field names.
     pub name: String,
     /// Bytes in buffers and images of this pool.
     pub bytes: u64,

@@ -8,11 +8,12 @@
 //!                                      report(slot) ─▶ complete? times, counts, bytes
 //! ```
 //!
-//! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the GPU can count (the
-//! trim table, the list of sub-patches) may be too small for a new view: the report of that frame says `complete:
-//! false`, and the next `record` into its slot makes them larger. A scene of more bytes than staging memory holds is
-//! copied by several frames, which report the same. A view from very near is resolved by what is cut out of the model for
-//! it: [`Renderer::prepare`]. Instances change, and models come and go, between frames: [`Renderer::add`].
+//! The renderer never submits, waits, or destroys what is the host's. Only the GPU can count how large some buffers
+//! must be (the trim table, the list of sub-patches), so they may be too small for a new view. Then the report of that
+//! frame says `complete: false`, and the next `record` into its slot makes them larger. A scene of more bytes than
+//! staging memory holds is copied by several frames, which report the same. A view from very near is drawn from what is
+//! cut out of the model for it: [`Renderer::prepare`]. Instances change, and models come and go, between frames:
+//! [`Renderer::add`].
 
 mod centres;
 mod constants;
@@ -67,7 +68,7 @@ use viewport::Viewport;
 pub struct FrameInput<'a> {
     /// View and size.
     pub camera: &'a Camera,
-    /// Tolerance and background.
+    /// Tolerance, background, style, effects left out.
     pub settings: FrameSettings,
     /// Frame slot, below the number given to [`Renderer::new`]; the frame before in it has finished on the GPU.
     pub slot: usize,
@@ -75,7 +76,9 @@ pub struct FrameInput<'a> {
     pub targets: Targets<'a>,
 }
 
-/// A renderer on a host's device.
+/// A renderer on a host's device: one scene, drawn by any number of views. `README.md`, "In an engine", has an example.
+///
+/// Any thread may hold it; one at a time records. It must be dropped before the device.
 pub struct Renderer {
     device: Device,
     formats: TargetFormats,
@@ -160,7 +163,8 @@ impl Renderer {
     /// Format of the image of thickness.
     pub const THICKNESS_FORMAT: vk::Format = solid_layers::THICKNESS_FORMAT;
 
-    /// Takes the host's device on loan; `frame_slots` frames may be in flight.
+    /// Takes the host's device on loan; `frame_slots` frames, at least one, may be in flight. [`upload`](Self::upload)
+    /// a model next.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -216,9 +220,9 @@ impl Renderer {
     /// [`SceneSettings::thickness`](crate::picture::SceneSettings::thickness).
     ///
     /// # Safety
-    /// `cmd` is recording outside a render pass, on the host's queue family, and is submitted once;
-    /// the frame recorded before into the same slot has finished on the GPU; frames are submitted in
-    /// the order in which they are recorded, to one queue.
+    /// * `cmd` is recording outside a render pass, on the host's queue family, and is submitted once.
+    /// * The frame recorded before into the same slot has finished on the GPU.
+    /// * Frames are submitted in the order in which they are recorded, to one queue.
     pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, input: &FrameInput<'_>) -> Result<(), RenderError> {
         input.camera.check()?;
         let tolerance = input.settings.tolerance_px;

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `border_solid`: the points of pixels at borders ask the Boolean solids, by the whole expression: each has a ray
-// of its own, as pass `solid_events` has for the centre, among the leaves of the pixel's tile. One thread a point;
-// those of a pixel run together, and meet the same leaves.
+// Pass `border_solid`: tests the points of pixels at borders against the Boolean solids, by the whole expression. Each
+// point has a ray of its own, as pass `solid_events` has for the centre, among the leaves of the pixel's tile. One
+// thread a point; those of a pixel run together, and meet the same leaves.
 //
 // A point shows the pixel around that sees the same side nearest to the point's depth: a side may hide itself. Where
 // none does, it shows the nearest pixel that sees a solid.

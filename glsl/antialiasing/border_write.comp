@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `border_write`: the means of passes `border_mix` and `border_mean` take the place of what was seen, now that no
-// neighbour asks for it any more. One thread a pixel of the list.
+// Pass `border_write`: writes the means of passes `border_mix` and `border_mean` over the pixels' own colours, once no
+// neighbour reads these any more. One thread a pixel of the list.
 #include "scene.glsl"
 #include "view.glsl"
 #include "shade.glsl"

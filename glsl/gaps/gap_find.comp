@@ -80,7 +80,7 @@ void main() {
     uint patch_seen = 0u;
     if (lane == 0) full_columns = 0u;
     barrier();
-    // marks of other threads may come meanwhile: they are not asked for
+    // other threads may write marks meanwhile: no bit below depends on them
     if (column >= 0 && column < size.x) {
         int first = max(top, 0);
         int last = min(top + ROWS + 1, size.y - 1);

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `gap_write`: what the second found is seen. A step of its own, since that asks a pixel's neighbours for
-// what was drawn there. One thread a gap candidate.
+// Pass `gap_write`: writes the decisions of pass `gap_fill` into the visibility image. It is a pass of its own, because
+// `gap_fill` reads what was drawn at a pixel's neighbours. One thread a gap candidate.
 #include "scene.glsl"
 #include "visible.glsl"
 

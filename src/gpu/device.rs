@@ -338,6 +338,13 @@ impl Device {
         pipelines.insert(description, Arc::downgrade(made));
     }
 
+    /// The Vulkan pipelines that exist. Whoever holds them lets later passes of equal descriptions share them.
+    #[cfg(test)]
+    pub(crate) fn made_pipelines(&self) -> Vec<Arc<dyn std::any::Any + Send + Sync>> {
+        let made = lock(&self.0.pipelines).values().filter_map(Weak::upgrade).collect::<Vec<_>>();
+        made.into_iter().map(|made| made as Arc<dyn std::any::Any + Send + Sync>).collect()
+    }
+
     /// Lists a named object of so many bytes until the returned entry is dropped.
     pub(crate) fn register(&self, name: &str, bytes: u64) -> Registration {
         let key = self.0.next_object.fetch_add(1, Ordering::Relaxed);

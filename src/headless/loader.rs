@@ -1,9 +1,9 @@
 //! The system's Vulkan loader. It keeps the driver loaded in a process that opens several devices.
 //!
 //! The loader unloads a driver's library with the last instance. NVIDIA's (580) takes static thread-local storage each
-//! time that it is loaded, and does not give it back: after some tens of loads it "cannot allocate memory in static TLS
-//! block", and the process finds no device any more. So from the second call on an instance of its own stays alive for as
-//! long as the process, and the driver is loaded twice at most. A process that opens one device does without.
+//! time that it is loaded, and does not give it back. After some tens of loads it "cannot allocate memory in static TLS
+//! block", and the process finds no device any more. So the second call makes an instance that stays alive for as long
+//! as the process, and the driver is loaded twice at most. A process that opens one device does without.
 
 use super::HeadlessError;
 use ash::vk;

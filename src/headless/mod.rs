@@ -49,11 +49,11 @@ pub struct HeadlessOptions {
     /// The folder that keeps compiled pipelines from one run to the next, in a file for each device and driver; `None`:
     /// none are kept. A file that is damaged or of another device is ignored.
     pub pipeline_folder: Option<PathBuf>,
-    /// See [`HostDevice::memory_budget`].
+    /// Most bytes of the engine's buffers and images: [`HostDevice::memory_budget`]. `None`: what the heaps have left.
     pub memory_budget: Option<u64>,
 }
 
-/// Why there is no device.
+/// Why there is no device, or no picture.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum HeadlessError {
@@ -86,7 +86,7 @@ pub enum HeadlessError {
     /// A frame's buffers were still too small after they had grown several times.
     #[error("the frame did not fit its buffers even after they had grown several times")]
     NeverComplete,
-    /// A frame could not be recorded.
+    /// A model was not uploaded, or a frame not recorded.
     #[error(transparent)]
     Render(#[from] crate::renderer::RenderError),
     /// A Vulkan call failed.

@@ -20,7 +20,10 @@ const COLOUR_FORMAT: vk::Format = vk::Format::R8G8B8A8_SRGB;
 /// What a [`HeadlessRenderer`] calls between two steps of a picture: [`HeadlessRenderer::set_watch`].
 pub type Watch = Arc<dyn Fn() + Send + Sync>;
 
-/// Renders models into [`Picture`]s, on a device of its own.
+/// Renders models into [`Picture`]s, on a device of its own. The crate's front page has an example.
+///
+/// It is a host as `docs/embedding.md` has it, around a [`Renderer`]: it makes the device and the images, submits,
+/// waits, and draws a frame again that lacked room.
 pub struct HeadlessRenderer {
     // drop order: the GPU finishes, then everything made from the device goes, then the device
     /// One for each frame slot of the renderer.
@@ -40,7 +43,7 @@ fn renderer(device: &Device, formats: TargetFormats) -> Result<Renderer, GpuErro
 }
 
 impl HeadlessRenderer {
-    /// Makes the device.
+    /// Makes the device. [`upload`](Self::upload) a model next.
     ///
     /// # Errors
     /// [`HeadlessError`]: no loader, no device, no validation layers.
@@ -74,10 +77,10 @@ impl HeadlessRenderer {
         })
     }
 
-    /// Replaces the model.
+    /// Replaces the model; the next picture shows it.
     ///
     /// # Errors
-    /// [`HeadlessError::Gpu`].
+    /// [`HeadlessError::Render`] with the reason of [`Renderer::upload`]; the model before stays.
     pub fn upload(&mut self, model: &Model) -> Result<(), HeadlessError> {
         self.upload_with(model, SceneSettings::default())
     }
@@ -85,15 +88,16 @@ impl HeadlessRenderer {
     /// As [`upload`](Self::upload), with settings that hold as long as the model.
     ///
     /// # Errors
-    /// [`HeadlessError::Gpu`].
+    /// As [`upload`](Self::upload).
     pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), HeadlessError> {
         self.upload_shared(Arc::new(model.clone()), settings, &|_| ())
     }
 
-    /// The same of a model that is not copied; `progress` as in [`Renderer::upload_with_progress`].
+    /// As [`upload_with`](Self::upload_with), of a model that is not copied; `progress` as in
+    /// [`Renderer::upload_with_progress`].
     ///
     /// # Errors
-    /// [`HeadlessError::Gpu`].
+    /// As [`upload`](Self::upload).
     pub fn upload_shared(
         &mut self,
         model: Arc<Model>,
@@ -106,7 +110,7 @@ impl HeadlessRenderer {
     /// As [`upload_with`](Self::upload_with), with baselines in place of the engine's own methods.
     ///
     /// # Errors
-    /// [`HeadlessError::Gpu`].
+    /// As [`upload`](Self::upload).
     #[cfg(feature = "baselines")]
     #[doc(hidden)]
     pub fn upload_baseline(
@@ -185,7 +189,7 @@ impl HeadlessRenderer {
     /// Adds a model to the scene: see [`Renderer::add`].
     ///
     /// # Errors
-    /// [`HeadlessError::Gpu`]; the scene is as it was.
+    /// [`HeadlessError::Render`] with the reason of [`Renderer::add`]; the scene is as it was.
     ///
     /// # Panics
     /// When no model was uploaded.
@@ -219,10 +223,13 @@ impl HeadlessRenderer {
         self.renderer.picked(0)
     }
 
-    /// Renders one picture and waits for it.
+    /// Renders one picture of the camera's size and waits for it. `outputs` names the images beside the colour. A
+    /// choice with other groups among them (points, numbers, thickness) than the picture before has the model uploaded
+    /// anew.
     ///
     /// # Errors
-    /// [`HeadlessError`].
+    /// [`HeadlessError::Render`] where the camera, the settings or the device's limits exclude the picture;
+    /// [`HeadlessError::NeverComplete`]; [`HeadlessError::Gpu`].
     ///
     /// # Panics
     /// When no model was uploaded.

@@ -88,6 +88,10 @@ fn each_image_stands_by_itself() {
         if is_clear {
             model.instances[0].colour = Some([0.1, 0.2, 0.9, 0.5]);
         }
+        // a scene whose pipelines the others share while it lives
+        let formats = TargetFormats { outputs: ALL, ..TargetFormats::new(vk::Format::R8G8B8A8_SRGB) };
+        let mut shared = Renderer::on(device.device(), formats, 1).unwrap();
+        shared.upload_with(&model, settings).unwrap();
         let all = drawn(&device, &model, settings, ALL);
         let some = Outputs { face: true, normal: true, instance: true, ..Outputs::default() };
         let singles = if is_clear { 1..2 } else { 0..7 };

@@ -67,24 +67,25 @@ fn of_all_degrees() -> Model {
 
 #[test]
 fn parity() {
-    for gpu in Gpu::all() {
-        let (model, cameras) = model_and_cameras();
-        let (sieve, degrees) = (model_with_sieve(), of_all_degrees());
-        let whole = Camera::around(degrees.bounds(), DVec3::new(1.0, -2.0, 1.5), DVec3::Z, 0.6, (480, 360));
-        let of_shapes = cameras.iter().flat_map(|camera| [(&model, camera, 0.5), (&sieve, camera, 0.5)]);
-        let loose_and_tight = [(&model, &cameras[0], 4.0), (&model, &cameras[0], 1e-6), (&degrees, &whole, 0.5)];
-        for (model, camera, tolerance_px) in of_shapes.chain(loose_and_tight) {
-            let case = Case::new(model, camera, tolerance_px);
-            for segments in [1, USUAL_SEGMENTS, MOST_SEGMENTS] {
-                let asked = asked(model, camera, tolerance_px, segments);
-                let clamps = compare(&gpu, &case, &asked, segments).unwrap().clamps;
+    let gpus = Gpu::all();
+    let (model, cameras) = model_and_cameras();
+    let (sieve, degrees) = (model_with_sieve(), of_all_degrees());
+    let whole = Camera::around(degrees.bounds(), DVec3::new(1.0, -2.0, 1.5), DVec3::Z, 0.6, (480, 360));
+    let of_shapes = cameras.iter().flat_map(|camera| [(&model, camera, 0.5), (&sieve, camera, 0.5)]);
+    let loose_and_tight = [(&model, &cameras[0], 4.0), (&model, &cameras[0], 1e-6), (&degrees, &whole, 0.5)];
+    for (model, camera, tolerance_px) in of_shapes.chain(loose_and_tight) {
+        let case = Case::new(model, camera, tolerance_px);
+        for segments in [1, USUAL_SEGMENTS, MOST_SEGMENTS] {
+            let asked = asked(model, camera, tolerance_px, segments);
+            for gpu in &gpus {
+                let clamps = compare(gpu, &case, &asked, segments).unwrap().clamps;
                 // patches at the near plane, patches with large factors, patches of degree 10
                 let clamped = camera.eye == cameras[1].eye || tolerance_px < 1e-3 || std::ptr::eq(model, &degrees);
                 assert_eq!(clamps > 0, clamped, "{clamps} clamps of {asked:?}");
             }
         }
-        gpu.finish();
     }
+    gpus.into_iter().for_each(Gpu::finish);
 }
 
 #[test]

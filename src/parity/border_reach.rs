@@ -65,8 +65,8 @@ fn sheet(patches: &[Patch], random: &mut Random) -> Sheet {
     Sheet { patch, to_px: DMat3::from_quat(turn) * size, middle }
 }
 
-/// Within reach the terms are off by at most a third more than [`REMAINDER_PX`], but for one step of a thousand, where
-/// mixed terms cancel or those of fourth order count; most steps that are out of reach are off by more than it.
+/// Within reach the terms are off by at most a third more than [`REMAINDER_PX`]. One step of a thousand is exempt:
+/// there mixed terms cancel, or those of fourth order count. Most steps that are out of reach are off by more than it.
 #[test]
 fn terms_hold_where_they_reach() {
     let mut random = Random::new(71);

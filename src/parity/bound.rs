@@ -27,19 +27,20 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
 
 #[test]
 fn parity() {
-    for gpu in Gpu::all() {
-        for case in cases() {
-            compare(&gpu, &case, &case).unwrap();
-            // so tight that some factors exceed the largest split
-            let mut fine = case.clone();
-            fine.frame.deviation_px *= 1e-6;
-            let mut counters = Counters::default();
-            twin::bound::bound(&fine.frame, &fine.scene(), &mut counters);
-            assert!(counters.clamps > 0);
-            compare(&gpu, &fine, &fine).unwrap();
+    let gpus = Gpu::all();
+    for case in cases() {
+        // so tight that some factors exceed the largest split
+        let mut fine = case.clone();
+        fine.frame.deviation_px *= 1e-6;
+        let mut counters = Counters::default();
+        twin::bound::bound(&fine.frame, &fine.scene(), &mut counters);
+        assert!(counters.clamps > 0);
+        for gpu in &gpus {
+            compare(gpu, &case, &case).unwrap();
+            compare(gpu, &fine, &fine).unwrap();
         }
-        gpu.finish();
     }
+    gpus.into_iter().for_each(Gpu::finish);
 }
 
 /// A closed part without trims, unchanged and mirrored, from all sides; every third view is parallel.

@@ -23,17 +23,16 @@ fn compare(gpu: &Gpu, case: &Case, chain: &Chain, given: &[i32], expected: &[i32
 
 #[test]
 fn parity() {
-    for gpu in Gpu::all() {
-        let wide = cases().into_iter().filter(|case| !case.data.wide_strips.is_empty());
-        let mut carried = 0;
-        for case in wide {
-            let chain = Chain::new(&case);
-            carried += chain.row_windings.iter().filter(|&&winding| winding != 0).count();
-            compare(&gpu, &case, &chain, &chain.rows_add_up, &chain.rows_add_up).unwrap();
+    let (gpus, mut carried) = (Gpu::all(), 0);
+    for case in cases().into_iter().filter(|case| !case.data.wide_strips.is_empty()) {
+        let chain = Chain::new(&case);
+        carried += chain.row_windings.iter().filter(|&&winding| winding != 0).count();
+        for gpu in &gpus {
+            compare(gpu, &case, &chain, &chain.rows_add_up, &chain.rows_add_up).unwrap();
         }
-        assert!(carried > 100, "only {carried} rows begin inside");
-        gpu.finish();
     }
+    assert!(carried > 100, "only {carried} rows begin inside");
+    gpus.into_iter().for_each(Gpu::finish);
 }
 
 #[test]

@@ -39,26 +39,27 @@ fn compare(gpu: &Gpu, frame: &Frame, seen: &[u32], given: [&[u32]; 2], expected:
 
 #[test]
 fn parity() {
-    for gpu in Gpu::all() {
-        for case in cases() {
-            let chain = Chain::new(&case);
+    let (gpus, cases) = (Gpu::all(), cases());
+    let chains: Vec<_> = cases.iter().map(|case| (case, Chain::new(case))).collect();
+    for gpu in &gpus {
+        for (case, chain) in &chains {
             let starts = [chain.strip_starts.as_slice(), chain.segment_starts.as_slice()];
-            compare(&gpu, &case.frame, &chain.density.seen_bins, starts, starts).unwrap();
+            compare(gpu, &case.frame, &chain.density.seen_bins, starts, starts).unwrap();
             // more segments than fit in one row of a dispatch, and more than 32 bits number
             for segments in [9_000_000, MOST_SEGMENTS + 1] {
                 let mut many = chain.segment_starts.clone();
                 *many.last_mut().unwrap() = segments;
                 for most_groups in [7, 1 << 16, u32::MAX] {
                     let frame = Frame { most_groups, ..case.frame };
-                    compare(&gpu, &frame, &chain.density.seen_bins, [starts[0], &many], [starts[0], &many]).unwrap();
+                    compare(gpu, &frame, &chain.density.seen_bins, [starts[0], &many], [starts[0], &many]).unwrap();
                 }
             }
             let mut wrapped = chain.strip_starts.clone();
             *wrapped.last_mut().unwrap() = 0;
-            compare(&gpu, &case.frame, &chain.density.seen_bins, [&wrapped, starts[1]], [&wrapped, starts[1]]).unwrap();
+            compare(gpu, &case.frame, &chain.density.seen_bins, [&wrapped, starts[1]], [&wrapped, starts[1]]).unwrap();
         }
-        gpu.finish();
     }
+    gpus.into_iter().for_each(Gpu::finish);
 }
 
 #[test]

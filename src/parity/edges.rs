@@ -133,12 +133,11 @@ fn compare(gpu: &Gpu, given: &View, expected: &View) -> Result<(), Mismatch> {
 
 #[test]
 fn parity() {
-    for gpu in Gpu::all() {
-        for view in views().into_iter().chain([of_triangles()]) {
-            compare(&gpu, &view, &view).unwrap();
-        }
-        gpu.finish();
+    let gpus = Gpu::all();
+    for view in views().into_iter().chain([of_triangles()]) {
+        gpus.iter().for_each(|gpu| compare(gpu, &view, &view).unwrap());
     }
+    gpus.into_iter().for_each(Gpu::finish);
 }
 
 #[test]

@@ -36,15 +36,17 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case, chain: &Chain) -> Result<()
 
 #[test]
 fn parity() {
-    for gpu in Gpu::all() {
-        for case in cases() {
-            compare(&gpu, &case, &case, &Chain::new(&case)).unwrap();
-            let mut fine = case.clone(); // more segments than a curve may have
-            fine.frame.chord_px *= 1e-12;
-            compare(&gpu, &fine, &fine, &Chain::new(&case)).unwrap();
+    let gpus = Gpu::all();
+    for case in cases() {
+        let chain = Chain::new(&case);
+        let mut fine = case.clone(); // more segments than a curve may have
+        fine.frame.chord_px *= 1e-12;
+        for gpu in &gpus {
+            compare(gpu, &case, &case, &chain).unwrap();
+            compare(gpu, &fine, &fine, &chain).unwrap();
         }
-        gpu.finish();
     }
+    gpus.into_iter().for_each(Gpu::finish);
 }
 
 #[test]

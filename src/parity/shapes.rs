@@ -170,8 +170,8 @@ pub(super) fn model_with_sieve() -> Model {
     model
 }
 
-/// The model with each camera; then a loose tolerance; then no room in any list; then the model with the sieve: all of
-/// it, a part of its bins, and with too few rows; finally the model with split patches.
+/// The model with each camera, then with a loose tolerance, then with no room in any list. The model with the sieve
+/// follows: all of it, a part of its bins, and with too few rows. The last is the model with split patches.
 pub(super) fn cases() -> Vec<Case> {
     let (model, cameras) = model_and_cameras();
     let mut cases: Vec<Case> = cameras.iter().map(|camera| Case::new(&model, camera, 0.5)).collect();

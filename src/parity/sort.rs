@@ -104,14 +104,14 @@ fn flips_of(rows: &Rows, counts: &[u32], words: &[u32]) -> Vec<u32> {
 
 #[test]
 fn parity() {
-    for gpu in Gpu::all() {
-        let mut random = Random::new(2);
-        for case in cases() {
-            let rows = Rows::of(&Chain::new(&case));
-            compare(&gpu, &case.frame, &rows.clone().shuffled(&mut random), &rows).unwrap();
+    let (gpus, mut random) = (Gpu::all(), Random::new(2));
+    for case in cases() {
+        let rows = Rows::of(&Chain::new(&case));
+        for gpu in &gpus {
+            compare(gpu, &case.frame, &rows.clone().shuffled(&mut random), &rows).unwrap();
         }
-        gpu.finish();
     }
+    gpus.into_iter().for_each(Gpu::finish);
 }
 
 /// Rows far longer than in a drawing, with equal entries, negative `u` and windings of any sign.

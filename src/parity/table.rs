@@ -206,13 +206,12 @@ mod parity {
 
     #[test]
     fn parity() {
-        for gpu in Gpu::all() {
-            for case in cases() {
-                let chain = Chain::new(&case);
-                compare(&gpu, &case, &chain, &chain).unwrap();
-            }
-            gpu.finish();
+        let gpus = Gpu::all();
+        for case in cases() {
+            let chain = Chain::new(&case);
+            gpus.iter().for_each(|gpu| compare(gpu, &case, &chain, &chain).unwrap());
         }
+        gpus.into_iter().for_each(Gpu::finish);
     }
 
     #[test]

@@ -12,7 +12,8 @@ impl RenderError {
     }
 }
 
-/// Why a frame was not recorded.
+/// Why a model was not uploaded, or a frame not recorded. The renderer is as it was before the call, unless the device
+/// is lost.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {

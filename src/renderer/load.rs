@@ -141,8 +141,8 @@ impl Renderer {
 }
 
 impl Loaded {
-    /// Of a whole model, or of what was cut out of it for a view: shadows are those of the whole model, of which all spline
-    /// faces that cast them are made triangles for each cut.
+    /// Of a whole model, or of what was cut out of it for a view. Shadows are those of the whole model: for each cut,
+    /// triangles are made of all spline faces that cast them.
     pub(super) fn new(
         device: &Device,
         formats: TargetFormats,

@@ -186,12 +186,14 @@ impl Renderer {
     /// says where, for what changes one instance. The numbers of all others stay.
     ///
     /// It costs what the model costs: its arrays are made, and copied by the next frame
-    /// ([`FrameStats::edit_bytes`](crate::picture::FrameStats::edit_bytes)). A buffer without room gets a successor twice as
-    /// large, filled on the GPU; pipelines stay. The whole scene is loaded anew, as by [`upload`](Self::upload), where more
-    /// follows from the model than that: where the scene has or gets Boolean solids, lines along edges, a sun, something that
-    /// is seen through, loops that may be edited, or [`thickness`](crate::picture::SceneSettings::thickness) or a
-    /// [`highlight`](crate::picture::SceneSettings::highlight); and where the model is the first one that has meshes,
-    /// trims, rational patches or the like.
+    /// ([`FrameStats::edit_bytes`](crate::picture::FrameStats::edit_bytes)). A buffer without room gets a successor
+    /// twice as large, filled on the GPU; pipelines stay. In two cases the whole scene is loaded anew, as by
+    /// [`upload`](Self::upload):
+    ///
+    /// * The scene has or gets Boolean solids, lines along edges, a sun, something that is seen through, loops that may
+    ///   be edited, a [`thickness`](crate::picture::SceneSettings::thickness) or a
+    ///   [`highlight`](crate::picture::SceneSettings::highlight).
+    /// * The model is the first one that has meshes, trims, rational patches or the like.
     ///
     /// The picture is that of the whole, uploaded. What the upload chose for the model as it was stays: how faces are
     /// trimmed, and how finely trimmed faces are cut for a model of that size.
@@ -233,9 +235,9 @@ impl Renderer {
     /// waits. The numbers of all others stay: its parts become empty in [`model`](Self::model), its instances are theirs,
     /// and the next added model with as many of both gets them.
     ///
-    /// It costs what its instances cost. Where rays are followed through it, where it has Boolean solids, and where the
-    /// scene has a sun, what is left is loaded anew with the next frame; and so it is once more has been removed than is
-    /// left, which frees memory: such a frame takes as long as an upload.
+    /// It costs what its instances cost. The next frame loads what is left anew where rays are followed through the
+    /// model, where it has Boolean solids, and where the scene has a sun. It also does so once more has been removed
+    /// than is left, which frees memory. Such a frame takes as long as an upload.
     ///
     /// # Errors
     /// [`RemoveError`]; the scene is as it was.

@@ -52,13 +52,15 @@ impl Renderer {
         self.pick.take()
     }
 
-    /// What the frame recorded last into `slot`, which has finished on the GPU, shows at the pixel of
-    /// [`pick`](Self::pick): the exact point under the pixel's centre, in double precision, of the face that the frame shows
-    /// there. What is seen through is no hit: what lies behind it is. With several samples a pixel, the face is that of one
-    /// of them.
+    /// What the frame recorded last into `slot` shows at the pixel of [`pick`](Self::pick); it has finished on the GPU.
+    /// The hit is the exact point under the pixel's centre, in double precision, of the face that the frame shows
+    /// there. What is seen through is no hit: what lies behind it is. With several samples a pixel, the face is that of
+    /// one of them.
     ///
-    /// `None`: the frame was recorded without a call of [`pick`](Self::pick), the pixel shows the background or lies beside
-    /// the picture, another model was uploaded or one was removed since, or the device is lost.
+    /// `None` where
+    /// * the frame was recorded without a call of [`pick`](Self::pick);
+    /// * the pixel shows the background or lies beside the picture;
+    /// * another model was uploaded or one was removed since, or the device is lost.
     pub fn picked(&self, slot: usize) -> Option<Hit> {
         let slot = &self.slots[slot];
         let pick = slot.pick.as_ref().filter(|_| slot.recorded && !self.device.is_lost())?;

@@ -66,13 +66,13 @@ impl SceneData {
             return Ok(());
         };
         let mut known = Known::default();
-        // parts and meshes that are seen through by themselves have edges as other parts have, and so have those that
-        // rays are followed through for other reasons
-        let is_seen = |operand: &&Operand| {
+        // A leaf that rays are followed through and that is alone in its list is a placed part or mesh. Its edges are
+        // among those of the placed parts already.
+        let is_of_solid = |operand: &&Operand| {
             let leaf = self.solids.operand_leaves[operand.number as usize];
             leaf < self.solids.followed || self.solids.is_in_clear_solid(leaf)
         };
-        for operand in self.solids.operands.iter().filter(is_seen) {
+        for operand in self.solids.operands.iter().filter(is_of_solid) {
             let Some(edges) = known.of(&operand.primitive.shape, model)? else { continue };
             let meshes = &self.solids.operand_meshes[operand.meshes.clone()];
             let first_triangles: Vec<u32> = meshes.iter().map(|mesh| mesh.first_triangle).collect();

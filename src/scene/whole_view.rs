@@ -11,8 +11,8 @@
 //! ```
 //!
 //! A table of higher density than a view's serves the view, and its scan lines follow from the density alone. Densities
-//! are rounded up to the next of a few steps, so views from about the same distance share one table: a model that is
-//! turned needs no new table while the whole model is visible, and the picture does not depend on earlier views.
+//! are rounded up to the next of a few steps, so views from about the same distance share one table. A model that is
+//! turned needs no new table while the whole model is visible. The picture does not depend on earlier views.
 //!
 //! Such a table also has rows beside the picture. Views of a part of the model use `view_cell.rs`.
 

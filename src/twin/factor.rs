@@ -44,11 +44,11 @@
 //! ```
 //!
 //! In a parallel view `focal` is pixels per unit and `slant = W = 1`. If a control point lies before the near plane,
-//! the box replaces the control points, and if the box crosses the plane, `W_min` is set to `near`: the drawn `T` has
-//! `T_z ≥ near`, and `S_z ≥ near - |e|` costs a factor of at most `1 / (1 - deviation_px / focal)`, one part in 5000
-//! for half a pixel and usual lenses. A trimmed face's skirt extends beyond `[0, 1]²`: `visibility_surface.glsl` pushes
-//! vertices only as far as the surface stays within a quarter of the budget of its tangent, so across the border it
-//! deviates by at most 25/16 of the budget.
+//! the box replaces the control points. If the box crosses the plane, too, `W_min` is set to `near`. The drawn `T` has
+//! `T_z ≥ near`, and `S_z ≥ near - |e|` costs a factor of at most `1 / (1 - deviation_px / focal)`: one part in 5000
+//! for half a pixel and usual lenses. A trimmed face's skirt extends beyond `[0, 1]²`. There `visibility_surface.glsl`
+//! pushes vertices only as far as the surface stays within a quarter of the budget of its tangent, so across the border
+//! it deviates by at most 25/16 of the budget.
 //!
 //! **Towards the eye.** A deviation along the ray moves no pixel. For a polynomial patch, pass [`bound`](super::bound)
 //! projects the second differences of the net, which bound its second derivatives, into the picture:
@@ -59,10 +59,10 @@
 //! ```
 //!
 //! since the pixels of `T` and `S` differ by `|e_X - x e_W| / T_W` with `(x, y)` the pixel of `S`, and by the same with
-//! the two exchanged; each coordinate is linear in `x`, so its largest values are at the ends of its range. In space
-//! `T` may then deviate by [`DEPTH_SHARE`](super::bound::DEPTH_SHARE) times the budget, by the bound above. Factors
-//! that satisfy both bounds are used if they give fewer quads. Rational patches use the bound in space alone: weights
-//! that vary around an arc make second differences of their nets large.
+//! `T` and `S` exchanged. Each coordinate is linear in `x`, so its largest values are at the ends of its range. In
+//! space `T` may then deviate by [`DEPTH_SHARE`](super::bound::DEPTH_SHARE) times the budget, by the bound above.
+//! Factors that satisfy both bounds are used if they give fewer quads. Rational patches use the bound in space alone:
+//! weights that vary around an arc make second differences of their nets large.
 //!
 //! **The choice.** With `a`, `b`, `c` over the budget and `r = tau_u / tau_v`, the quads are
 //!
@@ -70,10 +70,10 @@
 //!   tau_u tau_v = a / r + 2 b + c r          fewest, 2 (sqrt(a c) + b), at r = sqrt(a / c)
 //! ```
 //!
-//! If the surface mostly twists, `b` is large and `r` hardly matters, but the fewest quads would be as slender as the
-//! smaller of `a`, `c` is small: thousands of segments along one side, one along the other. So `r` is the ratio nearest
-//! to 1 that costs at most [`SPARE`] more quads than the fewest. If a factor is below one segment, it is set to one,
-//! and the other factor follows from a quadratic equation.
+//! If the surface mostly twists, `b` is large and `r` hardly matters. But where one of `a`, `c` is small, the fewest
+//! quads would be slender: thousands of segments along one side, one along the other. So `r` is the ratio nearest to 1
+//! that costs at most [`SPARE`] more quads than the fewest. If a factor is below one segment, it is set to one, and the
+//! other factor follows from a quadratic equation.
 //!
 //! Accuracy: 0 violations; the tests beside this file also measure how much finer than necessary it divides. Sources:
 //! D. Filip, R. Magedson, R. Markot, *Surface algorithms using bounds on derivatives*,

@@ -11,17 +11,16 @@
 //!     └───────┘
 //! ```
 //!
-//! **Triangles.** A triangle's point at `(u, v)` is within `E(1 / τ)` of the surface there, and the surface of a cell
-//! of sides `s` within `E(s)` of the bilinear surface through its corners, with
-//! `E(s) = (a s_u² + 2 b s_u s_v + c s_v²) / 8` and `a`, `b`, `c` the patch's bend ([`factor`](super::factor)). A
-//! bilinear point is a mean of the corners: its depth lies between theirs, and its pixel, a quotient of linear
-//! functions, within theirs.
+//! **Triangles.** With the patch's bend `a`, `b`, `c` ([`factor`](super::factor)), let `E(s) = (a s_u² + 2 b s_u s_v +
+//! c s_v²) / 8`. A triangle's point at `(u, v)` is within `E(1 / τ)` of the surface there. The surface of a cell of
+//! sides `s` is within `E(s)` of the bilinear surface through its corners. A bilinear point is a mean of the corners:
+//! its depth lies between theirs, and its pixel, a quotient of linear functions, within theirs.
 //!
 //! **Borders.** Pass `visibility` pushes skirts along the tangent by at most a segment, and by at most twice the gap
-//! radius across the border: `s + p` is within `4 E(p)` of `s + p S_u`, and the tangent turns by at most
-//! `|S_uv| <= b + sqrt(a c)` along the border (the form along `(s, 1 / s)` less that along `(s, -1 / s)` is 4 S_uv).
-//! The push in units of u depends on the place; here it is computed at the cell's corners and doubled. For faces with
-//! cells that are left out ([`is_outside`]), all sides of a cell count as borders.
+//! radius across the border: `s + p` is within `4 E(p)` of `s + p S_u`. Along the border the tangent turns by at most
+//! `|S_uv| <= b + sqrt(a c)`: the form along `(s, 1 / s)` less that along `(s, -1 / s)` is 4 S_uv. The push in units of
+//! u depends on the place; here it is computed at the cell's corners and doubled. For faces with cells that are left
+//! out ([`is_outside`]), all sides of a cell count as borders.
 //!
 //! **A fragment that fails the depth test changes neither visibility nor depth.** Fronts are moved back, never forward,
 //! so they are not nearer than this bound. A skirt stores its depth without a depth test. Each pixel has the nearest

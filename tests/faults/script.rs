@@ -140,7 +140,9 @@ fn each_call_fails_once() {
     let mut tried = 0;
     for (&call, &count) in &calls {
         for nth in 0..count {
-            for result in RESULTS {
+            // the first call of a name fails with each result, the others with one of them in turn
+            let is_tried = |k: usize| nth == 0 || nth as usize % RESULTS.len() == k;
+            for (_, result) in RESULTS.into_iter().enumerate().filter(|(k, _)| is_tried(*k)) {
                 let fault = Fault { call, nth, result };
                 driver.plan(Some(fault));
                 let error = script.run(&driver);
@@ -154,7 +156,7 @@ fn each_call_fails_once() {
             }
         }
     }
-    assert_eq!(tried, 3 * all);
+    assert_eq!(tried, all + 2 * calls.len() as u32);
 }
 
 /// No host memory leaks when the first call of any name fails.
@@ -167,15 +169,15 @@ fn no_failure_leaks_host_memory() {
     for call in driver.calls().into_keys() {
         for result in RESULTS {
             driver.plan(Some(Fault { call, nth: 0, result }));
-            // threads of the pool keep a block now and then; a leak would show in every run
+            // threads of the pool keep a block now and then; a leak would show in every run, and one without is enough
             let grows = |_| {
                 let before = memory::bytes();
                 script.run(&driver);
                 driver.plan(Some(Fault { call, nth: 0, result }));
                 memory::bytes() - before
             };
-            let least = (0..4).map(grows).min();
-            assert!(least <= Some(0), "{call}, {result:?}: {least:?} bytes more in each of four runs");
+            let more: Vec<_> = (0..4).map(grows).take_while(|bytes| *bytes > 0).collect();
+            assert!(more.len() < 4, "{call}, {result:?}: {more:?} bytes more in each of four runs");
         }
     }
 }

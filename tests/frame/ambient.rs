@@ -4,9 +4,10 @@ use crate::layers::in_glass;
 use crate::shapes;
 use crate::shapes::solids::{block, folded};
 use crate::support::{assert_identical, assert_silent, perspective, watched_with};
+use crate::watched::renderer;
 use glam::{DVec2, DVec3};
 use selvedge::csg::Op;
-use selvedge::headless::HeadlessError;
+use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::{Camera, Model, Projection, srgb};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Style};
 use selvedge::renderer::RenderError;
@@ -20,11 +21,22 @@ fn settings(ambient: Option<f64>) -> SceneSettings {
 }
 
 fn draw(model: &Model, scene: SceneSettings, camera: &Camera, style: Style) -> Picture {
-    let mut renderer = watched_with(model, scene);
-    let settings = FrameSettings { style, ..FrameSettings::default() };
-    let picture = renderer.render(camera, &settings, Outputs::ALL).unwrap();
+    let mut renderer = renderer();
+    let picture = draw_next(&mut renderer, (model, scene), camera, style);
     assert_silent(renderer);
     picture
+}
+
+/// The picture of a scene that replaces the renderer's.
+fn draw_next(
+    renderer: &mut HeadlessRenderer,
+    (model, scene): (&Model, SceneSettings),
+    camera: &Camera,
+    style: Style,
+) -> Picture {
+    renderer.upload_with(model, scene).unwrap();
+    let settings = FrameSettings { style, ..FrameSettings::default() };
+    renderer.render(camera, &settings, Outputs::ALL).unwrap()
 }
 
 /// Share of the sky, weighted by the cosine, that an endless wall hides from a floor. `x` is the distance of the wall
@@ -100,13 +112,14 @@ fn a_floor_sees_all_of_the_sky() {
 /// lighter.
 #[test]
 fn nothing_but_light_changes() {
-    let mut darker = 0;
+    let (mut renderer, mut darker) = (renderer(), 0);
     for (name, model) in shapes::all().into_iter().map(|s| (s.name, s.model)).chain([("glass", in_glass())]) {
         let camera = perspective(&model, (64, 48));
         let radius = (0.2 * model.control_bounds().diagonal()).max(1e-3);
         let zebra = ["cube", "torus", "glass"].contains(&name).then_some(Style::Zebra);
         for style in [Style::Shaded].into_iter().chain(zebra) {
-            let [before, after] = [None, Some(radius)].map(|r| draw(&model, settings(r), &camera, style));
+            let [before, after] =
+                [None, Some(radius)].map(|r| draw_next(&mut renderer, (&model, settings(r)), &camera, style));
             let same_colour = Picture { colour: before.colour.clone(), stats: before.stats.clone(), ..after.clone() };
             assert_identical(&before, &same_colour, name);
             for (b, a) in before.colour.iter().zip(&after.colour) {
@@ -122,6 +135,7 @@ fn nothing_but_light_changes() {
         }
     }
     assert!(darker > 900, "{darker}");
+    assert_silent(renderer);
 }
 
 /// A scene that measures lengths within solids and has nothing to see through loses as much light as one that does not
@@ -166,18 +180,15 @@ fn it_exists_where_it_is_wanted() {
 #[test]
 fn bad_settings_are_told() {
     let model = shapes::cube();
-    let refused = |scene: SceneSettings| {
-        let mut renderer = watched_with(&shapes::cube(), SceneSettings::default());
-        let error = renderer.upload_with(&model, scene).unwrap_err();
-        assert_silent(renderer);
-        match error {
-            HeadlessError::Render(error) => error,
-            error => panic!("{error}"),
-        }
+    let mut renderer = watched_with(&shapes::cube(), SceneSettings::default());
+    let mut refused = |scene: SceneSettings| match renderer.upload_with(&model, scene).unwrap_err() {
+        HeadlessError::Render(error) => error,
+        error => panic!("{error}"),
     };
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(refused(settings(Some(radius))), RenderError::AmbientRadius(_)), "{radius}");
     }
     let four = SceneSettings { samples: Samples::Four, ..settings(Some(1.0)) };
     assert!(matches!(refused(four), RenderError::AmbientSamples));
+    assert_silent(renderer);
 }

@@ -58,8 +58,8 @@ fn a_wall_that_two_tops_hide_is_not_seen_between_them() {
     keeps_the_promise(&borders::abutting(), 50..70);
 }
 
-/// The mantle and an end meet in a silhouette; the mantle hides the end up to there. Two faults are possible: the end
-/// is drawn beyond the silhouette, because its continued plane is nearer than the continued mantle; or it is drawn
+/// The mantle and an end meet in a silhouette; the mantle hides the end up to there. Two faults are possible. The end
+/// is drawn beyond the silhouette, because its continued plane is nearer than the continued mantle. Or it is drawn
 /// beside the mantle's silhouette, which is drawn narrower than it is and has no skirt.
 #[test]
 fn a_face_hidden_up_to_a_silhouette_is_not_seen_beyond_it() {

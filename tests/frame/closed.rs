@@ -1,9 +1,11 @@
 //! Closed surfaces without trims from many sides: nothing behind them is visible where their patches and faces meet.
 //! The reference decides what is there. Judging every pixel would also work, but takes too long for many views.
 
-use crate::support::{assert_silent, render, watched};
+use crate::support::{assert_silent, render};
+use crate::watched::renderer;
 use crate::{cages, shapes};
 use glam::{DVec2, DVec3};
+use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Model};
 use selvedge::picture::Picture;
 use selvedge_check::Tracer;
@@ -36,14 +38,14 @@ fn suspects(picture: &Picture, slack: f32) -> Vec<(u32, u32)> {
 
 /// Draws every view of the model; returns pixels that show something behind its surface, and the number of pixels that
 /// show it.
-fn cracks(name: &str, model: &Model) -> (Vec<String>, usize) {
+fn cracks(renderer: &mut HeadlessRenderer, name: &str, model: &Model) -> (Vec<String>, usize) {
     let tracer = Tracer::new(model);
-    let mut renderer = watched(model);
+    renderer.upload(model).unwrap();
     let (mut wrong, mut covered) = (Vec::new(), 0);
     let slack = 0.01 * model.control_bounds().diagonal();
     for k in 0..views() {
         let camera = view(model, k, views());
-        let picture = render(&mut renderer, &camera);
+        let picture = render(renderer, &camera);
         for (x, y) in suspects(&picture, slack as f32) {
             let shown = f64::from(picture.depth[(y * SIZE.0 + x) as usize]);
             let (x, y) = (f64::from(x), f64::from(y));
@@ -57,17 +59,17 @@ fn cracks(name: &str, model: &Model) -> (Vec<String>, usize) {
         }
         covered += picture.face.iter().filter(|id| **id != 0).count();
     }
-    assert_silent(renderer);
     (wrong, covered)
 }
 
 fn nothing_shows_through<'a>(surfaces: impl IntoIterator<Item = (&'a str, &'a Model)>) {
-    let mut all = Vec::new();
+    let (mut renderer, mut all) = (renderer(), Vec::new());
     for (name, model) in surfaces {
-        let (wrong, covered) = cracks(name, model);
+        let (wrong, covered) = cracks(&mut renderer, name, model);
         assert!(covered > 1500 * views() as usize, "{name}: {covered} pixels");
         all.extend(wrong);
     }
+    assert_silent(renderer);
     assert!(all.is_empty(), "{} pixels:\n{}", all.len(), all.join("\n"));
 }
 

@@ -43,10 +43,16 @@ pub fn draw_lines(model: &Model, camera: &Camera) -> Picture {
 }
 
 pub fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
-    let mut renderer = watched_with(model, settings);
-    let picture = renderer.render(camera, &FrameSettings::default(), ALL).unwrap();
+    let mut renderer = crate::watched::renderer();
+    let picture = draw_next(&mut renderer, (model, settings), camera);
     assert_silent(renderer);
     picture
+}
+
+/// The picture of a scene that replaces the renderer's.
+fn draw_next(renderer: &mut HeadlessRenderer, (model, settings): (&Model, SceneSettings), camera: &Camera) -> Picture {
+    renderer.upload_with(model, settings).unwrap();
+    renderer.render(camera, &FrameSettings::default(), ALL).unwrap()
 }
 
 pub fn centres(picture: &Picture) -> impl Iterator<Item = (DVec2, u32)> + '_ {
@@ -55,8 +61,9 @@ pub fn centres(picture: &Picture) -> impl Iterator<Item = (DVec2, u32)> + '_ {
     picture.edge.iter().enumerate().filter(|(_, edge)| **edge != 0).map(move |(at, edge)| (centre(at), *edge))
 }
 
-/// Visible points without a line within half its width and half a pixel, and line pixels farther than that and a fifth from
-/// any point that may be seen: a tenth of a pixel for what chords may be off, a tenth for the points' own distance.
+/// Visible points without a line within half its width and half a pixel; line pixels farther than that and a fifth from
+/// any point that may be seen. Of the fifth, a tenth of a pixel is for what chords may be off, and a tenth for the
+/// points' own distance.
 fn faults(model: &Model, camera: &Camera, picture: &Picture) -> (usize, usize, usize) {
     let tracer = Tracer::new(model);
     let edges = EdgeTracer::new(model, &tracer).unwrap();
@@ -92,14 +99,16 @@ pub fn faults_of_outline(picture: &Picture, outline: &[DVec2]) -> (usize, usize)
 fn lines_are_where_exact_rays_see_edges() {
     // the judge has no points of meshes' edges
     let of_faces = |model: &Model| !model.instances.is_empty() && model.parts.iter().all(|p| p.meshes.is_empty());
+    let mut renderer = crate::watched::renderer();
     for shape in shapes::all().into_iter().filter(|shape| of_faces(&shape.model)) {
         for camera in [perspective(&shape.model, SIZE), orthographic(&shape.model, SIZE)] {
-            let picture = draw(&shape.model, with(lines()), &camera);
+            let picture = draw_next(&mut renderer, (&shape.model, with(lines())), &camera);
             let (seen, bare, stray) = faults(&shape.model, &camera, &picture);
             println!("{}: {seen} visible points, {bare} bare, {stray} stray", shape.name);
             assert_eq!((bare, stray), (0, 0), "{}", shape.name);
         }
     }
+    assert_silent(renderer);
 }
 
 /// A box a thousandth below a larger one, from 3 degrees above: its edges lie behind a face that falls away steeply from
@@ -296,6 +305,7 @@ fn a_face_that_ends_before_it_folds_has_no_outline() {
     let whole = rounded_block(radius);
     let mut trimmed = whole.clone();
     of_wider_cylinder(&mut trimmed.parts[0].faces[2], radius);
+    let mut renderer = crate::watched::renderer();
     for (model, trim) in [(&whole, TrimWay::Table), (&trimmed, TrimWay::Table), (&trimmed, TrimWay::Exact)] {
         let id = model.parts[0].faces[2].id;
         // seen from above the top, which the fillet would fold away from by 0.1, 0.3 and 0.5 px
@@ -305,11 +315,12 @@ fn a_face_that_ends_before_it_folds_has_no_outline() {
             let projection = Projection::Orthographic { height: model.control_bounds().diagonal() };
             let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
             let settings = SceneSettings { trim, ..with(settings) };
-            let picture = draw(model, settings, &Camera { projection, ..camera });
+            let picture = draw_next(&mut renderer, (model, settings), &Camera { projection, ..camera });
             assert!(picture.face.iter().filter(|face| **face == id).count() > 200);
             assert_eq!(centres(&picture).count(), 0, "{steep} degrees, {trim:?}");
         }
     }
+    assert_silent(renderer);
 }
 
 /// A million times closer, at the hole of a plate: the picture shows a hundred-thousandth of the edge.
@@ -471,12 +482,10 @@ fn lines_are_the_same_with_several_samples() {
 #[test]
 fn bad_settings_are_refused() {
     let model = shapes::cube();
-    let refused = |edges: EdgeSettings| {
-        let mut renderer = crate::watched::renderer();
-        match renderer.upload_with(&model, with(edges)) {
-            Err(HeadlessError::Render(RenderError::Edges(bad))) => bad,
-            other => panic!("{other:?}"),
-        }
+    let mut renderer = crate::watched::renderer();
+    let mut refused = |edges: EdgeSettings| match renderer.upload_with(&model, with(edges)) {
+        Err(HeadlessError::Render(RenderError::Edges(bad))) => bad,
+        other => panic!("{other:?}"),
     };
     for width in [-0.5, f64::NAN, f64::INFINITY, 65.0] {
         let bad = refused(EdgeSettings { width, ..lines() });

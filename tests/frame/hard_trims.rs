@@ -6,6 +6,7 @@
 use crate::shapes;
 use crate::support::{assert_silent, watched_with};
 use crate::trims;
+use crate::watched::renderer;
 use glam::{DAffine3, DVec2, DVec3, DVec4};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Face, LoopAt, Model, Projection, SurfaceKind};
@@ -105,8 +106,8 @@ fn every_case(way: TrimWay, zooms: &[f64]) {
     assert_silent(renderer);
 }
 
-/// A thousand times closer a strip would need more than its 65,536 rows, which the frame counts as a clamp, and the
-/// comb more intercepts than a storage buffer of 128 MiB holds, which is an error.
+/// Not a thousand times closer. There a strip would need more than its 65,536 rows, which the frame counts as a clamp;
+/// the comb would need more intercepts than a storage buffer of 128 MiB holds, which is an error.
 #[test]
 fn by_table() {
     every_case(TrimWay::Table, &ZOOMS[..3]);
@@ -130,8 +131,8 @@ fn a_wrong_case_is_seen() {
     assert_silent(renderer);
 }
 
-/// 13: a first frame, a jump of a hundred times closer, and a face that returns to the picture are drawn as by a
-/// renderer that has drawn nothing else.
+/// 13: a first frame, a jump of a hundred times closer, and a face that returns to the picture are drawn as after a new
+/// upload.
 #[test]
 fn no_frame_depends_on_the_one_before() {
     let cases = trims::all();
@@ -139,18 +140,18 @@ fn no_frame_depends_on_the_one_before() {
     let model = model(&cases[i..=i]);
     for &trim in TrimWay::ALL {
         let settings = SceneSettings { trim, ..Default::default() };
-        let mut old = watched_with(&model, settings);
+        let (mut old, mut fresh) = (watched_with(&model, settings), renderer());
         let focus = DVec2::from(cases[i].focus);
         let away =
             Camera { eye: DVec3::new(50.0, 0.0, 2.0), target: DVec3::new(50.0, 0.0, 0.0), ..camera(0, focus, 1.0) };
         for view in [camera(0, focus, 1.0), camera(0, focus, 100.0), away, camera(0, focus, 3.0)] {
             let picture = draw(&mut old, &view);
-            let mut fresh = watched_with(&model, settings);
+            fresh.upload_with(&model, settings).unwrap();
             let same = draw(&mut fresh, &view);
             assert!(picture.face == same.face && picture.colour == same.colour, "{trim:?}");
-            assert_silent(fresh);
         }
         assert_silent(old);
+        assert_silent(fresh);
     }
 }
 
@@ -176,6 +177,7 @@ fn edited_as_if_uploaded_afresh(trim: TrimWay, most_bytes: u64) {
     let fixed = SceneSettings { trim, ..Default::default() };
     let mut edited = watched_with(&model, SceneSettings { editable: true, ..fixed });
     draw(&mut edited, &view);
+    let mut fresh = renderer();
     for frame in 0..6 {
         let start = model.parts[0].faces[0].loops[0].clone();
         let next = match frame {
@@ -189,14 +191,15 @@ fn edited_as_if_uploaded_afresh(trim: TrimWay, most_bytes: u64) {
         };
         edited.edit_loop(at, &next).unwrap();
         model.parts[0].faces[0].loops[0] = next;
-        let (a, mut fresh) = (draw(&mut edited, &view), watched_with(&model, fixed));
+        let a = draw(&mut edited, &view);
+        fresh.upload_with(&model, fixed).unwrap();
         let b = draw(&mut fresh, &view);
         assert!(a.colour == b.colour && a.face == b.face, "frame {frame}");
         assert!(a.stats.edit_bytes > 0 && a.stats.edit_bytes < most_bytes, "{trim:?}: {} bytes", a.stats.edit_bytes);
-        assert_silent(fresh);
     }
     assert_eq!(draw(&mut edited, &view).stats.edit_bytes, 0, "nothing was edited since");
     assert_silent(edited);
+    assert_silent(fresh);
 }
 
 /// The cost of an edit depends on its own face: among others with many loops, it sends the same bytes.

@@ -7,6 +7,7 @@ use crate::solid_lines::{
     HALF, JUNCTION, OFF, OFF_AT_JUNCTIONS, SIZE, SOLID, away, draw, draw_in_bands, judged_by_program, lines, with,
 };
 use crate::support::{assert_silent, orthographic, perspective, render, watched_with};
+use crate::watched::renderer;
 use glam::{DVec2, DVec3};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{EdgeChoice, EdgeSettings, SceneSettings};
@@ -67,16 +68,17 @@ fn the_programs_judge_finds_no_fault() {
         ("an opaque ball within a block", model(vec![glass(BLUE, LOW, HIGH), one(ball(0.6, 0.0))]), 0),
         ("two blocks", model(vec![glass(BLUE, LOW, [0.2, 1.0, 1.0]), glass(BLUE, [-0.3; 3], [1.4, 0.5, 0.5])]), 0),
     ];
-    let (mut seen, mut faults) = (0, Vec::new());
+    let (mut renderer, mut seen, mut faults) = (renderer(), 0, Vec::new());
     for (nth, (name, model, beside_outlines)) in shapes.into_iter().enumerate() {
         let (view, camera) = cameras(&model)[nth % 2];
-        let found = judged_by_program(&model, &camera);
+        let found = judged_by_program(&mut renderer, &model, &camera);
         println!("{name}, {view}: {found:?}");
         seen += found.visible;
         if found.missing > 0 || found.stray > beside_outlines {
             faults.push(format!("{name}, {view}: {found:?}"));
         }
     }
+    assert_silent(renderer);
     assert!(seen > 2000 && faults.is_empty(), "{seen} places seen\n{}", faults.join("\n"));
 }
 

@@ -31,7 +31,7 @@ fn what_is_left_out_is_as_if_the_scene_had_it_not() {
             edges: Some(EdgeSettings { width: 9.0, thin_width: 9.0, ..EdgeSettings::default() }),
             ..SceneSettings::default()
         };
-        let mut renderer = watched_with(&model, scene);
+        let (mut renderer, mut fresh) = (watched_with(&model, scene), crate::watched::renderer());
         let mut draw = |without: Effects| {
             let settings = FrameSettings { without, ..FrameSettings::default() };
             renderer.render(&camera, &settings, OUTPUTS).unwrap()
@@ -49,9 +49,8 @@ fn what_is_left_out_is_as_if_the_scene_had_it_not() {
             (lines, SceneSettings { edges: None, ..scene }, "lines"),
         ];
         for (without, plain, pass) in cases {
-            let mut fresh = watched_with(&model, plain);
+            fresh.upload_with(&model, plain).unwrap();
             let expected = fresh.render(&camera, &FrameSettings::default(), OUTPUTS).unwrap();
-            assert_silent(fresh);
             assert!(passes(&full).contains(&pass), "{what}: {:?}", passes(&full));
             // twice: the second one may reuse what the first one saw
             for _ in 0..2 {
@@ -72,6 +71,7 @@ fn what_is_left_out_is_as_if_the_scene_had_it_not() {
         assert_eq!(kept, None, "{what}");
         assert!(all.depth == full.depth && all.face == full.face, "{what}");
         assert_silent(renderer);
+        assert_silent(fresh);
     }
 }
 

@@ -18,8 +18,8 @@ const FAR: f64 = 20.0;
 const RADIUS: f64 = 0.8;
 /// Of the plane that cuts the ball.
 const HEIGHT: f64 = 0.2;
-/// Points of the circle are seen where the ball's normal is turned to the eye by more than the first share, and hidden
-/// where it is turned away by more than the second: within a pixel of the outline neither is tested.
+/// Cosine of the ball's normal with the way to the eye. Points of the circle with more than the first are seen, with
+/// less than the second hidden; between, within a pixel of the outline, neither is tested.
 const SEEN: f64 = 0.15;
 const HIDDEN: f64 = -0.15;
 

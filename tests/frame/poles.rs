@@ -12,6 +12,7 @@ use crate::edges::covered;
 use crate::shapes;
 use crate::support::{assert_silent, watched_with};
 use glam::{DVec2, DVec3, DVec4};
+use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Face, Model, SurfaceKind};
 use selvedge::picture::{FrameSettings, Outputs, SceneSettings, Smooth, TrimWay};
 use selvedge::spline::Surface;
@@ -35,12 +36,9 @@ fn towards(azimuth: f64, elevation: f64) -> DVec3 {
 }
 
 /// Of pixels that rays see in part: place, opacity less the rays' share.
-fn errors(model: &Model, trim: TrimWay, camera: &Camera, truth: &[f64]) -> Vec<((usize, usize), f64)> {
-    let settings = SceneSettings { smooth: Smooth::Borders, trim, ..SceneSettings::default() };
-    let mut renderer = watched_with(model, settings);
+fn errors(renderer: &mut HeadlessRenderer, camera: &Camera, truth: &[f64]) -> Vec<((usize, usize), f64)> {
     let clear = FrameSettings { background: Some([0.0; 4]), ..FrameSettings::default() };
     let picture = renderer.render(camera, &clear, Outputs::default()).unwrap();
-    assert_silent(renderer);
     let width = camera.size.0 as usize;
     let partly = (0..truth.len()).filter(|&i| truth[i] > 0.0 && truth[i] < 1.0);
     partly.map(|i| ((i % width, i / width), f64::from(picture.colour[i][3]) / 255.0 - truth[i])).collect()
@@ -49,11 +47,13 @@ fn errors(model: &Model, trim: TrimWay, camera: &Camera, truth: &[f64]) -> Vec<(
 /// The mean of the errors is that of sixteen points; none is above `bounds[0]`, and but one above `bounds[1]`.
 fn assert_covered(model: &Model, directions: &[DVec3], bounds: [f64; 2]) {
     let tracer = Tracer::new(model);
+    let settings = |trim| SceneSettings { smooth: Smooth::Borders, trim, ..SceneSettings::default() };
+    let mut renderers = [TrimWay::Table, TrimWay::Exact].map(|trim| (trim, watched_with(model, settings(trim))));
     for &direction in directions {
         let camera = Camera::around(model.control_bounds(), direction, DVec3::Z, 35f64.to_radians(), SIZE);
         let truth = covered(&tracer, &camera);
-        for trim in [TrimWay::Table, TrimWay::Exact] {
-            let mut errors = errors(model, trim, &camera, &truth);
+        for (trim, renderer) in &mut renderers {
+            let mut errors = errors(renderer, &camera, &truth);
             let mean = errors.iter().map(|(_, e)| e.abs()).sum::<f64>() / errors.len() as f64;
             assert!(errors.len() > 60, "{}", errors.len());
             errors.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
@@ -63,6 +63,7 @@ fn assert_covered(model: &Model, directions: &[DVec3], bounds: [f64; 2]) {
             assert!(mean <= MEAN && are_within, "{}: mean {mean}, worst {worst:?}", model.name);
         }
     }
+    renderers.into_iter().for_each(|(_, renderer)| assert_silent(renderer));
 }
 
 /// The tip of a cone at z = 1 above its open end, without loops or with those of a face that ends at its seam.

@@ -7,7 +7,7 @@
 
 use crate::edges::{blocks, contrast_errors, coverage_errors, covered, root_mean_square};
 use crate::shapes::{self, solids};
-use crate::support::{assert_identical, assert_silent, perspective, watched};
+use crate::support::{assert_identical, assert_silent, perspective, watched_with};
 use glam::{DVec2, DVec3};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Model};
@@ -70,9 +70,11 @@ fn area(normal: DVec2, offset: f64) -> f64 {
 }
 
 fn renderer(model: &Model, samples: Samples) -> HeadlessRenderer {
-    let mut renderer = watched(&Model::default());
-    renderer.upload_with(model, SceneSettings { samples, ..SceneSettings::default() }).unwrap();
-    renderer
+    watched_with(model, with(samples))
+}
+
+fn with(samples: Samples) -> SceneSettings {
+    SceneSettings { samples, ..SceneSettings::default() }
 }
 
 fn draw(renderer: &mut HeadlessRenderer, camera: &Camera, outputs: Outputs) -> Picture {
@@ -111,19 +113,18 @@ fn as_the_frame_sixteen_times_as_large() {
     let models = [shapes::cube(), shapes::cylinder(), shapes::beside(), ball];
     for model in models {
         let camera = perspective(&model, SIZE);
-        let mut fine = renderer(&model, Samples::One);
-        let blocks = blocks(&mut fine, &camera);
-        assert_silent(fine);
+        let mut renderer = renderer(&model, Samples::One);
+        let blocks = blocks(&mut renderer, &camera);
         for samples in ALL {
-            let mut renderer = renderer(&model, samples);
+            renderer.upload_with(&model, with(samples)).unwrap();
             let picture = draw(&mut renderer, &camera, Outputs::default());
-            assert_silent(renderer);
             let errors = contrast_errors(&picture, &blocks);
             assert!(errors.len() > 50, "{}: {} pixels", model.name, errors.len());
             let (error, bound) = (root_mean_square(&errors), bound(samples));
             println!("{}, {samples:?}: {error:.4} of {bound:.4}, {} pixels", model.name, errors.len());
             assert!(error <= bound, "{}, {samples:?}: {error} of {bound}", model.name);
         }
+        assert_silent(renderer);
     }
 }
 

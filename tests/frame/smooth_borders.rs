@@ -6,8 +6,8 @@
 
 use crate::edges::{blocks, contrast_errors, coverage_errors, covered, root_mean_square};
 use crate::shapes;
-use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, render_with, watched_with};
-use crate::watched::limited;
+use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, render_next, watched_with};
+use crate::watched::{limited, renderer};
 use selvedge::gpu::LowerLimits;
 use selvedge::model::Model;
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, TrimWay};
@@ -24,10 +24,12 @@ fn settings(smooth: Smooth, trim: TrimWay) -> SceneSettings {
 fn outlines_cover_what_exact_rays_say() {
     let model = shapes::plate();
     let tracer = Tracer::new(&model);
+    let mut renderer = renderer();
     for camera in [perspective(&model, SIZE), orthographic(&model, SIZE)] {
         let truth = covered(&tracer, &camera);
         for way in TrimWay::ALL.iter().copied() {
-            let errors = |smooth| coverage_errors(&render_with(&model, settings(smooth, way), &camera), &truth);
+            let mut errors =
+                |smooth| coverage_errors(&render_next(&mut renderer, &model, settings(smooth, way), &camera), &truth);
             let (rough, smooth) = (errors(Smooth::None), errors(Smooth::Borders));
             let mean = smooth.iter().map(|e| e.abs()).sum::<f64>() / smooth.len() as f64;
             let far = smooth.iter().filter(|e| e.abs() > 0.125).count();
@@ -40,6 +42,7 @@ fn outlines_cover_what_exact_rays_say() {
             assert!(mean <= bound && far == 0, "{way:?}: {rms} of {rough}, mean {mean}, {far} far off");
         }
     }
+    assert_silent(renderer);
 }
 
 /// Faces that meet, hide each other and themselves.
@@ -64,33 +67,38 @@ fn borders_are_as_the_frame_sixteen_times_as_large() {
         (shapes::whole_mesh("ball", shapes::ball_mesh(5)), 0.25),
         (ground, 0.25),
     ];
+    let mut renderer = renderer();
     for (model, bound) in models {
-        for camera in [perspective(&model, SIZE), orthographic(&model, SIZE)] {
-            let mut fine = watched_with(&model, settings(Smooth::None, TrimWay::Auto));
-            let blocks = blocks(&mut fine, &camera);
-            assert_silent(fine);
-            let errors =
-                |smooth| contrast_errors(&render_with(&model, settings(smooth, TrimWay::Auto), &camera), &blocks);
-            let (rough, smooth) = (errors(Smooth::None), errors(Smooth::Borders));
+        // the large picture is what this test costs: faces and a solid are drawn in both projections, meshes in one
+        let both = [perspective(&model, SIZE), orthographic(&model, SIZE)];
+        let views = if model.parts.iter().any(|part| !part.meshes.is_empty()) { &both[..1] } else { &both[..] };
+        for camera in views {
+            renderer.upload_with(&model, settings(Smooth::None, TrimWay::Auto)).unwrap();
+            let blocks = blocks(&mut renderer, camera);
+            let rough = contrast_errors(&render(&mut renderer, camera), &blocks);
+            let smooth = render_next(&mut renderer, &model, settings(Smooth::Borders, TrimWay::Auto), camera);
+            let smooth = contrast_errors(&smooth, &blocks);
             let pixels = rough.len();
             let (rough, smooth) = (root_mean_square(&rough), root_mean_square(&smooth));
             println!("{}: {rough:.4}, smooth {smooth:.4}, {pixels} pixels", model.name);
             assert!(pixels > 50 && smooth <= bound * rough, "{}: {smooth} of {rough}", model.name);
         }
     }
+    assert_silent(renderer);
 }
 
-/// All images but the colour are the same with and without smooth borders, bit for bit. So is the colour of pixels that
-/// see nothing, as their eight neighbours do, and of pixels whose neighbours see the same face, in one colour where it is
-/// that of a mesh or a solid, which have creases, and in a nearly straight slope.
+/// All images but the colour are the same with and without smooth borders, bit for bit. The colour stays at pixels that
+/// see nothing, as their eight neighbours do, and at pixels whose neighbours see the same face in a nearly straight
+/// slope. Of a mesh or a solid, which have creases, the neighbours must have one colour, too.
 #[test]
 fn nothing_else_changes() {
     let (width, height) = (SIZE.0 as usize, SIZE.1 as usize);
     let (mut alone, mut on_faces) = (0, 0);
+    let mut renderer = renderer();
     for shape in shapes::all() {
         let camera = perspective(&shape.model, SIZE);
         let [before, after] = [Smooth::None, Smooth::Borders]
-            .map(|smooth| render_with(&shape.model, settings(smooth, TrimWay::Exact), &camera));
+            .map(|smooth| render_next(&mut renderer, &shape.model, settings(smooth, TrimWay::Exact), &camera));
         let same_colour = Picture { colour: before.colour.clone(), stats: before.stats.clone(), ..after.clone() };
         assert_identical(&before, &same_colour, shape.name);
         let has_creases =
@@ -116,6 +124,7 @@ fn nothing_else_changes() {
         }
     }
     assert!(alone > 10_000 && on_faces > 1000, "{alone}, {on_faces} of them on faces");
+    assert_silent(renderer);
 }
 
 /// Passes, images and lists exist where borders are smoothed, and there are faces; several samples need none.
@@ -153,6 +162,7 @@ fn bands_make_the_same_picture() {
     let size = (500, 80);
     let solid = shapes::solids::holes(2);
     let mesh = shapes::whole_mesh("torus", shapes::torus_mesh(24));
+    let mut unlimited = renderer();
     // bytes that hold 40 rows, of which a band takes 32
     for (model, bytes) in [
         (shapes::plate(), 12 * 500 * 40),
@@ -168,10 +178,11 @@ fn bands_make_the_same_picture() {
         let pixels = in_bands.objects().iter().filter(|name| *name == "border pixels").count();
         assert_eq!(pixels, 2, "{}: as many lists", model.name);
         assert_silent(in_bands);
-        let whole = render_with(&model, smooth, &camera);
+        let whole = render_next(&mut unlimited, &model, smooth, &camera);
         assert_identical(&whole, &banded, &model.name);
-        let rough = render_with(&model, settings(Smooth::None, TrimWay::Exact), &camera);
+        let rough = render_next(&mut unlimited, &model, settings(Smooth::None, TrimWay::Exact), &camera);
         let mixed = whole.colour.iter().zip(&rough.colour).filter(|(a, b)| a != b).count();
         assert!(mixed > 200, "{}: {mixed} pixels are mixed", model.name);
     }
+    assert_silent(unlimited);
 }

@@ -7,8 +7,9 @@
 use crate::edges::{blocks, contrast_errors, coverage_errors, covered, linear, root_mean_square};
 use crate::shapes;
 use crate::support::{
-    assert_identical, assert_silent, orthographic, perspective, plain, render, render_with, watched_with,
+    assert_identical, assert_silent, orthographic, perspective, plain, render, render_next, render_with, watched_with,
 };
+use crate::watched::renderer;
 use glam::{DVec2, DVec3};
 use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, LoopAt, Model, Projection, TrimLoop};
@@ -55,10 +56,11 @@ fn views(model: &Model) -> Vec<(&'static str, Camera)> {
 fn a_plates_borders_cover_what_exact_rays_say() {
     let model = shapes::plate();
     let tracer = Tracer::new(&model);
+    let mut renderer = renderer();
     for (name, camera) in views(&model) {
         let truth = covered(&tracer, &camera);
-        let error = |settings| {
-            let errors = coverage_errors(&render_with(&model, settings, &camera), &truth);
+        let mut error = |settings| {
+            let errors = coverage_errors(&render_next(&mut renderer, &model, settings, &camera), &truth);
             (root_mean_square(&errors), errors.iter().fold(0.0f64, |a, e| a.max(e.abs())), errors.len())
         };
         let (rough, (smooth, worst, pixels)) = (error(PLAIN).0, error(SMOOTH));
@@ -66,6 +68,7 @@ fn a_plates_borders_cover_what_exact_rays_say() {
         assert!(pixels > 60 && rough > 0.2, "{name}: {rough}, {pixels}");
         assert!(smooth <= 0.02, "{name}: {smooth}");
     }
+    assert_silent(renderer);
 }
 
 /// Faces of a solid that meet at an edge, each with its own colour; borders without a trim curve stay as they are.
@@ -76,13 +79,13 @@ fn solids_are_as_the_frame_sixteen_times_as_large() {
         let on = |bit: usize| if (i + 1) & bit != 0 { 0.9 } else { 0.1 };
         face.colour = Some([on(1), on(2), on(4), 1.0]);
     }
+    let mut renderer = renderer();
     for (model, bound) in [(cube, 0.1), (shapes::cylinder(), 0.8), (shapes::beside(), 0.95)] {
         for camera in [perspective(&model, SIZE), orthographic(&model, SIZE)] {
-            let mut fine = watched_with(&model, PLAIN);
-            let blocks = blocks(&mut fine, &camera);
-            assert_silent(fine);
-            let errors = |settings| contrast_errors(&render_with(&model, settings, &camera), &blocks);
-            let (rough, smooth) = (errors(PLAIN), errors(SMOOTH));
+            renderer.upload_with(&model, PLAIN).unwrap();
+            let blocks = blocks(&mut renderer, &camera);
+            let rough = contrast_errors(&render(&mut renderer, &camera), &blocks);
+            let smooth = contrast_errors(&render_next(&mut renderer, &model, SMOOTH, &camera), &blocks);
             let worse = rough.iter().zip(&smooth).fold(0.0f64, |a, (r, s)| a.max(s - r));
             let pixels = rough.len();
             let (rough, smooth) = (root_mean_square(&rough), root_mean_square(&smooth));
@@ -91,11 +94,13 @@ fn solids_are_as_the_frame_sixteen_times_as_large() {
             assert!(worse < 0.1, "{}: a pixel is worse by {worse}", model.name);
         }
     }
+    assert_silent(renderer);
 }
 
 /// Holes of half a pixel to one and a half, 5 x 5 of each size; holes without a pixel's centre are not visible.
 #[test]
 fn small_holes() {
+    let mut renderer = renderer();
     for (radius, bound) in [(0.5, 0.15), (1.0, 0.08), (1.5, 0.08)] {
         let camera = |model: &Model| {
             Camera::around(model.control_bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, (160, 120))
@@ -110,24 +115,26 @@ fn small_holes() {
         let model = holes(&(0..25).map(|i| (at(i), radius / px)).collect::<Vec<_>>());
         let camera = camera(&model);
         let truth = covered(&Tracer::new(&model), &camera);
-        let error = |settings| root_mean_square(&coverage_errors(&render_with(&model, settings, &camera), &truth));
+        let mut error = |settings| {
+            root_mean_square(&coverage_errors(&render_next(&mut renderer, &model, settings, &camera), &truth))
+        };
         let (rough, smooth) = (error(PLAIN), error(SMOOTH));
         println!("radius {radius} px ({px:.1} px a unit): {rough:.4}, smooth {smooth:.4}");
         assert!(smooth <= bound && smooth <= rough, "{radius}: {smooth} of {rough}");
     }
+    assert_silent(renderer);
 }
 
 /// Images other than colour are as without smoothing, bit for bit, and so is the colour of pixels farther than 1.5 px
 /// from another face: pixels whose eight neighbours show the same face.
 #[test]
 fn nothing_else_changes() {
+    let mut renderer = renderer();
     for shape in shapes::all() {
         let cameras = [perspective(&shape.model, SIZE), orthographic(&shape.model, SIZE)];
         let [before, after] = [PLAIN, SMOOTH].map(|settings| {
-            let mut renderer = watched_with(&shape.model, settings);
-            let pictures = cameras.map(|camera| render(&mut renderer, &camera));
-            assert_silent(renderer);
-            pictures
+            renderer.upload_with(&shape.model, settings).unwrap();
+            cameras.map(|camera| render(&mut renderer, &camera))
         });
         for (before, after) in before.into_iter().zip(after) {
             let same_colour = Picture { colour: before.colour.clone(), stats: before.stats.clone(), ..after.clone() };
@@ -149,6 +156,7 @@ fn nothing_else_changes() {
             }
         }
     }
+    assert_silent(renderer);
 }
 
 /// Image, pass and pipeline exist if trims are smoothed and there are some.

@@ -2,8 +2,10 @@
 
 use crate::shapes::solids::{at, ball, below, block, cone, moved, post, ring, solid, turned};
 use crate::support::{assert_silent, orthographic, perspective, watched, watched_with};
+use crate::watched::renderer;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
+use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{
     EdgeChoice, EdgeSettings, FrameSettings, Outputs, Picture, SceneSettings, SolidWay, TangentEdges,
@@ -36,11 +38,16 @@ pub fn lines() -> EdgeSettings {
 }
 
 pub fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
-    let mut renderer = watched_with(model, settings);
-    let outputs = Outputs { edge: true, ..Outputs::ALL };
-    let picture = renderer.render(camera, &FrameSettings::default(), outputs).unwrap();
+    let mut renderer = renderer();
+    let picture = draw_next(&mut renderer, (model, settings), camera);
     assert_silent(renderer);
     picture
+}
+
+/// The picture of a scene that replaces the renderer's.
+fn draw_next(renderer: &mut HeadlessRenderer, (model, settings): (&Model, SceneSettings), camera: &Camera) -> Picture {
+    renderer.upload_with(model, settings).unwrap();
+    renderer.render(camera, &FrameSettings::default(), Outputs { edge: true, ..Outputs::ALL }).unwrap()
 }
 
 /// With the first budget, of 4000 bytes and each a tenth less than the last, for which lists are made band by band.
@@ -175,11 +182,11 @@ fn solids() -> Vec<(&'static str, Model)> {
 
 #[test]
 fn lines_are_where_exact_rays_see_two_surfaces() {
-    let mut faults = Vec::new();
+    let (mut renderer, mut faults) = (renderer(), Vec::new());
     for (name, model) in solids() {
         for (view, camera) in [("from afar", perspective(&model, SIZE)), ("parallel", orthographic(&model, SIZE))] {
             let settings = EdgeSettings { silhouettes: true, which: EdgeChoice::Sharp, ..lines() };
-            let picture = draw(&model, with(settings), &camera);
+            let picture = draw_next(&mut renderer, (&model, with(settings)), &camera);
             let j = judged(&model, &camera, &picture, true);
             println!(
                 "{name}, {view}: {} changes, {} marked, bare {:?}, stray {:?}",
@@ -191,13 +198,14 @@ fn lines_are_where_exact_rays_see_two_surfaces() {
             }
         }
     }
+    assert_silent(renderer);
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
 /// As `selvedge check --edges` judges them: without outlines, and with smooth transitions as wide as edges.
-pub fn judged_by_program(model: &Model, camera: &Camera) -> LineJudgement {
+pub fn judged_by_program(renderer: &mut HeadlessRenderer, model: &Model, camera: &Camera) -> LineJudgement {
     let drawn = EdgeSettings { tangent: TangentEdges::Full, ..lines() };
-    let picture = draw(model, with(drawn), camera);
+    let picture = draw_next(renderer, (model, with(drawn)), camera);
     let settings = DrawingSettings { silhouettes: false, ..DrawingSettings::default() };
     let image = LineImage { lines: &picture.edge, width: 2.0 * HALF, section_width: 4.0 * HALF };
     judge_lines(model, &Tracer::new(model), camera, &settings, image).unwrap()
@@ -205,10 +213,10 @@ pub fn judged_by_program(model: &Model, camera: &Camera) -> LineJudgement {
 
 #[test]
 fn the_programs_judge_finds_no_fault() {
-    let (mut seen, mut faults) = (0, Vec::new());
+    let (mut renderer, mut seen, mut faults) = (renderer(), 0, Vec::new());
     for (name, model) in solids() {
         for (view, camera) in [("from afar", perspective(&model, SIZE)), ("parallel", orthographic(&model, SIZE))] {
-            let found = judged_by_program(&model, &camera);
+            let found = judged_by_program(&mut renderer, &model, &camera);
             println!("{name}, {view}: {found:?}");
             seen += found.visible;
             if (found.missing, found.stray, found.unsure) != (0, 0, 0) {
@@ -216,6 +224,7 @@ fn the_programs_judge_finds_no_fault() {
             }
         }
     }
+    assert_silent(renderer);
     assert!(seen > 2000 && faults.is_empty(), "{seen} places seen\n{}", faults.join("\n"));
 }
 
@@ -224,7 +233,11 @@ fn the_programs_judge_finds_no_fault() {
 fn smooth_transitions_are_thin_or_left_out() {
     let model = solid("A+B", vec![post(0.7, -1.2, 1.2), ball(0.7, 0.0)]);
     let camera = Camera::around(model.control_bounds(), DVec3::new(1.0, -1.6, 0.4), DVec3::Z, 0.6, SIZE);
-    let count = |edges: EdgeSettings| draw(&model, with(edges), &camera).edge.iter().filter(|e| **e == SOLID).count();
+    let mut renderer = renderer();
+    let mut count = |edges: EdgeSettings| {
+        let picture = draw_next(&mut renderer, (&model, with(edges)), &camera);
+        picture.edge.iter().filter(|e| **e == SOLID).count()
+    };
     let sharp = count(EdgeSettings { which: EdgeChoice::Sharp, ..lines() });
     let all = count(EdgeSettings { which: EdgeChoice::All, ..lines() });
     let full = count(EdgeSettings { tangent: TangentEdges::Full, ..lines() });
@@ -232,6 +245,7 @@ fn smooth_transitions_are_thin_or_left_out() {
     assert_eq!(sharp, none);
     // the half of a circle some 40 px across that is seen
     assert!(all > sharp + 30 && full > all, "{sharp}, {all}, {full}");
+    assert_silent(renderer);
 }
 
 /// The cut of a section is outlined twice as wide as edges are, whether what it cuts has equations or not.
@@ -245,12 +259,13 @@ fn outlines_of_sections_are_bold_and_exact() {
         ..Model::default()
     };
     let equations = solid("A-B", vec![post(1.0, low, 1.6), post(0.5, low - 1.0, 4.0)]);
+    let mut renderer = renderer();
     for (name, model) in [("spline", spline), ("equations", equations)] {
         let cut = model.section(DVec3::Z, low + 1.0).unwrap();
         assert_eq!(cut.cuts.len(), 1);
         for camera in [perspective(&cut, SIZE), orthographic(&cut, SIZE)] {
             let settings = EdgeSettings { which: EdgeChoice::Sharp, ..lines() };
-            let picture = draw(&cut, with(settings), &camera);
+            let picture = draw_next(&mut renderer, (&cut, with(settings)), &camera);
             let circle = |radius: f64| {
                 let point = move |k: u32| {
                     let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 2000.0).sin_cos();
@@ -271,6 +286,7 @@ fn outlines_of_sections_are_bold_and_exact() {
             assert!(bare.is_empty() && thin > 100, "{name}: {thin} pixels beyond an edge's width, bare {bare:?}");
         }
     }
+    assert_silent(renderer);
 }
 
 /// Sections of a solid with equations, and of a part, whose edges and outlines are those of an operand without. No
@@ -283,14 +299,16 @@ fn the_programs_judge_of_sections() {
     let instances = vec![crate::shapes::placed(at(0.0, 0.0, 0.0), None)];
     let spline = Model { parts: vec![tube], instances, ..Model::default() };
     let equations = solid("A-B", vec![post(1.0, low, 1.6), post(0.5, low - 1.0, 4.0)]);
+    let mut renderer = renderer();
     for (name, model, stray) in [("spline", spline, 0), ("equations", equations, 2)] {
         let cut = model.section(DVec3::Z, low + 1.0).unwrap();
         for camera in [perspective(&cut, SIZE), orthographic(&cut, SIZE)] {
-            let found = judged_by_program(&cut, &camera);
+            let found = judged_by_program(&mut renderer, &cut, &camera);
             assert!(found.visible > 100, "{name}: {found:?}");
             assert!(found.missing == 0 && found.stray <= stray, "{name}: {found:?}");
         }
     }
+    assert_silent(renderer);
 }
 
 /// Without Boolean solids, or without lines, nothing of theirs exists.
@@ -320,12 +338,14 @@ fn lines_are_the_same_by_every_way() {
     );
     let camera = perspective(&model, SIZE);
     let settings = EdgeSettings { silhouettes: true, ..lines() };
-    let events = draw(&model, with(settings), &camera);
+    let mut renderer = renderer();
+    let events = draw_next(&mut renderer, (&model, with(settings)), &camera);
     assert!(events.edge.iter().filter(|e| **e == SOLID).count() > 300);
     for solids in [SolidWay::Cst, SolidWay::Blister] {
-        let other = draw(&model, SceneSettings { solids, ..with(settings) }, &camera);
+        let other = draw_next(&mut renderer, (&model, SceneSettings { solids, ..with(settings) }), &camera);
         assert!(other.edge == events.edge && other.colour == events.colour, "{}", solids.name());
     }
+    assert_silent(renderer);
     let banded = draw_in_bands(&model, with(settings), &camera);
     assert!(banded.edge == events.edge && banded.colour == events.colour, "bands");
 }

@@ -42,10 +42,21 @@ pub fn render(renderer: &mut HeadlessRenderer, camera: &Camera) -> Picture {
     renderer.render(camera, &FrameSettings::default(), Outputs::ALL).unwrap()
 }
 
+/// The same of a model that replaces the renderer's.
+pub fn render_next(
+    renderer: &mut HeadlessRenderer,
+    model: &Model,
+    settings: SceneSettings,
+    camera: &Camera,
+) -> Picture {
+    renderer.upload_with(model, settings).unwrap();
+    render(renderer, camera)
+}
+
 /// The same by a renderer of its own, which has no messages.
 pub fn render_with(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
-    let mut renderer = watched_with(model, settings);
-    let picture = render(&mut renderer, camera);
+    let mut renderer = renderer();
+    let picture = render_next(&mut renderer, model, settings, camera);
     assert_silent(renderer);
     picture
 }

@@ -1,9 +1,11 @@
-//! Patches of closed parts without trims that are turned away are left out, which changes no picture: it equals that of
-//! the same surface around a speck whose sides are not linked, so that nothing is left out.
+//! Patches of closed parts without trims that are turned away are left out, which changes no picture. The same surface
+//! around a speck whose sides are not linked has nothing left out, and the same picture.
 
-use crate::support::{assert_silent, perspective, render, watched};
+use crate::support::{assert_silent, perspective, render};
+use crate::watched::renderer;
 use crate::{cages, shapes};
 use glam::{DAffine3, DVec3};
+use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Face, Model, Projection};
 use selvedge::picture::Picture;
 use selvedge::spline::Surface;
@@ -56,16 +58,20 @@ fn assert_same(a: &Picture, b: &Picture, slack: f64, what: &str) {
     }
 }
 
+fn two() -> [HeadlessRenderer; 2] {
+    [(); 2].map(|()| renderer())
+}
+
 /// Compares pictures of both in all views; returns the numbers of their triangles.
-fn same(name: &str, model: &Model, views: &[Camera]) -> [u64; 2] {
-    let (mut closed, mut loose) = (watched(model), watched(&with_a_speck(model)));
+fn same(renderers: &mut [HeadlessRenderer; 2], name: &str, model: &Model, views: &[Camera]) -> [u64; 2] {
+    renderers[0].upload(model).unwrap();
+    renderers[1].upload(&with_a_speck(model)).unwrap();
     let mut triangles = [0; 2];
     for (k, camera) in views.iter().enumerate() {
-        let pictures = [render(&mut closed, camera), render(&mut loose, camera)];
+        let pictures = renderers.each_mut().map(|renderer| render(renderer, camera));
         assert_same(&pictures[0], &pictures[1], 0.1 * pixel(model, camera), &format!("{name}, view {k}"));
         triangles = [0, 1].map(|i: usize| triangles[i] + pictures[i].stats.triangles);
     }
-    [closed, loose].into_iter().for_each(assert_silent);
     triangles
 }
 
@@ -74,12 +80,13 @@ fn no_picture_shows_it() {
     let (sphere, torus) = (shapes::sphere(), shapes::torus());
     let closed = cages::all();
     let all = [("sphere", &sphere), ("torus", &torus)].into_iter().chain(closed.iter().map(|c| (c.name, &c.model)));
-    let mut shares = Vec::new();
+    let (mut renderers, mut shares) = (two(), Vec::new());
     for (name, model) in all {
-        let [drawn, others] = same(name, model, &views(model));
+        let [drawn, others] = same(&mut renderers, name, model, &views(model));
         assert!(drawn <= others, "{name}: {drawn} triangles, {others} with a speck");
         shares.push((name, drawn as f64 / others as f64));
     }
+    renderers.into_iter().for_each(assert_silent);
     let fine = |&(name, _): &&(&str, f64)| ["fine", "torus", "triangles"].contains(name);
     assert!(shares.iter().filter(fine).all(|&(_, share)| share < 0.8), "shares of the triangles: {shares:?}");
 }
@@ -90,7 +97,9 @@ fn nor_where_the_part_is_placed_otherwise() {
     let mut model = cages::a_box().model;
     let stretched = DAffine3::from_scale(DVec3::new(-1.0, 2.0, 0.5)) * DAffine3::from_rotation_x(0.7);
     model.instances[0].transform = DAffine3::from_translation(DVec3::new(30.0, -4.0, 9.0)) * stretched;
-    let [drawn, others] = same("a stretched box", &model, &views(&model));
+    let mut renderers = two();
+    let [drawn, others] = same(&mut renderers, "a stretched box", &model, &views(&model));
+    renderers.into_iter().for_each(assert_silent);
     assert!(drawn * 10 < others * 9, "{drawn} triangles, {others} with a speck");
 }
 
@@ -102,13 +111,13 @@ fn the_inside_is_seen() {
     let middle = (whole.eye - whole.target).length();
     let cut = Camera { depth_range: (middle, whole.depth_range.1), ..whole };
     let within = Camera { eye: whole.target, target: whole.target + DVec3::X, depth_range: (0.01, 10.0), ..whole };
-    let [drawn, others] = same("a box from within", &model, &[cut, within]);
+    let mut renderers = two();
+    let [drawn, others] = same(&mut renderers, "a box from within", &model, &[cut, within]);
     assert!(drawn <= others && others <= drawn + 4, "{drawn} triangles, {others} with a speck");
     let from_within = |picture: &Picture| picture.face.iter().filter(|&&id| id != 0).count();
-    let mut renderer = watched(&model);
-    assert!(from_within(&render(&mut renderer, &cut)) > 500);
-    assert_eq!(from_within(&render(&mut renderer, &within)), (SIZE.0 * SIZE.1) as usize);
-    assert_silent(renderer);
+    assert!(from_within(&render(&mut renderers[0], &cut)) > 500);
+    assert_eq!(from_within(&render(&mut renderers[0], &within)), (SIZE.0 * SIZE.1) as usize);
+    renderers.into_iter().for_each(assert_silent);
 }
 
 /// Parts that are declared closed, and are not.
@@ -119,8 +128,9 @@ fn what_only_says_that_it_is_closed_stays() {
     let (mut one_inverted, mut torn) = (whole.clone(), whole.clone());
     one_inverted.parts[0].faces[7].same_sense = !one_inverted.parts[0].faces[7].same_sense;
     torn.parts[0].faces.remove(7);
+    let mut renderers = two();
     for (name, model) in [("inverted", &inverted), ("one inverted", &one_inverted), ("torn", &torn)] {
-        let [drawn, others] = same(name, model, &views(model));
+        let [drawn, others] = same(&mut renderers, name, model, &views(model));
         assert!(
             drawn <= others && others <= drawn + 2 * views(model).len() as u64,
             "{name}: {drawn}, {others} with a speck"
@@ -128,9 +138,9 @@ fn what_only_says_that_it_is_closed_stays() {
         // nothing of a part that is not declared closed is left out, with or without the speck
         let mut open = model.clone();
         open.parts[0].closed = false;
-        let mut renderer = watched(&open);
-        let all: u64 = views(model).iter().map(|camera| render(&mut renderer, camera).stats.triangles).sum();
-        assert_silent(renderer);
+        renderers[0].upload(&open).unwrap();
+        let all: u64 = views(model).iter().map(|camera| render(&mut renderers[0], camera).stats.triangles).sum();
         assert_eq!(drawn, all, "{name}");
     }
+    renderers.into_iter().for_each(assert_silent);
 }

@@ -201,8 +201,8 @@ pub fn mirrored() -> Model {
     model
 }
 
-/// A square face of a solid, 1, that faces up, and [`TOUCHING_GAP`] below it a strip along y, 2, of another solid, that
-/// faces down: as where solids cut into each other, or a file has a face with the wrong orientation.
+/// Face 1 of a solid, a square that faces up, and [`TOUCHING_GAP`] below it face 2 of another solid, a strip along y
+/// that faces down. Files have such faces where solids cut into each other, or where a face has the wrong orientation.
 pub fn touching() -> Model {
     let strip = level(2, (-TOUCHING_STRIP, TOUCHING_STRIP), -TOUCHING_GAP);
     two_parts([vec![level(1, (-PLATE_HALF, PLATE_HALF), 0.0)], vec![strip]])
@@ -275,8 +275,8 @@ pub fn empty() -> Model {
     Model::default()
 }
 
-/// `(x, y)` on the unit circle where a turn by these arcs has parameter `x` in `[-π/2, 2π]`: with
-/// `t` in `[0, 1]` over a quarter and `s = 1 - t`, `(s² + √2 s t, √2 s t + t²) / (s² + √2 s t + t²)`.
+/// `(x, y)` on the unit circle where a turn by these arcs has parameter `x` in `[-π/2, 2π]`: `(s² +
+/// √2 s t, √2 s t + t²) / (s² + √2 s t + t²)` with `t` in `[0, 1]` over a quarter and `s = 1 - t`.
 /// The angle is `x` at multiples of π/4, and nearly so between.
 pub fn circle_at(x: f64) -> (f64, f64) {
     let quarter = (x / FRAC_PI_2).floor().clamp(-1.0, 3.0);

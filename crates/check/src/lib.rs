@@ -9,11 +9,11 @@
 //! ```
 //!
 //! Nothing is tessellated and nothing is sampled: a hit is a root of the surface's own rational equations, accurate to
-//! about 1e-15 of the distance to the eye, and a root is excluded only by a proof (see the `solver` module). The
-//! reference leaves out a surface seen exactly edge-on, because it covers no area. A solid is hit where the ray enters
-//! it, at the near plane or behind it: a near plane within a solid cuts it open, and the first face entered from there
-//! is visible. A ray hits every face of a transparent solid, whether it enters or leaves, unless the opacity is 0.
-//! Faces and meshes of a model trimmed by a volume are hit within the volume, and up to [`ON`] outside of it.
+//! about 1e-15 of the distance to the eye. A root is excluded only by a proof (see the `solver` module). The reference
+//! leaves out a surface seen exactly edge-on, because it covers no area. A solid is hit where the ray enters it, at the
+//! near plane or behind it: a near plane within a solid cuts it open, and the first face entered from there is visible.
+//! A ray hits every face of a transparent solid, whether it enters or leaves, unless the opacity is 0. Faces and meshes
+//! of a model trimmed by a volume are hit within the volume, and up to [`ON`] outside of it.
 //!
 //! [`Tracer`] traces rays, [`judge`] compares a drawn [`Picture`]; [`SunTracer`] and [`judge_sun`] do so for the light.
 //! [`EdgeTracer`] finds the visible points of edges; [`drawing`] has a view's lines as curves.

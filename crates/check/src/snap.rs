@@ -7,12 +7,14 @@
 //! ```
 //!
 //! Every candidate lies within the radius in the picture. A vertex is preferred to a centre, and both to an edge;
-//! within a kind the nearest visible candidate is taken. Where the nearest point of an edge is hidden, the edge is followed
-//! both ways, in steps of [`STEP_PX`], to where it comes to be seen, and that place is halved to [`PLACE_PX`]: visible
-//! stretches that are shorter than a step may be missed, and branches of the edge that come back into the radius are.
-//! Edges of meshes have no points. Accuracy: points are within [`Edges::deviation`] of the edges; rays are as exact as those
-//! of [`EdgeTracer`]. Cost: the boxes of all edges; a ray for each candidate up to the first visible one, up to 16 rays for a
-//! centre, and up to a ray a step for an edge whose nearest point is hidden.
+//! within a kind the nearest visible candidate is taken. Where the nearest point of an edge is hidden, the edge is
+//! followed both ways, in steps of [`STEP_PX`], to where it becomes visible; that place is halved to [`PLACE_PX`]. So
+//! visible stretches that are shorter than a step may be missed, and branches of the edge that come back into the
+//! radius are. Edges of meshes have no points.
+//!
+//! Accuracy: points are within [`Edges::deviation`] of the edges; rays are as exact as those of [`EdgeTracer`]. Cost:
+//! the boxes of all edges, and a ray for each candidate up to the first visible one. A centre takes up to 16 rays, an
+//! edge whose nearest point is hidden up to a ray a step.
 
 use super::{EdgeTracer, Probe, Visibility};
 use crate::model::{Camera, Edge, Edges};

@@ -179,8 +179,8 @@ fn fitted(camera: Camera, bounds: Bounds) -> Result<Camera> {
 }
 
 /// `zoom` times magnified: the eye stays, the angle narrows. From 1 on the picture's middle moves from the model's to
-/// the start of a trim curve: in an open shell to the one nearest to the model's middle, on a solid to the one nearest
-/// to the eye, which little can hide.
+/// the start of a trim curve. In an open shell that is the curve nearest to the model's middle; on a solid it is the
+/// one nearest to the eye, which little can hide.
 pub fn zoomed(model: &Model, size: (u32, u32), zoom: f64) -> Camera {
     let bounds = bounds(model);
     let mut camera = Camera::around(bounds, Camera::FROM, DVec3::Z, Camera::FOV_DEG.to_radians(), size);

@@ -62,8 +62,8 @@ struct Row {
     judged: u64,
     wrong: u64,
     worst_shift_px: f64,
-    /// The largest distance between triangles and surface over all patches that may be in the picture, computed, of
-    /// the model as it was loaded; infinite where one is clamped, not a number where nothing is judged and in models
+    /// The largest distance between triangles and surface over all patches that may be in the picture, computed, of the
+    /// model as it was loaded. Infinite where a patch is clamped; not a number where nothing is judged, and in models
     /// with solids or things to see through.
     deviation_px: f64,
     clamps: u64,

@@ -35,7 +35,7 @@ pub(crate) struct Passes {
     mix: BorderMix,
     mesh: Option<BorderMesh>,
     solid: Option<BorderSolid>,
-    /// Where something else than patches is asked for.
+    /// In scenes where points are tested for something else than patches.
     mean: Option<BorderMean>,
 }
 

@@ -1,18 +1,18 @@
 //! Pass `gap_fill`: pixels that look through a gap between two faces get the face that belongs there.
 //!
 //! ```text
-//!   visibility image, border_depths ──find──▶ list of gap candidates ──record──▶ who is seen there ──show──▶ visibility image
+//!   visibility image, border_depths ──find──▶ list of gap candidates ──fill──▶ decisions ──write──▶ visibility image
 //!
-//!        ┌───┬───┬───┐     asks the faces of the neighbours, on their exact surfaces at the pixel's
-//!        │ A │ A │ B │     centre, which of them is there; the rules stand in glsl/include/gap_fill.glsl
+//!        ┌───┬───┬───┐     tests the faces of the neighbours, on their exact surfaces at the pixel's
+//!        │ A │ A │ B │     centre; the rules stand in glsl/include/gap_decide.glsl
 //!        ├───┼───┼───┤
-//!        │ A │ ? │ B │     a gap is narrower than the trim table's error, so a neighbour knows
+//!        │ A │ ? │ B │     a gap is narrower than the trim table's error, so a neighbour has its face
 //!        └───┴───┴───┘
 //! ```
 //!
-//! Reads: everything that the bindings name but what it writes. Writes: `find`: `candidates`, `dispatch`,
-//! `counters`, and the mark in the visibility image; `record`: `candidates`; `show`: the visibility image. All of them
-//! at gap candidates only.
+//! Reads: everything that the bindings name but what it writes. Writes: `find`: `candidates`, `dispatch`, `counters`,
+//! and the mark in the visibility image; `fill`: `candidates`; `write`: the visibility image. All of them at gap
+//! candidates only.
 
 use crate::bindings::{Placed, Primitives};
 use crate::frame::common::kernel::Kernel;

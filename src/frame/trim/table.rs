@@ -241,7 +241,6 @@ impl Table {
         cmd.after(w, r | w);
         if let (Some(bins), Some(wide_strips)) = (&t.bins, &trims.wide_strips) {
             let row_windings = &bins.row_windings;
-            cmd.after(w, Access::COMPUTE_READ | Access::COMPUTE_WRITE);
             let bindings = carry::Bindings { frame: frame.constants, strips: &t.strips, wide_strips, row_windings };
             bins.carry.record(cmd, &bindings, counts.wide_strips);
             cmd.after(w, r);

@@ -8,10 +8,10 @@
 //!   └───┴───┴───┘     loops become chords within the same deviation; cells that they cross are cut into trapezoids
 //! ```
 //!
-//! *Proof.* Along one parameter a chord is within `h² |S''| / 8` of its curve, so the bilinear surface is within
-//! `h² |S_uu| / 8 + k² |S_vv| / 8` of S. Its own second derivative is the mixed one, at most `|S_uv|`. A point with
-//! weights `w_i` of a triangle's corners is off it by at most `|S_uv| Σ w_i |Δu_i| |Δv_i|`, that is `|S_uv| h k / 4`:
-//! the spread of numbers that differ by h at most is h / 2 (T. Popoviciu, 1935). The sum is the bound of D. Filip, R.
+//! *Proof.* Along one parameter a chord is within `h² |S''| / 8` of its curve, so the bilinear surface is within `h²
+//! |S_uu| / 8 + k² |S_vv| / 8` of S. Its own second derivative is the mixed one, at most `|S_uv|`. A point with weights
+//! `w_i` of a triangle's corners is off it by at most `|S_uv| Σ w_i |Δu_i| |Δv_i|`. That is `|S_uv| h k / 4`: the
+//! spread of numbers that differ by h at most is h / 2 (T. Popoviciu, 1935). The sum is the bound of D. Filip, R.
 //! Magedson, R. Markot, *Surface algorithms using bounds on derivatives*, 1986, here for cut triangles.
 //!
 //! Trapezoids' corners lie on the bilinear surface, whose isolines are straight: pieces on both sides of an isoline

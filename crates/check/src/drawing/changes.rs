@@ -11,10 +11,13 @@
 //! Surfaces are told apart by their numbers, which faces that coincide share. Spline faces of an operand have none:
 //! there, a jump of the depth or a turn of the normal between the two rays is halved.
 //!
-//! Where a face or mesh that is no solid's meets a solid, a line has to be. Not known, and [`Why::Unsure`]: where it hides
-//! one, for it has lines of its own, or lies flush on one; where an operand without an equation meets one, or ends in
-//! front of something, for it may end there by an edge of its own, by a cut, or as a facet; meshes that are drawn as
-//! meshes.
+//! Where a face or mesh that is no solid's meets a solid, a line has to be. In other places it is not known
+//! ([`Why::Unsure`]):
+//!
+//! * where such a face hides a solid, for it has lines of its own, or lies flush on one;
+//! * where an operand without an equation meets such a face or ends in front of something: it may end there by an edge
+//!   of its own, by a cut, or as a facet;
+//! * at meshes that are drawn as meshes.
 //!
 //! A view is looked at up to three times ([`Look`]). Where the farthest faces of what is seen through change because
 //! something opaque begins to hide one, no line is theirs.

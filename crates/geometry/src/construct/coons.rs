@@ -37,8 +37,9 @@ pub struct Boundary<'a> {
 /// Its sides are the four curves, to rounding where they meet exactly, else within half of the gap at their corners.
 ///
 /// # Errors
-/// A negative or NaN tolerance; curves more than `tolerance` apart at a corner; opposite curves that coincide, with
-/// points between them; weights so small (below 1/2 of those at the corners) that the sum has one that is not positive.
+/// * A negative or NaN tolerance; curves more than `tolerance` apart at a corner.
+/// * Opposite curves that coincide, with points between them.
+/// * Weights below 1/2 of those at the corners, where the sum has one that is not positive.
 pub fn coons(boundary: Boundary, tolerance: f64) -> Result<Surface, ConstructError> {
     let Boundary { bottom, top, left, right } = boundary;
     gap_allowed(tolerance)?;

@@ -36,14 +36,15 @@ pub struct Network<'a> {
 
 /// The Gordon surface of a network, over the unit square.
 ///
-/// It passes through all curves: to rounding (`1e-12` of the size) where they meet exactly, else within the gap at
-/// the nearest crossings, which is at most `tolerance`, times the interpolation's norm (about 1 for even
+/// It passes through all curves, to rounding (`1e-12` of the size), where they meet exactly. Else it passes within the
+/// gap at the nearest crossings, which is at most `tolerance`, times the interpolation's norm (about 1 for even
 /// parameters). C² between the curves, whose own continuity it keeps.
 ///
 /// # Errors
-/// A negative or NaN tolerance; fewer than two curves either way; curves of one direction that coincide, with points
-/// between them; parameters that do not run from 0 to 1; curves that do not meet; rational curves whose weights at the
-/// crossings no scaling of the curves makes equal.
+/// * A negative or NaN tolerance.
+/// * Fewer than two curves either way; curves of one direction that coincide, with points between them.
+/// * Parameters that do not run from 0 to 1; curves that do not meet.
+/// * Rational curves whose weights at the crossings no scaling of the curves makes equal.
 pub fn gordon(network: Network, tolerance: f64) -> Result<Surface, ConstructError> {
     parameters("curves along u", network.u_curves.len(), "parameters v", network.v)?;
     parameters("curves along v", network.v_curves.len(), "parameters u", network.u)?;

@@ -8,8 +8,8 @@
 //!       (( ))    projection
 //! ```
 //!
-//! The solution's derivative comes from the same equations. So the curve is marched along: a cubic through the points
-//! and tangents of both ends of a step is compared with the solution between them, at equal `t`, and the step halved
+//! The solution's derivative comes from the same equations, so the curve is marched along. A cubic through the points
+//! and tangents of both ends of a step is compared with the solution between them, at equal `t`. The step is halved
 //! until the distance in space is small enough. The error of such a cubic has one hump, `x² (1 - x)²`.
 
 use super::ConstructError;

@@ -50,8 +50,9 @@ impl<'a> Sweep<'a> {
     /// The surface; deviations are measured between points of equal profile parameter and path parameter.
     ///
     /// # Errors
-    /// Numbers out of range; a profile or path without length; a path with a corner or a stop; a profile that
-    /// reaches a centre of curvature of the path, where the surface would fold; a tolerance that is not reached.
+    /// * Numbers out of range; a tolerance that is not reached.
+    /// * A profile or path without length; a path with a corner or a stop.
+    /// * A profile that reaches a centre of curvature of the path, where the surface would fold.
     pub fn build(&self) -> Result<Built, ConstructError> {
         self.check()?;
         let path = Path::new(self.path, "the path")?;

@@ -17,6 +17,34 @@
 //! importers orient them, so parity and winding agree.
 //!
 //! Lengths are millimetres where the source file has a unit, else the file's own numbers.
+//!
+//! A plate of 2 by 1 with a square hole:
+//!
+//! ```
+//! use selvedge_geometry::glam::{DAffine3, DVec2, DVec3, DVec4};
+//! use selvedge_geometry::model::{Face, Instance, Model, Part, SurfaceKind, TrimLoop};
+//! use selvedge_geometry::spline::{Bezier, Surface};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let net = [[0.0, 0.0], [2.0, 0.0], [0.0, 1.0], [2.0, 1.0]].map(|[x, y]| DVec4::new(x, y, 0.0, 1.0));
+//! let knots = vec![0.0, 0.0, 1.0, 1.0];
+//! let surface = Surface::new((1, 1), knots.clone(), knots, net.to_vec())?; // x = 2 u, y = v
+//! let polygon = |corners: [[f64; 2]; 4]| {
+//!     let side = |i: usize| Bezier::<DVec3>::line(corners[i].into(), corners[(i + 1) % 4].into());
+//!     TrimLoop::new((0..4).map(side).collect(), DVec2::ZERO)
+//! };
+//! let border = polygon([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])?;
+//! let hole = polygon([[0.25, 0.25], [0.25, 0.75], [0.75, 0.75], [0.75, 0.25]])?;
+//! assert!(border.signed_area() > 0.0 && hole.signed_area() < 0.0);
+//! let loops = vec![border, hole];
+//! let face = Face { id: 1, kind: SurfaceKind::Plane, surface, loops, same_sense: true, colour: None };
+//! let part = Part { faces: vec![face], ..Part::default() };
+//! let placed = Instance { part: 0, transform: DAffine3::IDENTITY, colour: None, name: String::new() };
+//! let model = Model { parts: vec![part], instances: vec![placed], ..Model::default() };
+//! model.check()?;
+//! # Ok(())
+//! # }
+//! ```
 
 mod camera;
 mod check;

@@ -36,7 +36,8 @@ pub enum SplineError {
     ControlPoint { index: usize },
 }
 
-/// A rational B-spline curve.
+/// A rational B-spline curve: of [`DVec3`](glam::DVec3) in the plane, of [`DVec4`](glam::DVec4) in space. Control
+/// points are homogeneous, the weight last.
 ///
 /// Invariants, established by [`BSpline::new`]: `knots.len() == points.len() + degree + 1`, knots
 /// non-decreasing and finite, interior multiplicity at most the degree, weights positive.

@@ -7,10 +7,10 @@ use glam::{DVec3, DVec4};
 #[cfg(feature = "serde")]
 use serde::Deserialize;
 
-/// A rational B-spline surface.
+/// A rational B-spline surface `S(u, v) = Σ N_i(u) N_j(v) P_ij`, over the domain of its knot vectors.
 ///
-/// `points[j * count_u + i]` is `P_ij`, `i` along `u`. The invariants of
-/// [`BSpline`](super::BSpline) hold in both directions.
+/// `points[j * count_u + i]` is `P_ij`, `i` along `u`: homogeneous, `(w x, w y, w z, w)`, in the part's coordinates.
+/// The invariants of [`BSpline`](super::BSpline) hold in both directions.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "SurfaceData"))]

@@ -152,10 +152,10 @@ fn is_segment(inner: &[DVec2], start: DVec2, end: DVec2) -> bool {
 
 /// Parameters where one coordinate `x = X / W` of the curve turns back.
 ///
-/// With `a`, `b` the degree `n - 1` values of the first and last `n` control points,
-/// `X' W - X W' = n (W_a X_b - X_a W_b)`, a polynomial of degree `2n - 2` whose Bernstein
-/// coefficients are sums of `w_i w_j+1 (x_j+1 - x_i)`: differences of Euclidean coordinates, so an
-/// offset of the domain costs no accuracy.
+/// With `a`, `b` the degree `n - 1` values of the first and last `n` control points, `X' W - X W' =
+/// n (W_a X_b - X_a W_b)`, a polynomial of degree `2n - 2`. Its Bernstein coefficients are sums of
+/// `w_i w_j+1 (x_j+1 - x_i)`. These are differences of Euclidean coordinates, so an offset of the
+/// domain costs no accuracy.
 fn turning_points(curve: &Bezier<DVec3>, points: &[DVec2], axis: impl Fn(DVec2) -> f64) -> Vec<f64> {
     let n = curve.degree();
     // each Euclidean coordinate is one rounded quotient, each coefficient a short sum

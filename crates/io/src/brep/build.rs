@@ -46,10 +46,10 @@ const MAX_TURNS: f64 = 1e4;
 ///
 /// `tolerance` is the source's length tolerance in mm, clamped to between `1e-9` and `1e-5` of the face's diagonal.
 /// Vertices and poles within it are the same. Trim curves, fitted or replaced by lines of constant parameter, follow
-/// the pre-image of their edge to a hundredth of it. That target is clamped to between `1e-9` (or a quarter of the
-/// tolerance, where that is less) and `1e-7` of the diagonal: at `1e-7` a face 4000 pixels wide is right to half a
-/// pixel when enlarged a thousand times, and a tighter fit would only follow the noise of most files. For an edge that
-/// does not lie on the surface, its distance from the surface replaces the tolerance where it is larger.
+/// the pre-image of their edge to a hundredth of it. That target is at most `1e-7` of the diagonal, and at least `1e-9`
+/// of it or a quarter of the tolerance, whichever is less. At `1e-7` a face 4000 pixels wide is right to half a pixel
+/// when enlarged a thousand times, and a tighter fit would only follow the noise of most files. For an edge that does
+/// not lie on the surface, its distance from the surface replaces the tolerance where it is larger.
 ///
 /// # Errors
 /// [`BuildError`] names the face or edge and the reason.

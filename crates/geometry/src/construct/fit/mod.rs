@@ -11,10 +11,10 @@
 //!
 //! **The bound.** A polynomial of degree 4 in each variable, known at the 8 x 8 Chebyshev points, is nowhere larger
 //! than `1 / cos²(4 π / 16) = 2` times its largest value there. The error is the sum of three parts: such a polynomial,
-//! at most `E + ρ` at the points; a rest of at most `ρ`, which the points see; and a part that they do not see, taken
-//! as `ρ` too. So `bound = 2 (E + ρ) + 2 ρ`. Only the last part is an assumption: the series of the error falls, so
-//! that the terms above degree 7 weigh no more than those of degrees 5 to 7. A feature that lies between all points (a
-//! spike narrower than a hundredth of a cell of the first 8 x 8) breaks it; no method by samples would find that. Both
+//! at most `E + ρ` at the points; a rest of at most `ρ`, which the points see; a part that they do not see, taken as
+//! `ρ`, too. So `bound = 2 (E + ρ) + 2 ρ`. Only the last part is an assumption: the series of the error falls, so that
+//! the terms above degree 7 weigh no more than those of degrees 5 to 7. A feature that lies between all points (a spike
+//! narrower than a hundredth of a cell of the first 8 x 8) breaks it; no method by samples would find that. Both
 //! surfaces are compared at equal parameters, so the bound holds for the distance from either to the other.
 //!
 //! Seams and poles are found first ([`Side`]); both ends of each then have the same numbers.

@@ -140,8 +140,9 @@ impl SpurGear {
     /// flank, the root; the bore; bottom and top. All are exact but the flanks.
     ///
     /// # Errors
-    /// A length that is not positive; fewer than 4 teeth or more than 1024; teeth that are pointed below the tip
-    /// circle or meet above the root circle; a bore that reaches the root circle; a tolerance that is not reached.
+    /// * A length that is not positive; fewer than 4 teeth or more than 1024; a tolerance that is not reached.
+    /// * Teeth that are pointed below the tip circle or meet above the root circle.
+    /// * A bore that reaches the root circle.
     pub fn build(&self) -> Result<Body, ConstructError> {
         positive("the module of a gear", self.module)?;
         positive("the width of a gear", self.width)?;

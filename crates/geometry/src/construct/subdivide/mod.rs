@@ -93,9 +93,12 @@ impl Bound {
 /// `(rings + 1)²` patches.
 ///
 /// # Errors
-/// A mesh that is no manifold (an edge of three faces, faces that turn against each other, faces that meet in a vertex
-/// alone); a vertex that is not finite or not there; a polygon of fewer than three corners, for Loop's scheme of more;
-/// a crease along no edge, or one that ends inside; a tolerance that is not positive, or that 32 rings do not reach.
+/// * A mesh that is no manifold: an edge of three faces, faces that turn against each other, faces that meet in a
+///   vertex alone.
+/// * A vertex that is not finite, or an index without a vertex.
+/// * A polygon of fewer than three corners; for Loop's scheme, of more.
+/// * A crease along no edge, or one that ends inside.
+/// * A tolerance that is not positive, or that 32 rings do not reach.
 pub fn subdivide(mesh: &ControlMesh, scheme: Scheme, tolerance: f64) -> Result<Subdivided, ConstructError> {
     if tolerance.is_nan() || tolerance <= 0.0 {
         return Err(ConstructError::Range { what: "the tolerance", value: tolerance, must: "positive" });

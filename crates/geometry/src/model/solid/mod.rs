@@ -25,7 +25,25 @@ use crate::csg::{Builder, Entry, Node, Op, Tree, TreeError};
 #[cfg(feature = "serde")]
 use serde::Deserialize;
 
-/// Primitives and a Boolean expression over them. Valid by construction: see [`Solid::new`].
+/// Primitives and a Boolean expression over them, in one system of coordinates. Valid by construction: see
+/// [`Solid::new`]. No boundary is computed: a renderer and the reference evaluate the expression along rays.
+///
+/// # Example
+/// A block with a bore:
+/// ```
+/// use selvedge_geometry::csg::parse;
+/// use selvedge_geometry::glam::{DAffine3, DVec3};
+/// use selvedge_geometry::model::{GREY, Primitive, Shape, Solid};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let primitive = |id, shape| Primitive { shape, transform: DAffine3::IDENTITY, colour: GREY, id };
+/// let block = Shape::Block { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) };
+/// let bore = Shape::Cylinder { radius: 0.5, height: 2.0 };
+/// let solid = Solid::new(vec![primitive(1, block), primitive(2, bore)], parse("A-B")?.tree)?;
+/// assert_eq!(solid.bounds().max, DVec3::splat(1.0));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "SolidData"))]

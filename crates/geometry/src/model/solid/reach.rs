@@ -11,7 +11,7 @@
 //! ```
 //!
 //! *A leaf may be taken as absent at any point beyond its reach; the whole stays the same.* Boxes only shrink when
-//! leaves are removed, so a point outside the box of a node stays outside the node, and one outside the box of its
+//! leaves are removed. So a point outside the box of a node stays outside the node, and one outside the box of its
 //! complement stays inside it. A node whose reach holds the point keeps its value: either both children reach it, or
 //! the child whose box does not hold it decides the pair.
 

@@ -11,11 +11,13 @@
 //! ```
 //!
 //! *Then the first triangle that a ray from outside meets faces it, and no ray leaves the mesh before it has entered
-//! it.* An edge passes through a triangle with which it shares no corner if the triangle's plane separates its ends,
-//! and its line passes the triangle's sides on the same side. The signs of volumes of tetrahedra decide this, each with
-//! a bound of its rounding; a sign within the bound counts as crossing. Edges in the triangle's plane need no test: if
-//! they cross it, other edges pass through. Triangles with an edge in common meet there only, unless they lie back to
-//! back, which `super::orientation` tests.
+//! it.*
+//!
+//! An edge passes through a triangle with which it shares no corner if the triangle's plane separates its ends, and its
+//! line passes the triangle's sides on the same side. The signs of volumes of tetrahedra decide this, each with a bound
+//! of its rounding; a sign within the bound counts as crossing. Edges in the triangle's plane need no test: if they
+//! cross it, other edges pass through. Triangles with an edge in common meet there only, unless they lie back to back,
+//! which `super::orientation` tests.
 
 use super::nearby::Nearby;
 use crate::math::orientation::orientation;

@@ -8,9 +8,9 @@
 //!                                                                   their products make a curve of degree m (n + k)
 //! ```
 //!
-//! *A quotient whose weights are positive is nowhere above the largest quotient of its coefficients.* It has no critical
-//! point of height `h` where the differences of `height · weight - h weight` along one parameter have one sign: its
-//! derivative, times the weight, is a mean of them there.
+//! *A quotient whose weights are positive is nowhere above the largest quotient of its coefficients.* The differences
+//! of `height · weight - h weight` along one parameter say whether there is a critical point of height `h`: where all
+//! have one sign, there is none. The quotient's derivative, times the weight, is a mean of them there.
 //!
 //! Source: T. DeRose, R. Goldman, H. Hagen, S. Mann, *Functional composition algorithms via blossoming*, 1993.
 

@@ -13,13 +13,13 @@
 //!
 //! An *arc* is a piece of a trim curve that turns back neither in `u` nor in `v`: straight, or of a conic ([`conic`]),
 //! from its lower end to its higher one. Whether a point lies left of it is decided without a search, all in `f32`, the
-//! shader's arithmetic: by the side of its chord, and on the corner's side by the sign of the conic's equation.
+//! shader's arithmetic. The side of its chord decides, and on the corner's side the sign of the conic's equation.
 //!
 //! **Winding.** The winding number of `p` counts crossings right of `p`. Arcs of the list are tested. The others add up
 //! to one number for all points of the box, provided that they form whole chains. A chain that leaves the list at a
-//! joint right of the box is lengthened straight upwards from that joint, at `u = ∞`, and the arc of the list subtracts
-//! the lengthening again: that is the meaning of [`AT_LOW`] and [`AT_HIGH`]. Joints are the same bits for both
-//! neighbours and are only compared, so the loops stay closed whatever an arc's own rounding is.
+//! joint right of the box is lengthened straight upwards from that joint, at `u = ∞`. The arc of the list subtracts the
+//! lengthening again: that is the meaning of [`AT_LOW`] and [`AT_HIGH`]. Joints are the same bits for both neighbours
+//! and are only compared, so the loops stay closed whatever an arc's own rounding is.
 //!
 //! **Accuracy.** An arc is within 2⁻²⁵ of the domain of its trim curve, proved as it is made. Corners are stored
 //! relative to the arc's lower end, so the equation is off by a few roundings times the arc's size. Joints are rounded

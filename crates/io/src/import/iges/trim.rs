@@ -5,10 +5,14 @@
 //!   B(t) in (u, v) ──S──▶ S(B(t))┴──▶ edges ──▶ brep
 //! ```
 //!
-//! The two faces that meet along a curve in space share it, a curve in `(u, v)` they do not: where both are there, C is
-//! used. B is used instead where there is no C; where the file prefers B and the surface lies farther than the file's
-//! resolution from C; where C is farther off than a thousandth of the face, or makes no face, whatever the file
-//! prefers. S(B(t)) is fitted to `1e-10` of its box; the rest is the same for both.
+//! The two faces that meet along a curve in space share it, a curve in `(u, v)` they do not. So where both are there, C
+//! is used. B is used instead
+//!
+//! * where there is no C;
+//! * where the file prefers B, and the surface lies farther than the file's resolution from C;
+//! * where C is farther off than a thousandth of the face, or makes no face, whatever the file prefers.
+//!
+//! S(B(t)) is fitted to `1e-10` of its box; the rest is the same for both.
 
 use super::curve::Segment;
 use super::entity::{Entity, Fault};

@@ -3,9 +3,9 @@
 use crate::import::{ImportError, open, rhino};
 use std::path::PathBuf;
 
-/// Written by openNURBS 8 in centimetres. On the layer `parts`, which is green: the cylinder of radius 2 and
-/// height 5 on (1, 2, 3), red; a tetrahedron of triangles; twice, moved by 10 and 20 along x, a block that is the
-/// box from 0 to (1, 2, 3). On a layer that is not shown: another box.
+/// Written by openNURBS 8 in centimetres. The layer `parts`, which is green, holds the red cylinder of radius 2 and
+/// height 5 on (1, 2, 3), and a tetrahedron of triangles. It also holds a block twice, moved by 10 and 20 along x: the
+/// box from 0 to (1, 2, 3). A layer that is not shown holds another box.
 const BLOCKS: &[u8] = include_bytes!("blocks.3dm");
 
 /// Set `SELVEDGE_MODELS` to the folder; the manifest's fifth column holds `brep faces N`.

@@ -1,9 +1,9 @@
 //! The scanner: bytes to records in one pass. It never gives up on the rest of a file.
 //!
-//! A record that cannot be read is skipped: the scan resumes behind the next `;` that is followed by
-//! a new statement, looked for from the *start* of the bad record, because a quote that is never
-//! closed swallows good records. Text seen twice that way is bounded by the file's size; past that the
-//! scan resumes at the place of the error. Hence linear time on any input.
+//! A record that cannot be read is skipped: the scan resumes behind the next `;` that is followed
+//! by a new statement. It is looked for from the *start* of the bad record, because a quote that is
+//! never closed swallows good records. Text seen twice that way is bounded by the file's size; past
+//! that the scan resumes at the place of the error. Hence linear time on any input.
 
 use super::{File, Part, Record, Slot, Span, line_of};
 use crate::import::{ImportError, Options, Place, Stage, Warnings};
