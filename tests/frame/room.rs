@@ -77,8 +77,8 @@ fn more_sub_patches_than_the_first_list_holds() {
     assert_eq!(picture.stats.clamps, 0, "{:?}", picture.stats);
 }
 
-/// Balls of two pixels and a half, so small that the terms of second order of most of their pixels do not reach the
-/// outline: more points follow surfaces than a first list has room for. Nothing else has too little room.
+/// Small balls, of two pixels and a half: some ten points of each follow its surface, where a first list has room for 4096
+/// points. Nothing else has too little room.
 #[test]
 fn more_points_that_follow_surfaces_than_the_first_list_holds() {
     let mut model = shapes::sphere();

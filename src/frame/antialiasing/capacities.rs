@@ -4,8 +4,9 @@ use crate::abi::{Counters, FollowedPixel, FollowedPoint};
 use crate::frame::capacities::grown;
 use crate::frame::counts::{Counts, SMALLER, TooMany};
 
-/// One pixel of this many has a point that is followed, where outlines are as close as in drawings of machines.
-const PIXELS_OF_A_POINT: u64 = 16;
+/// As many pixels as one point that is followed. Outlines of a machine take a pixel in twenty, and of small balls one
+/// point in sixty, of the sixteen of such a pixel, is followed.
+const PIXELS_OF_A_POINT: u64 = 32;
 /// Bytes of a point, and of a pixel that waits for its points: each list has as many.
 const BYTES: usize = size_of::<FollowedPoint>();
 const _: () = assert!(size_of::<FollowedPixel>() <= BYTES);
@@ -20,7 +21,7 @@ pub(crate) struct Capacities {
 impl Capacities {
     /// A first guess that fits small pictures.
     pub(crate) fn first(counts: Counts) -> Self {
-        Self { followed: u32::from(counts.follows_borders) * (1 << 14) }
+        Self { followed: u32::from(counts.follows_borders) * (1 << 12) }
     }
 
     /// At least one point for every [`PIXELS_OF_A_POINT`] pixels of a picture, as far as a storage buffer of `range` bytes
