@@ -4,8 +4,7 @@ use crate::abi::{Counters, FollowedPixel, FollowedPoint};
 use crate::frame::capacities::grown;
 use crate::frame::counts::{Counts, SMALLER, TooMany};
 
-/// As many pixels as one point that is followed. Outlines of a machine take a pixel in twenty, and of small balls one
-/// point in sixty, of the sixteen of such a pixel, is followed.
+/// As many pixels as one point that is followed: of the points beside outlines of small balls, one in sixty is.
 const PIXELS_OF_A_POINT: u64 = 32;
 /// Bytes of a point, and of a pixel that waits for its points: each list has as many.
 const BYTES: usize = size_of::<FollowedPoint>();

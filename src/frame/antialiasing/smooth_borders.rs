@@ -271,9 +271,11 @@ impl SmoothBorders {
     ) {
         let (w, r) = (Access::COMPUTE_WRITE, Access::COMPUTE_READ);
         let Followed { points, pixels, grids, .. } = followed;
+        // lists of the next band's solids are counted, too
+        let counted = (of_mix.counters, w, w);
         // where no other pass asks, the list stands in for what points see
         let list = (of_mix.list.pixels, w, r | w);
-        barrier::buffers(cmd, &[(points, w, r | w), (grids, w, r | Access::INDIRECT_READ), list]);
+        barrier::buffers(cmd, &[(points, w, r | w), (grids, w, r | Access::INDIRECT_READ), list, counted]);
         if let Some(seen) = &self.points {
             barrier::buffers(cmd, &[(seen, w, w)]);
         }
