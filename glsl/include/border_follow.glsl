@@ -26,6 +26,7 @@ layout(scalar, binding = 10) readonly buffer FollowedLists { FollowedGrids follo
 #include "placed.glsl"
 #include "patch.glsl"
 #include "patch_place.glsl"
+#define REFINE_DAMPED
 #include "refine.glsl"
 #include "visible.glsl"
 #include "shade.glsl"
@@ -53,17 +54,55 @@ bool is_in_face(FaceInstance fi, Face face, uint patch_instance, Patch patch_, v
     return trim_inside(fi, face, there);
 }
 
+// Whether sides of the face's surface are points, round which its other sides meet: a pole, a tip.
+bool has_pole(uint flags, out int round_) {
+    bool of_v = ((flags >> FACE_POINTS) & (BORDER_V0 | BORDER_V1)) != 0u;
+    bool of_u = ((flags >> FACE_POINTS) & (BORDER_U0 | BORDER_U1)) != 0u;
+    round_ = of_v ? 0 : 1; // the parameter that goes round
+    return of_v && (flags & FACE_MEETS_U) != 0u || of_u && (flags & FACE_MEETS_V) != 0u;
+}
+
+// The place half a turn round the pole from (u, v) of a patch, roughly, and as far before the pole as (u, v) is beyond it.
+void turn(FaceInstance fi, Face face, int round_, inout uint patch_instance, inout vec2 uv) {
+    ivec2 count = ivec2(face.count_u, face.count_v);
+    ivec2 place = place_of(face, int(patch_instance - fi.first_patch_instance));
+    float turned = clamp(uv[round_], 0.0, 1.0) + 0.5 * float(count[round_] % 2);
+    place[round_] = (place[round_] + count[round_] / 2 + int(turned)) % count[round_];
+    uint number = patch_in(face, place);
+    if (side_of(patch_at(number).shape) == SIDE_OUTSIDE) return; // such a patch has no control points
+    float along = uv[1 - round_];
+    uv[round_] = fract(turned);
+    uv[1 - round_] = clamp(along > 1.0 ? 2.0 - along : abs(along), 0.0, 1.0);
+    patch_instance = fi.first_patch_instance + number - face.first_patch;
+}
+
 // Depth of the exact surface at a point of the picture, followed from where a pixel sees the face; UNSEEN if it is not
-// there.
+// there. Beyond a pole a patch goes on without its face, which lies half a turn away, and a way of many steps round a pole
+// may end at a fold: the surface is followed from half a turn away once more.
 float exact_depth_at(ivec2 from, vec2 pixel) {
     uvec2 seen = imageLoad(visibility, from).xy;
     uint patch_instance = seen_patch_instance(seen.x);
     FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
     Face face = face_at(fi.face);
-    Sample there = refine_across(fi, face, view_at(fi.instance), patch_instance, unpack_uv(seen.y), pixel);
-    Patch patch_ = patch_at(face.first_patch + patch_instance - fi.first_patch_instance);
+    View view = view_at(fi.instance);
+    vec2 uv = unpack_uv(seen.y);
+    Sample there;
+    Patch patch_;
+    uint found; // patch instance
+    int round_;
+    bool turns = has_pole(face.flags, round_);
+    for (uint i = 0u; i < 2u; ++i) {
+        there = refine_across(fi, face, view, patch_instance, uv, pixel);
+        found = patch_instance;
+        patch_ = patch_at(face.first_patch + found - fi.first_patch_instance);
+        bool met = length(there.miss) <= ON_PIXEL_PX;
+        bool ends = !turns || met && !is_over_pole(face.flags, patch_.domain.xy + there.uv * patch_.domain.zw);
+        uv = there.uv;
+        if (!ends) turn(fi, face, round_, patch_instance, uv);
+        if (ends) break; // only here: see refine.glsl
+    }
     bool is = there.q.w > 0.0 && length(there.miss) <= ON_PIXEL_PX;
-    is = is && is_in_face(fi, face, patch_instance, patch_, there.uv);
+    is = is && is_in_face(fi, face, found, patch_, there.uv);
 #ifdef WITHIN_VOLUME
     is = is && in_volume(there.q, ON_PX);
 #endif

@@ -146,8 +146,8 @@ float depth_at(Sheet s, vec2 pixel, out bool is_open) {
     // beyond the ends of its domain the face is not there, whatever surface goes on
     bool has_left = clamp(there, 0.0, 1.0) != there;
     bool holds = has_left ? remainder_px(s.third, way) <= REMAINDER_PX : is_in_reach(s.third, s.middle, way);
-    bool goes_on = is_over_pole(s.face.flags, of_face) || there != of_face;
-    is_open = !holds || meets && goes_on;
+    // the terms may meet no ray beyond a pole that the face, half a turn away, meets
+    is_open = !holds || is_over_pole(s.face.flags, of_face) || meets && there != of_face;
     bool is = meets && !is_open && is_there(s.fi, s.face, s.patch_instance, s.patch_, s.middle + uv);
 #ifdef WITHIN_VOLUME
     is = is && in_volume(q, ON_PX);

@@ -10,8 +10,9 @@
 // From the middle to where the derivatives are taken again, of the patch.
 const float ASIDE = 0.015625;
 // Most that the terms of second order may be off at a point, in pixels. What they leave out grows with the cube of the
-// way, so it is less than a tenth of this over half of the way, and sixteen points are as far off on their own.
-const float REMAINDER_PX = 0.25;
+// way, so it is less than a tenth of this over half of the way. Sixteen points are as far off on their own; a tip is as
+// thin as twice as much.
+const float REMAINDER_PX = 0.125;
 // From the middle of a patch, of the patch: the surface beyond the patches beside it is another one.
 const float MOST_FROM_MIDDLE = 1.5;
 

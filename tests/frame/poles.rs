@@ -26,7 +26,8 @@ const MEAN: f64 = 1.0 / 20.0;
 const WORST: f64 = 0.145;
 /// Where there may be two lines in a pixel: beside a tip and at corners.
 const WORST_OF_TWO: f64 = 0.2;
-/// In the one pixel that has a tip: 0.30 was measured, and its cause is not known.
+/// In the one pixel that has a tip: 0.30 was measured while terms of second order were trusted up to a quarter of a pixel,
+/// which is as thin as the tip there; now up to an eighth.
 const WORST_OF_TIP: f64 = 0.35;
 
 /// At azimuth and elevation.
