@@ -101,6 +101,10 @@ fn outlines_beyond_seams_cover_what_exact_rays_say() {
         assert_covered(&model, &beyond, [WORST; 2]);
     }
     assert_covered(&shapes::cylinder(), &beyond, [WORST_OF_TWO; 2]);
+    // with a mesh, which nothing sees, other passes keep and mix what points see, and the points lie elsewhere
+    let mut filled = shapes::sphere();
+    filled.parts[0].meshes = vec![shapes::block_mesh(DVec3::splat(-0.5), DVec3::splat(0.5), 7)];
+    assert_covered(&Model { name: "filled ball".to_owned(), ..filled }, &beyond[..1], [WORST_OF_TWO; 2]);
 }
 
 /// Poles on the outline, and up to half a pixel before and behind it.
@@ -110,6 +114,9 @@ fn outlines_at_poles_cover_what_exact_rays_say() {
     for model in [shapes::sphere(), shapes::borders::seamed_ball()] {
         assert_covered(&model, &at_poles, [WORST; 2]);
     }
+    // beyond a pole a pixel before the outline, points see what no pixel's centre does from its own side
+    let before = [(1.0, 0.17), (5.2, 0.2)].map(|(azimuth, elevation)| towards(azimuth, elevation));
+    assert_covered(&shapes::sphere(), &before, [WORST_OF_TWO; 2]);
 }
 
 /// A tip on the outline, seen from below it and from the side.
