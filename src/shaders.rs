@@ -63,16 +63,28 @@ pub struct TrimTest {
     pub gap_fill: &'static Shader,
     /// Both again, for a volume that trims the scene; `None` if the way draws no such scene.
     pub within: Option<Within>,
-    /// Pass `border_mix`, without and with a volume; `None` if the way smooths no borders.
-    pub border_mix: Option<[&'static Shader; 2]>,
+    /// `None` if the way smooths no borders.
+    pub borders: Option<Borders>,
     /// Fragment shader of pass `edge_line`, and within a volume; `None`: [`EDGE_LINE_PLAIN`], which trusts no trimmed face.
     pub edge_line: Option<[&'static Shader; 2]>,
     /// Fragment shader of pass `edge_fold`; `None`: that of scenes without trims.
     pub edge_fold: Option<&'static Shader>,
 }
 
-/// Pass `border_mix` for scenes without trims, without and with a volume.
-pub static BORDER_MIX_PLAIN: [&Shader; 2] = [&BORDER_MIX_PLAIN_COMP, &BORDER_MIX_PLAIN_VOLUME_COMP];
+/// Shaders of smooth borders, without and with a volume.
+#[derive(Clone, Copy, Debug)]
+pub struct Borders {
+    /// Pass `border_mix`.
+    pub mix: [&'static Shader; 2],
+    /// Pass `border_follow`.
+    pub follow: [&'static Shader; 2],
+}
+
+/// Those of scenes without trims.
+pub static BORDERS_PLAIN: Borders = Borders {
+    mix: [&BORDER_MIX_PLAIN_COMP, &BORDER_MIX_PLAIN_VOLUME_COMP],
+    follow: [&BORDER_FOLLOW_PLAIN_COMP, &BORDER_FOLLOW_PLAIN_VOLUME_COMP],
+};
 
 /// Fragment shader of pass `edge_line` of scenes without trims, and within a volume.
 pub static EDGE_LINE_PLAIN: [&Shader; 2] = [&EDGE_LINE_PLAIN_FRAG, &EDGE_LINE_PLAIN_VOLUME_FRAG];
@@ -93,7 +105,10 @@ pub static TRIM_TABLE: TrimTest = TrimTest {
     operand_patch: &OPERAND_PATCH_TABLE_FRAG,
     gap_fill: &GAP_FILL_TABLE_COMP,
     within: Some(Within { visibility: &VISIBILITY_TABLE_VOLUME_FRAG, gap_fill: &GAP_FILL_TABLE_VOLUME_COMP }),
-    border_mix: Some([&BORDER_MIX_TABLE_COMP, &BORDER_MIX_TABLE_VOLUME_COMP]),
+    borders: Some(Borders {
+        mix: [&BORDER_MIX_TABLE_COMP, &BORDER_MIX_TABLE_VOLUME_COMP],
+        follow: [&BORDER_FOLLOW_TABLE_COMP, &BORDER_FOLLOW_TABLE_VOLUME_COMP],
+    }),
     edge_line: Some([&EDGE_LINE_TABLE_FRAG, &EDGE_LINE_TABLE_VOLUME_FRAG]),
     edge_fold: Some(&EDGE_FOLD_TABLE_FRAG),
 };
@@ -104,7 +119,10 @@ pub static TRIM_EXACT: TrimTest = TrimTest {
     operand_patch: &OPERAND_PATCH_EXACT_FRAG,
     gap_fill: &GAP_FILL_EXACT_COMP,
     within: Some(Within { visibility: &VISIBILITY_EXACT_VOLUME_FRAG, gap_fill: &GAP_FILL_EXACT_VOLUME_COMP }),
-    border_mix: Some([&BORDER_MIX_EXACT_COMP, &BORDER_MIX_EXACT_VOLUME_COMP]),
+    borders: Some(Borders {
+        mix: [&BORDER_MIX_EXACT_COMP, &BORDER_MIX_EXACT_VOLUME_COMP],
+        follow: [&BORDER_FOLLOW_EXACT_COMP, &BORDER_FOLLOW_EXACT_VOLUME_COMP],
+    }),
     edge_line: Some([&EDGE_LINE_EXACT_FRAG, &EDGE_LINE_EXACT_VOLUME_FRAG]),
     edge_fold: Some(&EDGE_FOLD_EXACT_FRAG),
 };
@@ -117,7 +135,7 @@ pub static TRIM_UNTRIMMED: TrimTest = TrimTest {
     operand_patch: &BASELINE_OPERAND_PATCH_UNTRIMMED_FRAG,
     gap_fill: &BASELINE_GAP_FILL_UNTRIMMED_COMP,
     within: None,
-    border_mix: None,
+    borders: None,
     edge_line: None,
     edge_fold: None,
 };
@@ -130,7 +148,7 @@ pub static TRIM_BISECT: TrimTest = TrimTest {
     operand_patch: &BASELINE_OPERAND_PATCH_BISECT_FRAG,
     gap_fill: &BASELINE_GAP_FILL_BISECT_COMP,
     within: None,
-    border_mix: None,
+    borders: None,
     edge_line: None,
     edge_fold: None,
 };
@@ -143,7 +161,7 @@ pub static TRIM_TEXTURE: TrimTest = TrimTest {
     operand_patch: &BASELINE_OPERAND_PATCH_TEXTURE_FRAG,
     gap_fill: &BASELINE_GAP_FILL_TEXTURE_COMP,
     within: None,
-    border_mix: None,
+    borders: None,
     edge_line: None,
     edge_fold: None,
 };

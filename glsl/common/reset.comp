@@ -27,7 +27,7 @@ void main() {
     }
     if (draw == 0u && !DRAWS_ONLY) {
         counters = Counters(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u,
-                            0u, 0u, 0u, 0u);
+                            0u, 0u, 0u, 0u, 0u);
     }
     if (draw < 2u * frame.draw_capacity) draws[draw] = Draw(0u, 1u, 0xffffffffu, 0u);
 }

@@ -14,8 +14,9 @@
 //     q(u, v) ≈ q + u qu + v qv + (u² quu + 2 u v quv + v² qvv) / 2      homogeneous pixels, from the middle on
 //
 // A plane is exact. Where the terms do not reach (border_reach.glsl), near a pole, a tip, or on a sheet that is seen
-// nearly edge-on, the exact surface is followed instead, from the nearest other pixel that sees the face. The trim test
-// is that of one way (trim.glsl).
+// nearly edge-on, the point is listed (border_followed.glsl): pass `border_follow` follows the exact surface, from the
+// nearest other pixel that sees the face, and the pixel is mixed after it. Beyond a pole or a tip the surface is not the
+// one that goes on from the sheet's own pixel. The trim test is that of one way (trim.glsl).
 #include "scene.glsl"
 #include "view.glsl"
 
@@ -27,8 +28,14 @@ layout(binding = 8, rgba32f) readonly uniform image2D resolved; // linear colour
 #include "border_pixel.glsl"
 layout(scalar, binding = 9) buffer List { BorderPixel list[]; };
 layout(scalar, binding = 10) readonly buffer Grids { BorderGrids grids; };
+#include "border_followed.glsl"
+layout(scalar, binding = 12) writeonly buffer FollowedPoints { FollowedPoint followed_points[]; };
+layout(scalar, binding = 13) writeonly buffer FollowedPixels { FollowedPixel followed_pixels[]; };
+layout(scalar, binding = 14) buffer FollowedLists { FollowedGrids followed; }; // zero before
+layout(scalar, binding = 15) buffer CountersBuffer { Counters counters; };
+layout(scalar, push_constant) uniform Push { uint capacity; }; // points that followed_points has room for
 
-#define TRIM_BINDING 12
+#define TRIM_BINDING 16
 #include "trim.glsl"
 #ifdef WITHIN_VOLUME
 #define VOLUME_BINDING (TRIM_BINDING + TRIM_BUFFERS)
@@ -42,13 +49,17 @@ layout(scalar, binding = 10) readonly buffer Grids { BorderGrids grids; };
 #include "shade.glsl"
 #include "face_point.glsl"
 #include "unmixed.glsl"
+#include "grid.glsl"
 
 #include "border_seen.glsl"
 #include "border_reach.glsl"
 // BORDER_POINTS a pixel of the list: where others than patches are asked, too
 layout(scalar, binding = 11) writeonly buffer SeenPoints { BorderPoint seen_points[]; };
 
-// two words of BORDER_POINTS bits a sheet are kept
+// Some point of some face may be listed (src/scene/face.rs).
+layout(constant_id = 37) const bool FACES_ARE_FOLLOWED = false;
+
+// Two words keep BORDER_POINTS bits a sheet, and a listed point has four bits a sheet.
 const uint MOST_SHEETS = 4u;
 // Required distance of a sheet's middle to the pixel's centre, in pixels: far less than a sixteenth.
 const float CLOSE_PX = 0.02;
@@ -109,23 +120,6 @@ Sheet sheet_at(ivec2 at, vec2 centre) {
     return s;
 }
 
-// Whether the face is there at (u, v) of a patch, or where its surface goes on over a seam.
-bool is_in_face(FaceInstance fi, Face face, uint patch_instance, Patch patch_, vec2 uv) {
-    vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
-    vec2 there = over_seams(face.flags, at);
-    if (there == at) return is_there(fi, face, patch_instance, patch_, uv);
-    if (clamp(there, 0.0, 1.0) != there) return false;
-    ivec2 count = ivec2(face.count_u, face.count_v);
-    ivec2 way = mix(ivec2(0), way_beyond(uv, 0.0), notEqual(there, at));
-    ivec2 place = (place_of(face, int(patch_instance - fi.first_patch_instance)) + way + count) % count;
-    uint side = side_of(patch_at(patch_in(face, place)).shape);
-    if ((face.flags & FACE_TRIMMED) == 0u || side != SIDE_BOUNDARY) return side != SIDE_OUTSIDE;
-#ifdef TRIM_BY_TABLE
-    if (!table_covers(fi.first_bin, face.strips, there)) return false;
-#endif
-    return trim_inside(fi, face, there);
-}
-
 // Depth of a sheet at a point of the picture; UNSEEN if it is not there. `is_open`: its terms do not tell.
 float depth_at(Sheet s, vec2 pixel, out bool is_open) {
     vec2 uv = s.seen;
@@ -152,8 +146,8 @@ float depth_at(Sheet s, vec2 pixel, out bool is_open) {
     // beyond the ends of its domain the face is not there, whatever surface goes on
     bool has_left = clamp(there, 0.0, 1.0) != there;
     bool holds = has_left ? remainder_px(s.third, way) <= REMAINDER_PX : is_in_reach(s.third, s.middle, way);
-    bool goes_on = is_over_pole(s.face.flags, of_face) || there != of_face;
-    is_open = !holds || meets && goes_on;
+    // the terms may meet no ray beyond a pole that the face, half a turn away, meets
+    is_open = !holds || is_over_pole(s.face.flags, of_face) || meets && there != of_face;
     bool is = meets && !is_open && is_there(s.fi, s.face, s.patch_instance, s.patch_, s.middle + uv);
 #ifdef WITHIN_VOLUME
     is = is && in_volume(q, ON_PX);
@@ -161,20 +155,26 @@ float depth_at(Sheet s, vec2 pixel, out bool is_open) {
     return is ? q.z : UNSEEN;
 }
 
-// The same by the exact surface, followed from where a pixel sees the face.
-float exact_depth_at(ivec2 from, vec2 pixel) {
-    uvec2 seen = imageLoad(visibility, from).xy;
-    uint patch_instance = seen_patch_instance(seen.x);
-    FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
-    Face face = face_at(fi.face);
-    Sample there = refine_across(fi, face, view_at(fi.instance), patch_instance, unpack_uv(seen.y), pixel);
-    Patch patch_ = patch_at(face.first_patch + patch_instance - fi.first_patch_instance);
-    bool is = there.q.w > 0.0 && length(there.miss) <= ON_PIXEL_PX;
-    is = is && is_in_face(fi, face, patch_instance, patch_, there.uv);
-#ifdef WITHIN_VOLUME
-    is = is && in_volume(there.q, ON_PX);
-#endif
-    return is ? there.q.z : UNSEEN;
+// Lists `count` points to follow; the place of the first of them. `has_room`: all of them have a place.
+uint follow(uint count, out bool has_room) {
+    uint first = atomicAdd(followed.wanted, count);
+    uint end = first + count;
+    has_room = end <= capacity;
+    atomicMax(counters.followed_points, end);
+    if (!has_room) atomicOr(counters.failed, FAILED_FOLLOWED_POINTS);
+    uint point_end = min(end, capacity);
+    atomicMax(followed.point_count, point_end);
+    uvec3 points_ = grid_of((point_end + FOLLOWED_GROUP - 1u) / FOLLOWED_GROUP);
+    for (uint axis = 0u; axis < 3u; ++axis) atomicMax(followed.points[axis], points_[axis]);
+    return first;
+}
+
+// Lists a pixel whose mean waits for them.
+void mix_later(FollowedPixel pixel) {
+    uint at = atomicAdd(followed.pixel_count, 1u);
+    followed_pixels[at] = pixel;
+    uvec3 pixels = grid_of(at / FOLLOWED_GROUP + 1u);
+    for (uint axis = 0u; axis < 3u; ++axis) atomicMax(followed.pixels[axis], pixels[axis]);
 }
 
 // Whether the face's depth jumps between the pixel and the one at `step_`: by more than to the other side.
@@ -236,28 +236,42 @@ void main() {
             shown[i] = met_from[n];
         }
     }
-    // of all sheets together: a driver may run the body of a loop once where no thread needs it
-    while ((open.x | open.y) != 0u) {
-        uint word = open.x != 0u ? 0u : 1u;
-        uint bit = uint(findLSB(open[word]));
-        open[word] &= open[word] - 1u;
-        uint n = 2u * word + bit / BORDER_POINTS;
-        uint i = bit % BORDER_POINTS;
-        // from another pixel: beyond a pole or a tip the surface is not the one that goes on from here
-        uint others = 0u;
-        for (uint k = 0u; k < AROUND; ++k) {
-            if (k != met_from[n] && placed[k] == (met[n] >> 1) + 1u) others |= 1u << k;
+    uint points_left = 0u; // bits of points that some sheet leaves open
+    if (FACES_ARE_FOLLOWED) points_left = bitfieldExtract((open.x | open.y) | (open.x | open.y) >> 16, 0, 16);
+    uint first_left = 0u;
+    bool has_room = false;
+    if (points_left != 0u) first_left = follow(uint(bitCount(points_left)), has_room);
+    uint place = first_left;
+    for (uint left = points_left; left != 0u; left &= left - 1u) {
+        uint i = uint(findLSB(left));
+        uint sheets = 0u;
+        uint sheet_count = 0u;
+        for (uint n = 0u; n < met_count; ++n) {
+            if ((open[n / 2u] >> (i + BORDER_POINTS * (n % 2u)) & 1u) == 0u) continue;
+            // from another pixel: beyond a pole or a tip the surface is not the one that goes on from here
+            uint others = 0u;
+            for (uint k = 0u; k < AROUND; ++k) {
+                if (k != met_from[n] && placed[k] == (met[n] >> 1) + 1u) others |= 1u << k;
+            }
+            uint from = nearest_of(others, point_of(i));
+            if (from == NOBODY) from = met_from[n];
+            sheets |= (from + 1u) << (4u * sheet_count++);
         }
-        uint from = nearest_of(others, point_of(i));
-        if (from == NOBODY) from = met_from[n];
-        float depth = exact_depth_at(around(at, from), vec2(at) + 0.5 + point_of(i));
-        bool nearer = depth < depths[i];
-        if (nearer) depths[i] = depth;
-        if (nearer) shown[i] = from;
+        sheets |= shown[i] << FOLLOWED_SHOWN;
+        // where the pixel's points have no room together, the frame is drawn again
+        if (place < capacity) followed_points[place] = FollowedPoint(n * BORDER_POINTS + i, sheets, depths[i]);
+        ++place;
     }
     if (SCENE_HAS_MESHES_OR_SOLIDS) {
         uint first = n * BORDER_POINTS;
         for (uint k = 0u; k < BORDER_POINTS; ++k) seen_points[first + k] = BorderPoint(depths[k], shown[k]);
+        return;
+    }
+    if (has_room) {
+        mix_later(FollowedPixel(n, first_left, points_left | no_patch << BORDER_POINTS));
+        uvec2 all = uvec2(0u);
+        for (uint k = 0u; k < BORDER_POINTS; ++k) all[k / 8u] |= shown[k] << (4u * (k % 8u));
+        list[n].mean = all;
         return;
     }
     vec4 sum = vec4(0.0);

@@ -1,5 +1,5 @@
 // How far a sheet's terms of second order reach, for pass `border_mix`, and where a face's surface goes on beyond the
-// ends of its domain. Needs scene.glsl. Twin: src/twin/border_reach.rs, which has the derivation.
+// ends of its domain, for pass `border_follow`, too. Needs scene.glsl. Twin: src/twin/border_reach.rs, which has the derivation.
 //
 //     q(u, v) - terms  ≈  u² (|u| + 3 h / 2) q_uuu / 6  +  v² (|v| + 3 h / 2) q_vvv / 6  +  |u v| (|u| + |v|) q_uv_ / 2
 //
@@ -10,8 +10,9 @@
 // From the middle to where the derivatives are taken again, of the patch.
 const float ASIDE = 0.015625;
 // Most that the terms of second order may be off at a point, in pixels. What they leave out grows with the cube of the
-// way, so it is less than a tenth of this over half of the way, and sixteen points are as far off on their own.
-const float REMAINDER_PX = 0.25;
+// way, so it is less than a tenth of this over half of the way. Sixteen points are as far off on their own; a tip is as
+// thin as twice as much.
+const float REMAINDER_PX = 0.125;
 // From the middle of a patch, of the patch: the surface beyond the patches beside it is another one.
 const float MOST_FROM_MIDDLE = 1.5;
 

@@ -1,7 +1,9 @@
 // The point of the exact surface under a pixel. Needs patch.glsl and view.glsl.
 //
 // Newton's method on F(u, v) = projection(S(u, v)) - pixel:  step = -J^-1 F, continued only while the distance to the
-// pixel shrinks (at a silhouette there may be no such point).
+// pixel shrinks (at a silhouette there may be no such point). With REFINE_DAMPED, which an includer defines, a step that
+// leads farther away is halved instead: near a pole, where u turns as much as v moves, and beside a silhouette, whole steps
+// lead too far.
 //
 // The better point is stored before the loop is left. If it is stored afterwards (`if (!nearer) break; best = next;`),
 // Mesa 22.3's llvmpipe sometimes gives a lane that has left the loop the step that it rejected, while other lanes of
@@ -10,6 +12,8 @@
 #define REFINE_GLSL
 
 const uint NEWTON_STEPS = 4u;
+// The same with halved steps among them: at balls' poles, twelve find no more points.
+const uint DAMPED_STEPS = 8u;
 const float MAX_STEP = 0.25;      // of the patch, or of the patch before the split
 const float CLOSE_ENOUGH = 5e-4;  // pixels
 
@@ -92,11 +96,20 @@ Sample refine_to(Patch patch_, View view, vec2 uv, vec2 pixel, float close) {
     Sample best;
     best.uv = uv;
     vec2 step_ = vec2(0.0);
+#ifdef REFINE_DAMPED
+    for (uint i = 0u; i <= DAMPED_STEPS; ++i) {
+#else
     for (uint i = 0u; i <= NEWTON_STEPS; ++i) {
+#endif
         Sample next = sample_at(patch_, net, view, best.uv - step_, pixel);
         bool nearer = i == 0u || dot(next.miss, next.miss) < dot(best.miss, best.miss);
         if (nearer) best = next;
+#ifdef REFINE_DAMPED
+        step_ *= 0.5; // unless there is a new one
+        if (!nearer) continue;
+#else
         if (!nearer) break;
+#endif
         if (!step_from(patch_, best, view, close, step_)) break;
     }
     return best;

@@ -107,6 +107,7 @@ pub struct Counters {
     pub hidden_parts: u32,
     pub listed_patches: u32,
     pub edge_chords: u32,
+    pub followed_points: u32,
     pub clamps: u32,
     pub failed: u32,
 }

@@ -7,7 +7,7 @@
 //! ```
 
 use super::counts::{Counts, TooMany};
-use super::{edges, gaps, solids, tessellation, trim};
+use super::{antialiasing, edges, gaps, solids, tessellation, trim};
 use crate::abi::Counters;
 use crate::gpu::{Device, Texel};
 
@@ -19,6 +19,7 @@ pub(crate) struct Capacities {
     pub gaps: gaps::Capacities,
     pub solids: solids::Capacities,
     pub edges: edges::Capacities,
+    pub antialiasing: antialiasing::Capacities,
 }
 
 /// If `wanted` is more than `had`: `wanted` and a quarter more, but no spare room beyond `most`. Else `had`.
@@ -36,6 +37,7 @@ impl Capacities {
             gaps: gaps::Capacities::first(counts),
             solids: solids::Capacities::first(counts),
             edges: edges::Capacities::first(counts),
+            antialiasing: antialiasing::Capacities::first(counts),
         }
     }
 
@@ -58,11 +60,13 @@ impl Capacities {
         Self { solids: self.solids.expecting(crossings, counts), ..self }
     }
 
-    /// See [`solids::Capacities::for_picture`] and [`gaps::Capacities::for_picture`].
+    /// See [`solids::Capacities::for_picture`], [`gaps::Capacities::for_picture`] and
+    /// [`antialiasing::Capacities::for_picture`].
     pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), ranges: Ranges) -> Result<Self, TooMany> {
         let range = ranges.quads;
         let gaps = self.gaps.for_picture(counts, size, range);
-        Ok(Self { gaps, solids: self.solids.for_picture(counts, size, range)?, ..self })
+        let antialiasing = self.antialiasing.for_picture(counts, size, range);
+        Ok(Self { gaps, antialiasing, solids: self.solids.for_picture(counts, size, range)?, ..self })
     }
 
     /// Whether buffers made for `self` have the same sizes as buffers made for `others`.
@@ -80,6 +84,7 @@ impl Capacities {
             gaps: self.gaps.grown(c, range)?,
             solids: self.solids.grown(c, counts, size, range)?,
             edges: self.edges.grown(c, range)?,
+            antialiasing: self.antialiasing.grown(c, range)?,
         })
     }
 }
@@ -150,6 +155,24 @@ mod tests {
         assert_eq!(grown(first, &c).unwrap().trim.intercepts, RANGE / 4);
     }
 
+    /// Scenes without curved faces have no such list.
+    #[test]
+    fn points_that_follow_surfaces_have_room_by_the_picture() {
+        let of = |follows_borders: bool, size| {
+            let counts = Counts { follows_borders, ..Default::default() };
+            let first = Capacities::first(counts, u32::MAX);
+            first.for_picture(counts, size, both(RANGE)).unwrap().antialiasing.followed
+        };
+        assert_eq!([of(false, (4096, 4096)), of(true, (64, 64)), of(true, (4096, 4096))], [0, 1 << 12, 1 << 19]);
+        assert_eq!(of(true, (1 << 15, 1 << 15)), RANGE / 12);
+        let counts = Counts { follows_borders: true, ..Default::default() };
+        let c = Counters { followed_points: 100_000, failed: 2048, ..Default::default() };
+        let had = Capacities::first(counts, u32::MAX);
+        let more = had.grown(&c, counts, (640, 480), both(RANGE)).unwrap();
+        assert_eq!((had.antialiasing.followed, more.antialiasing.followed), (1 << 12, 125_000));
+        assert!(!more.takes_as_much(had));
+    }
+
     #[test]
     fn more_than_can_be_counted_is_an_error() {
         let over = |counts: Counts| counts.check(u32::MAX).err().map(|error| (error.what, error.most, error.bytes));
@@ -186,5 +209,8 @@ mod tests {
         let more = Counters { gap_candidates: RANGE / 12 + 1, failed: 16, ..Default::default() };
         let over = first().grown(&more, counts, (640, 480), both(RANGE)).unwrap_err();
         assert_eq!((over.what, over.most), ("pixels at gaps", RANGE / 12));
+        let more = Counters { followed_points: RANGE / 12 + 1, failed: 2048, ..Default::default() };
+        let over = first().grown(&more, counts, (640, 480), both(RANGE)).unwrap_err();
+        assert_eq!((over.what, over.most), ("points at borders of curved faces", RANGE / 12));
     }
 }

@@ -64,6 +64,8 @@ pub(crate) struct Counts {
     pub piece_instances: u32,
     /// There are lines, along edges or silhouettes.
     pub lines: bool,
+    /// Faces' surfaces may be followed to points at borders.
+    pub follows_borders: bool,
 }
 
 impl Counts {
@@ -102,6 +104,7 @@ impl Counts {
             shadowless: count(data.shadowless),
             piece_instances: data.edges.as_ref().map_or(0, |edges| count(edges.piece_instances.len())),
             lines: data.has_lines(),
+            follows_borders: data.follows_borders(),
         }
     }
 

@@ -72,6 +72,8 @@ pub(crate) struct SceneData {
     pub has_pieces: bool,
     /// Some patch has a fine net.
     pub has_fine: bool,
+    /// Smooth borders may follow some face's surface.
+    pub has_followed: bool,
     /// Some patch is drawn without a trim test.
     pub has_plain: bool,
     /// Some patch needs a trim test.
@@ -451,7 +453,9 @@ impl SceneData {
         self.has_rational |= f.rational;
         self.has_pieces |= f.pieces;
         self.has_fine |= f.fine;
-        self.has_patches |= f.face.flags & abi::FACE_OPERAND == 0;
+        let is_surface = f.face.flags & abi::FACE_OPERAND == 0;
+        self.has_followed |= f.followed && is_surface;
+        self.has_patches |= is_surface;
         self.faces.push(f.face);
         self.patches.append(&mut f.patches);
         self.outside.append(&mut f.outside);

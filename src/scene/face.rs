@@ -43,6 +43,8 @@ pub(super) struct FaceData {
     pub pieces: bool,
     /// Some patch has a fine net.
     pub fine: bool,
+    /// Smooth borders may follow the surface: it is not one patch of a plane, which its terms of second order are.
+    pub followed: bool,
 }
 
 /// The kind of part that a face belongs to.
@@ -122,6 +124,7 @@ impl FaceData {
             rational: !face.surface.is_polynomial(),
             pieces: flat.patches.len() > 1 && !face.kind.is_elementary(),
             fine: false,
+            followed: false,
         };
         let flag = |on: bool, bit: u32| if on { bit } else { 0 };
         let (lo, hi) = face.surface.bounds();
@@ -136,6 +139,7 @@ impl FaceData {
             let pushed = data.patches.last_mut().expect("it was pushed");
             pushed.shape = abi::Patch::with_shares(pushed.shape, shares);
         }
+        data.followed = is_followed(data.face.flags, &data.patches);
         data.edit = editable.then(|| data.edit_face(&grid, domain, smooth));
         if let Some(edit) = data.edit.as_mut().filter(|_| !table) {
             edit.loops.extend(face.loops.iter().map(|l| EditLoop::new(l, 0, 0)));
@@ -413,6 +417,16 @@ pub(super) fn outward_box(patch: &Patch, origin: DVec3) -> ([f32; 3], [f32; 3]) 
 fn flat_is_zero(bend: [f64; 3], (lo, hi): (DVec3, DVec3)) -> [f64; 3] {
     let rounding = 1e-12 * (hi - lo).length();
     if bend.iter().all(|x| *x <= rounding) { [0.0; 3] } else { bend.map(|x| f64::from(round_up(x))) }
+}
+
+/// Whether some point of a border may lie where a sheet of the face does not reach by its terms of second order, or where
+/// the surface goes on beyond an end: `glsl/include/border_mix.glsl`. What a plane's terms leave out is 0, and within the
+/// one patch of a face no place is beyond [`MOST_FROM_MIDDLE`](crate::abi::constants::border_reach::MOST_FROM_MIDDLE).
+fn is_followed(flags: u32, patches: &[abi::Patch]) -> bool {
+    let sides = abi::BORDER_U0 | abi::BORDER_U1 | abi::BORDER_V0 | abi::BORDER_V1;
+    let goes_on = abi::FACE_MEETS_U | abi::FACE_MEETS_V | sides << abi::FACE_POINTS;
+    let is_plane = matches!(patches, [patch] if patch.bend == [0.0; 3]);
+    !is_plane || flags & goes_on != 0
 }
 
 /// A single-precision number above `x`.

@@ -127,6 +127,7 @@ impl Kinds {
             !data.links.is_empty(),
             !data.cones.is_empty(),
             !data.wide_strips.is_empty(),
+            data.follows_borders(),
         ];
         Self(all.iter().enumerate().fold(0, |bits, (bit, has)| bits | u32::from(*has) << bit))
     }

@@ -17,6 +17,11 @@ impl SceneData {
         self.smooth == Smooth::Borders && asked && alone
     }
 
+    /// Pass `border_follow` follows faces' surfaces to points at borders.
+    pub(crate) fn follows_borders(&self) -> bool {
+        self.smooths_borders() && self.has_followed
+    }
+
     /// The scene has Boolean solids that points are asked for: all operands have equations.
     pub(crate) fn has_smooth_solids(&self) -> bool {
         self.solids.kinds().is_some() && self.solids.operand_leaves.is_empty()

@@ -1,4 +1,4 @@
-//! Which sides of a face's surface meet, and which are points, whatever its trims: pass `border_mix` follows surfaces
+//! Which sides of a face's surface meet, and which are points, whatever its trims: pass `border_follow` follows surfaces
 //! over seams, and looks again beyond poles.
 //!
 //! ```text

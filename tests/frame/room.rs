@@ -7,7 +7,7 @@ use glam::{DAffine3, DQuat, DVec2, DVec3};
 use selvedge::gpu::LowerLimits;
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::{Camera, LoopAt, Model, Projection};
-use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings, TrimWay};
+use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings, Smooth, TrimWay};
 
 /// Its buffers grow with the view.
 const BY_TABLE: SceneSettings = plain(TrimWay::Table);
@@ -20,7 +20,11 @@ fn draw(renderer: &mut HeadlessRenderer, camera: &Camera, tolerance_px: f64) -> 
 /// Draws a view for which the first buffers are too small. The picture equals that of buffers that are large enough
 /// from the start, which the first, small view does not have.
 fn check(model: &Model, camera: &Camera, tolerance_px: f64) -> Picture {
-    let mut renderer = watched_with(model, BY_TABLE);
+    check_with(model, BY_TABLE, camera, tolerance_px)
+}
+
+fn check_with(model: &Model, settings: SceneSettings, camera: &Camera, tolerance_px: f64) -> Picture {
+    let mut renderer = watched_with(model, settings);
     let grown = draw(&mut renderer, camera, tolerance_px);
     assert!(grown.stats.retries > 0, "the first buffers were large enough: {:?}", grown.stats);
     let again = draw(&mut renderer, camera, tolerance_px);
@@ -28,7 +32,7 @@ fn check(model: &Model, camera: &Camera, tolerance_px: f64) -> Picture {
     assert_identical(&grown, &again, "with room from the start");
     assert_silent(renderer);
 
-    let mut fresh = watched_with(model, BY_TABLE);
+    let mut fresh = watched_with(model, settings);
     let small = Camera { size: (8, 6), ..*camera };
     assert_eq!(draw(&mut fresh, &small, 2.0).stats.retries, 0);
     assert_identical(&grown, &draw(&mut fresh, camera, tolerance_px), "after a small view");
@@ -71,6 +75,21 @@ fn more_sub_patches_than_the_first_list_holds() {
     let picture = check(&model, &camera, 0.125);
     assert!(picture.stats.sub_patches > 262, "{:?}", picture.stats);
     assert_eq!(picture.stats.clamps, 0, "{:?}", picture.stats);
+}
+
+/// Small balls, of two pixels and a half: some ten points of each follow its surface, where a first list has room for 4096
+/// points. Nothing else has too little room.
+#[test]
+fn more_points_that_follow_surfaces_than_the_first_list_holds() {
+    let mut model = shapes::sphere();
+    let place = |i: u32| 8.0 * DVec3::new(f64::from(i % 50), f64::from(i / 50), 0.0);
+    model.instances = (0..50 * 37).map(|i| shapes::placed(DAffine3::from_translation(place(i)), None)).collect();
+    let above = Camera::around(model.control_bounds(), DVec3::Z, DVec3::Y, 0.6, (320, 240));
+    let camera = Camera { projection: Projection::Orthographic { height: 300.0 }, ..above };
+    let mut rough = watched_with(&model, BY_TABLE);
+    assert_eq!(draw(&mut rough, &camera, 0.5).stats.retries, 0);
+    assert_silent(rough);
+    check_with(&model, SceneSettings { smooth: Smooth::Borders, ..BY_TABLE }, &camera, 0.5);
 }
 
 /// A device that binds 16 MiB: its table has room for two million scan lines.

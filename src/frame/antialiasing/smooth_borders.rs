@@ -5,18 +5,23 @@
 //!           ──▶ the host's depth; depth, face, (u, v) and normal: those of the pixels' centres, as without the pass
 //!
 //!   band after band of rows:   find and mix 0 │ find and mix 1, write 0 │ find and mix 2, write 1 │ … │ write the last
+//!
+//!   mix:   border_mix ──▶ points that the terms do not reach ──border_follow──▶ border_followed, or the next:
+//!          border_mesh, border_solid ──▶ border_mean                         (scenes with meshes or Boolean solids)
 //! ```
 //!
 //! A list has room for every pixel of its band. A band reads the rows beside it as no pass has mixed them yet, so means
-//! are written a band later: there are two lists then.
+//! are written a band later: there are two lists then. The list of points that follow surfaces grows with what frames
+//! want; where it is too short, the frame is drawn again.
 
+use super::border_follow::{self, BorderFollow};
 use super::border_mean::{self, BorderMean};
 use super::border_mesh::{self, BorderMesh};
 use super::border_mix::{self, BorderMix, POINTS};
 use super::border_solid::{self, BorderSolid};
-use crate::abi::{BorderGrids, BorderPixel, BorderPoint};
+use crate::abi::{BorderGrids, BorderPixel, BorderPoint, FollowedGrids, FollowedPixel, FollowedPoint};
 use crate::frame::Frame;
-use crate::frame::common::border_list::ListBindings;
+use crate::frame::common::border_list::{FollowedBindings, ListBindings};
 use crate::frame::common::room::Room;
 use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Image, Resource, barrier};
 use crate::scene::{SceneData, SolidData};
@@ -33,6 +38,8 @@ const LEAST_ROWS: u32 = 16;
 /// The passes.
 pub(crate) struct Passes {
     mix: BorderMix,
+    /// Where some face's surface may be followed.
+    follow: Option<BorderFollow>,
     mesh: Option<BorderMesh>,
     solid: Option<BorderSolid>,
     /// In scenes where points are tested for something else than patches.
@@ -54,11 +61,19 @@ impl Passes {
             rational: data.has_rational,
             fine: data.has_fine,
             meshes_and_solids: meshes || surfaces.is_some(),
+            followed: data.follows_borders(),
             boundary_operands,
             layered: data.is_layered,
             volume,
         };
         let Some(mix) = BorderMix::new(device, &kinds)? else { return Ok(None) };
+        let follow = if kinds.followed {
+            let (rational, fine) = (kinds.rational, kinds.fine);
+            let meshes_and_solids = kinds.meshes_and_solids;
+            BorderFollow::new(device, border_follow::Kinds { test, rational, fine, meshes_and_solids, volume })?
+        } else {
+            None
+        };
         let mesh = || BorderMesh::new(device, !data.has_patches, volume);
         let solid = |surfaces| {
             let kinds = border_solid::Kinds {
@@ -70,6 +85,7 @@ impl Passes {
         };
         Ok(Some(Self {
             mix,
+            follow,
             mesh: meshes.then(mesh).transpose()?,
             solid: surfaces.filter(|_| data.has_smooth_solids()).map(solid).transpose()?,
             mean: kinds.meshes_and_solids.then(|| BorderMean::new(device, boundary_operands)).transpose()?,
@@ -83,6 +99,7 @@ pub(crate) struct SmoothBorders {
     /// One, or two by turns.
     lists: Vec<List>,
     points: Option<Buffer>,
+    followed: Option<Followed>,
     /// Of a band.
     rows: u32,
 }
@@ -96,6 +113,33 @@ struct List {
 impl List {
     fn bindings(&self) -> ListBindings<'_> {
         ListBindings { pixels: &self.pixels, grids: &self.grids }
+    }
+}
+
+/// Points of a band that follow surfaces.
+struct Followed {
+    points: Buffer,
+    capacity: u32,
+    /// In scenes without meshes and Boolean solids.
+    pixels: Option<Buffer>,
+    grids: Buffer,
+}
+
+impl Followed {
+    fn new(room: &Room<'_>, has_pixels: bool) -> Result<Self, GpuError> {
+        let capacity = room.capacities.antialiasing.followed;
+        let pixels = || room.structs::<FollowedPixel>("border followed pixels", capacity);
+        Ok(Self {
+            points: room.structs::<FollowedPoint>("border followed points", capacity)?,
+            capacity,
+            pixels: has_pixels.then(pixels).transpose()?,
+            grids: room.indirect::<FollowedGrids>("border followed grids", 1)?,
+        })
+    }
+
+    fn bindings(&self) -> FollowedBindings<'_> {
+        let Self { points, capacity, pixels, grids } = self;
+        FollowedBindings { points, capacity: *capacity, pixels: pixels.as_ref(), grids }
     }
 }
 
@@ -123,6 +167,7 @@ impl SmoothBorders {
             passes: Arc::clone(passes),
             lists: (0..if rows < height { 2 } else { 1 }).map(list).collect::<Result<_, GpuError>>()?,
             points: passes.mean.is_some().then(points).transpose()?,
+            followed: passes.follow.as_ref().map(|_| Followed::new(room, passes.mean.is_none())).transpose()?,
             rows,
         })
     }
@@ -188,6 +233,8 @@ impl SmoothBorders {
             resolved,
             list: list.bindings(),
             points: self.points.as_ref(),
+            followed: self.followed.as_ref().map(Followed::bindings),
+            counters: &frame.stages.common.counters,
             trim: test,
             volume: frame.volume(),
         };
@@ -196,11 +243,58 @@ impl SmoothBorders {
         if let Some(points) = &self.points {
             barrier::buffers(cmd, &[(points, r, w)]);
         }
+        if let Some(Followed { points, pixels, grids, .. }) = &self.followed {
+            barrier::buffers(cmd, &[(grids, r | Access::INDIRECT_READ, Access::TRANSFER_WRITE)]);
+            cmd.fill(grids, 0);
+            let counted = (bindings.counters, w | Access::INDIRECT_READ, w);
+            barrier::buffers(cmd, &[(grids, Access::TRANSFER_WRITE, w), (points, r | w, w), counted]);
+            if let Some(pixels) = pixels {
+                barrier::buffers(cmd, &[(pixels, r, w)]);
+            }
+        }
         self.passes.mix.mix(cmd, &bindings);
+        if let (Some(pass), Some(followed)) = (&self.passes.follow, &self.followed) {
+            self.follow(cmd, (pass, followed), &bindings);
+        }
         if let Some(points) = &self.points {
             self.ask_meshes_and_solids(frame, cmd, (resolved, list, points));
         }
         barrier::buffers(cmd, &[(pixels, w, r)]);
+    }
+
+    /// What points see of surfaces that are followed to them, and the means of their pixels.
+    fn follow(
+        &self,
+        cmd: &Commands<'_>,
+        (pass, followed): (&BorderFollow, &Followed),
+        of_mix: &border_mix::Bindings<'_>,
+    ) {
+        let (w, r) = (Access::COMPUTE_WRITE, Access::COMPUTE_READ);
+        let Followed { points, pixels, grids, .. } = followed;
+        // lists of the next band's solids are counted, too
+        let counted = (of_mix.counters, w, w);
+        // where no other pass asks, the list stands in for what points see
+        let list = (of_mix.list.pixels, w, r | w);
+        barrier::buffers(cmd, &[(points, w, r | w), (grids, w, r | Access::INDIRECT_READ), list, counted]);
+        if let Some(seen) = &self.points {
+            barrier::buffers(cmd, &[(seen, w, w)]);
+        }
+        let bindings = border_follow::Bindings {
+            frame: of_mix.frame,
+            placed: of_mix.placed,
+            visibility: of_mix.visibility,
+            resolved: of_mix.resolved,
+            list: of_mix.list,
+            followed: followed.bindings(),
+            seen: of_mix.points,
+            trim: of_mix.trim,
+            volume: of_mix.volume,
+        };
+        pass.follow(cmd, &bindings);
+        if let Some(pixels) = pixels {
+            barrier::buffers(cmd, &[(points, w, r), (pixels, w, r), (of_mix.list.pixels, r | w, r | w)]);
+            pass.mix(cmd, &bindings);
+        }
     }
 
     /// What points see of meshes and Boolean solids, and their means.

@@ -1,0 +1,7 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `border_follow`, of scenes without trims; within a volume.
+#define WITHIN_VOLUME
+#define TRIM_BY_UNTRIMMED
+#include "border_follow.glsl"

@@ -1,0 +1,41 @@
+//! How many points at borders there is room for to follow exact surfaces.
+
+use crate::abi::{Counters, FollowedPixel, FollowedPoint};
+use crate::frame::capacities::grown;
+use crate::frame::counts::{Counts, SMALLER, TooMany};
+
+/// As many pixels as one point that is followed: of the points beside outlines of small balls, one in sixty is.
+const PIXELS_OF_A_POINT: u64 = 32;
+/// Bytes of a point, and of a pixel that waits for its points: each list has as many.
+const BYTES: usize = size_of::<FollowedPoint>();
+const _: () = assert!(size_of::<FollowedPixel>() <= BYTES);
+
+/// Room for what only the GPU can count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Capacities {
+    /// Points in the list of one band.
+    pub followed: u32,
+}
+
+impl Capacities {
+    /// A first guess that fits small pictures.
+    pub(crate) fn first(counts: Counts) -> Self {
+        Self { followed: u32::from(counts.follows_borders) * (1 << 12) }
+    }
+
+    /// At least one point for every [`PIXELS_OF_A_POINT`] pixels of a picture, as far as a storage buffer of `range` bytes
+    /// holds them.
+    pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), range: u32) -> Self {
+        let some = u64::from(size.0) * u64::from(size.1) / PIXELS_OF_A_POINT;
+        let most = range / BYTES as u32;
+        let some = if counts.follows_borders { some.min(most.into()) as u32 } else { 0 };
+        Self { followed: self.followed.max(some) }
+    }
+
+    /// What the frame that reported `c` would have needed.
+    pub(crate) fn grown(self, c: &Counters, range: u32) -> Result<Self, TooMany> {
+        let wanted = ("points at borders of curved faces", c.followed_points);
+        TooMany::of_bytes(wanted, BYTES, range, SMALLER).map_or(Ok(()), Err)?;
+        Ok(Self { followed: grown(self.followed, c.followed_points, range / BYTES as u32) })
+    }
+}
