@@ -126,8 +126,8 @@ mod tests {
     use crate::parity::{Case, cages};
     use glam::DVec3;
 
-    /// Where the box shows that one segment suffices, the control points say the same: from near and far, across the near
-    /// plane, and in parallel views.
+    /// Where the box shows that one segment suffices, the control points say the same: from near and far, across the
+    /// near plane, and in parallel views.
     #[test]
     fn the_box_never_asks_for_fewer_segments_than_the_net() {
         let model = cages::a_box().model;
