@@ -5,8 +5,8 @@
 mod driver;
 
 use super::*;
-use ash::vk::Handle;
 use driver::{Driver, Fault};
+use selvedge::ash::vk::Handle;
 use std::cell::Cell;
 
 /// Whatever fails, the instance, the surface, the device and its objects are destroyed, each once.
