@@ -399,6 +399,9 @@ pub struct FrameStats {
     pub triangles: u64,
     /// Sub-patches drawn.
     pub sub_patches: u64,
+    /// Those of them that are whole patches of one segment a side, drawn by their corners without tessellation stages:
+    /// in scenes of many patches.
+    pub corner_patches: u64,
     /// Scan lines of the trim table.
     pub trim_rows: u64,
     /// Chords of trim curves from which the trim table was made.

@@ -12,4 +12,5 @@ void main() {
     if (counters.failed == 0u) return;
     counters.plain_draws = 0u;
     counters.trimmed_draws = 0u;
+    counters.corner_draws = 0u;
 }

@@ -77,8 +77,13 @@ bool cover_cell(Patch patch_, View view, float scale, vec2 segment, uvec2 cell, 
     float near = frame.near * (1.0 + DEPTH_ROUNDING);
     c = Cover(vec2(3.0e38), vec2(-3.0e38), 3.0e38);
     for (uint k = 0u; k < 4u; ++k) {
-        vec2 uv = vec2(cell + uvec2(k & 1u, k >> 1)) / float(n);
-        Jet jet = patch_jet(patch_.first, patch_.shape, uv);
+        uvec2 corner = cell + uvec2(k & 1u, k >> 1);
+        Jet jet;
+        if (n == 1u && borders == 0u && !all_sides) { // no derivatives are needed at the patch's own corners
+            jet = Jet(patch_corner(patch_.first, patch_.shape, corner), vec3(0.0), vec3(0.0));
+        } else {
+            jet = patch_jet(patch_.first, patch_.shape, vec2(corner) / float(n));
+        }
         vec4 q = to_pixel(view, vec4(jet.point, 1.0));
         if (q.z < near) return false;
         cover(c, q);

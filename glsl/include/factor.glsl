@@ -5,13 +5,21 @@
 const float SPARE = 0.125; // share of additional quads that less slender ones may cost
 const float UP = 1.00001;  // a few ulp up, so that rounding never breaks the bound
 
+// Whether one segment along each parameter keeps the bound.
+bool is_undivided(vec3 bend, float budget) {
+    float a = bend.x / budget;
+    float b = bend.y / budget;
+    float c = bend.z / budget;
+    precise float undivided = (a + 2.0 * b + c) * UP;
+    return undivided <= 1.0;
+}
+
 // A pair tau_u, tau_v of small product with bend.x / tau_u^2 + 2 bend.y / (tau_u tau_v) + bend.z / tau_v^2 <= budget.
 vec2 factors(vec3 bend, float budget) {
     float a = bend.x / budget;
     float b = bend.y / budget;
     float c = bend.z / budget;
-    precise float undivided = (a + 2.0 * b + c) * UP;
-    if (undivided <= 1.0) return vec2(1.0);
+    if (is_undivided(bend, budget)) return vec2(1.0);
     float al = max(a, 1e-20);
     float cl = max(c, 1e-20);
     // the ratio tau_u / tau_v nearest to 1 with a / r + c r <= q

@@ -32,7 +32,7 @@ struct PartList {
 // The dispatches over the patch instances of listed parts.
 struct ListDispatches {
     uvec3 threads; // workgroups of passes with a thread for each
-    uvec3 blocks;  // workgroups of prefix sums with two elements for each, and one more
+    uvec3 blocks;  // workgroups of prefix sums with an element of each list for each, and one more
     uint scanned;  // the number of these elements
 };
 

@@ -97,6 +97,13 @@ Jet patch_jet_from(uint first, uint shape, vec3 base, vec2 uv) {
     return jet;
 }
 
+// The point of a corner, (u, v) of 0 and 1: its control point, which the evaluation returns there bit for bit.
+vec3 patch_corner(uint first, uint shape, uvec2 uv) {
+    uint n = degree_u(shape);
+    vec4 p = texelFetch(points, int(first + uv.x * n + uv.y * degree_v(shape) * (n + 1u)));
+    return SCENE_HAS_RATIONAL && is_rational(shape) ? p.xyz * (1.0 / p.w) : p.xyz;
+}
+
 Jet patch_jet(uint first, uint shape, vec2 uv) { return patch_jet_from(first, shape, vec3(0.0), uv); }
 
 #endif

@@ -14,8 +14,8 @@ layout(scalar, binding = 3) readonly buffer Patches { Patch patches[]; };
 layout(scalar, binding = 4) readonly buffer PatchInstances { uint patch_instances[]; };
 layout(scalar, binding = 5) readonly buffer Taus { uint taus[]; };
 layout(scalar, binding = 6) writeonly buffer FactorsBuffer { Factors factors[]; };
-// numbers of sub-patches and of tessellated vertices of each listed patch instance: first of all plain patch
-// instances, then of all trimmed ones
+// numbers of sub-patches and of vertices of each listed patch instance: first as members of list PLAIN_LIST, then of
+// the others; a patch instance is a member of one list
 layout(scalar, binding = 7) writeonly buffer SubPatchCounts { uint sub_patch_counts[]; };
 layout(scalar, binding = 8) writeonly buffer VertexCounts { uint vertex_counts[]; };
 #define RUNS_BINDING 9
@@ -55,15 +55,18 @@ void write(uint place, uint patch_instance, uint patch_) {
     bool drawn = is_drawn(taus[patch_instance]);
     factors[patch_instance] = Factors(inner.x | inner.y << 16, low.x | high.x << 16, low.y | high.y << 16,
                             splits.x | splits.y << 16);
-    uvec2 most = max(inner, max(low, high)) / splits;
+    uvec2 segments = max(inner, max(low, high));
+    uvec2 most = segments / splits;
     // the tessellator makes two segments of one along an axis, unless all numbers are one
     if (most != uvec2(1u)) most = max(most, 2u);
     uint sub_patches = drawn ? splits.x * splits.y : 0u;
-    uint vertices = sub_patches * (most.x + 1u) * (most.y + 1u);
-    uint plain = side_of(patches[patch_].shape) == SIDE_INSIDE ? 1u : 0u;
-    uint as_trimmed = frame.listed_patch_instances + place;
-    sub_patch_counts[place] = sub_patches * plain;
-    sub_patch_counts[as_trimmed] = sub_patches * (1u - plain);
-    vertex_counts[place] = vertices * plain;
-    vertex_counts[as_trimmed] = vertices * (1u - plain);
+    bool plain = side_of(patches[patch_].shape) == SIDE_INSIDE;
+    bool by_corners = plain && segments == uvec2(1u) && frame.corner_list != 0u;
+    uint list = by_corners ? CORNER_LIST : plain ? PLAIN_LIST : TRIMMED_LIST;
+    uint vertices = sub_patches * (by_corners ? CORNER_VERTICES : (most.x + 1u) * (most.y + 1u));
+    for (uint k = 0u; k < 2u + frame.corner_list; ++k) {
+        uint slot = k * frame.listed_patch_instances + place;
+        sub_patch_counts[slot] = k == list ? sub_patches : 0u;
+        vertex_counts[slot] = k == list ? vertices : 0u;
+    }
 }

@@ -31,7 +31,8 @@ float reversed_depth(Frame frame, float depth) {
 
 // Clip coordinates of a homogeneous pixel.
 vec4 to_clip(Frame frame, vec4 q) {
-    return vec4(q.xy * 2.0 / frame.size - q.w, reversed_depth(frame, q.z), q.w);
+    precise vec2 xy = q.xy * 2.0 / frame.size - q.w; // as in `row_times`
+    return vec4(xy, reversed_depth(frame, q.z), q.w);
 }
 
 // In a parallel view depth continues beyond the far plane, to this many times its distance from the near one.

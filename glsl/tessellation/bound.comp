@@ -80,11 +80,14 @@ vec3 bend_seen(Patch patch_, View view, vec2 low, vec2 high) {
 
 vec2 factors_of(Patch patch_, View view, uint instance, Seen seen) {
     if (patch_.bend == vec3(0.0)) return vec2(1.0);
-    bool whole = draw_closer(patch_, view, seen);
     float budget = 8.0 * frame.deviation_px;
+    // the control points are within the box and need no more segments: those of a small patch are not read
+    precise vec3 of_box = patch_.bend * pixels_per_unit(frame, instances[instance], seen);
+    if (is_undivided(of_box, budget)) return vec2(1.0);
+    bool whole = draw_closer(patch_, view, seen);
     precise vec3 bend = patch_.bend * pixels_per_unit(frame, instances[instance], seen);
     vec2 tau = factors(bend, budget);
-    if (!whole || is_rational(patch_.shape)) return tau;
+    if (!whole || is_rational(patch_.shape) || tau == vec2(1.0)) return tau;
     vec2 low = clamp(seen.low, vec2(0.0), frame.size);
     vec2 high = clamp(seen.high, vec2(0.0), frame.size);
     precise vec3 across = bend_seen(patch_, view, low, high) / seen.w;

@@ -38,6 +38,7 @@ pub struct Frame {
     pub encode_srgb: u32,
     pub sub_patch_capacity: u32,
     pub draw_capacity: u32,
+    pub corner_list: u32,
     pub row_capacity: u32,
     pub intercept_capacity: u32,
     pub gap_candidate_capacity: u32,
@@ -64,6 +65,14 @@ pub struct Frame {
     pub principal_px: [f32; 2],
 }
 
+#[cfg(any(test, feature = "baselines"))]
+impl Frame {
+    /// Lists of sub-patches, and of draws: plain, trimmed, and patches that are drawn by their corners, if they have one.
+    pub fn patch_lists(&self) -> u32 {
+        2 + self.corner_list
+    }
+}
+
 impl Counters {
     /// The larger of each count, for two samples of one frame.
     pub fn most(self, other: Self) -> Self {
@@ -83,8 +92,10 @@ const COUNTERS: usize = size_of::<Counters>() / size_of::<u32>();
 pub struct Counters {
     pub plain: u32,
     pub trimmed: u32,
+    pub corners: u32,
     pub plain_draws: u32,
     pub trimmed_draws: u32,
+    pub corner_draws: u32,
     pub rows: u32,
     pub segments: u32,
     pub wanted_rows: u32,

@@ -12,6 +12,8 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Counts {
     pub patch_instances: u32,
+    /// Plain patches of one segment a side have a list of their own.
+    pub corner_list: bool,
     /// Groups of faces of placed parts.
     pub placed_groups: u32,
     pub cells: u32,
@@ -74,6 +76,7 @@ impl Counts {
         let by_view = !matches!(data.trim_way(), None | Some(TakenWay::Exact)) || data.has_lines();
         Self {
             patch_instances: data.patch_instances.len() as u32,
+            corner_list: data.draws_corners(),
             placed_groups: data.placed_groups(),
             cells: data.cell_instances.len() as u32,
             bins: data.bin_count,
@@ -142,6 +145,11 @@ impl Counts {
     /// Buffers that were made for `room` hold as much.
     pub(crate) fn fits(mut self, mut room: Self) -> bool {
         self.sizes().into_iter().zip(room.sizes()).all(|(size, room)| size <= room)
+    }
+
+    /// Lists of sub-patches, and of draws: plain, trimmed, and patches that are drawn by their corners.
+    pub(crate) fn patch_lists(self) -> u32 {
+        2 + u32::from(self.corner_list)
     }
 
     /// The crossings of rays with operands are stored.

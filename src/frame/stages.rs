@@ -128,7 +128,9 @@ impl Stages {
     ) -> Result<Self, GpuError> {
         let room = &Room { device, counts, capacities, size };
         let (trimmed, edges) = ([counts.bins, counts.curves, capacities.trim.rows], counts.piece_instances);
-        let scanned = [2 * counts.patch_instances + 1, counts.face_instances, edges].into_iter().chain(trimmed);
+        let scanned = [counts.patch_lists() * counts.patch_instances + 1, counts.face_instances, edges]
+            .into_iter()
+            .chain(trimmed);
         let scanned = scanned.fold(solids::buffers::scanned(room), u32::max);
         let p = passes;
         Ok(Self {

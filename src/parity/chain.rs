@@ -82,6 +82,14 @@ impl Chain {
         c.flip_counts = twin::sort::sort(frame, &c.row_starts, c.row_total, windings, &mut c.flips, &mut c.counters);
         c
     }
+
+    /// Of pass `split` alone, from given segments, and the prefix sums that pass `emit` reads.
+    #[cfg(feature = "headless")]
+    pub(super) fn of_taus(case: &Case, taus: &[u32]) -> Self {
+        let split = twin::split::split(&case.frame, &case.scene(), taus);
+        let (sub_patch_starts, vertex_starts) = (starts(&split.sub_patch_counts), starts(&split.vertex_counts));
+        Self { taus: taus.to_vec(), split, sub_patch_starts, vertex_starts, ..Self::default() }
+    }
 }
 
 /// Prefix sums, followed by the total.

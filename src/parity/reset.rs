@@ -9,7 +9,7 @@ use crate::twin;
 use crate::twin::emit::Draw;
 
 fn compare(gpu: &Gpu, draws_only: bool, given: &Frame, expected: &Frame) -> Result<(), Mismatch> {
-    let count = 2 * expected.draw_capacity as usize;
+    let count = (expected.patch_lists() * expected.draw_capacity) as usize;
     let old = [Draw { vertex_count: UNTOUCHED, ..Default::default() }].repeat(count);
     let old_counters: Counters = bytemuck::cast([UNTOUCHED; size_of::<Counters>() / 4]);
     let (frame, draws) = (gpu.upload("frame", &[*given]), gpu.upload("draws", &old));
@@ -18,7 +18,8 @@ fn compare(gpu: &Gpu, draws_only: bool, given: &Frame, expected: &Frame) -> Resu
     let bindings = Bindings { frame: &frame, draws: &draws, counters: &counters };
     gpu.run(|cmd| pass.record(cmd, &bindings, count as u32));
     let (empty, zero) = twin::reset::reset(expected);
-    let left = if draws_only { Counters { plain_draws: 0, trimmed_draws: 0, ..old_counters } } else { zero };
+    let left =
+        if draws_only { Counters { plain_draws: 0, trimmed_draws: 0, corner_draws: 0, ..old_counters } } else { zero };
     same("draws", &gpu.read(&draws, count), &empty)?;
     same("counters", &gpu.read(&counters, 1), &[left])
 }
@@ -26,12 +27,14 @@ fn compare(gpu: &Gpu, draws_only: bool, given: &Frame, expected: &Frame) -> Resu
 #[test]
 fn parity_is_exact_and_sees_a_difference() {
     let gpu = Gpu::new();
-    let frame = cases()[0].frame;
-    for draws_only in [false, true] {
+    let case = cases().swap_remove(0);
+    for (draws_only, corner_list) in [(false, 0), (true, 0), (false, 1), (true, 1)] {
+        let frame = Frame { corner_list, ..case.frame };
         compare(&gpu, draws_only, &frame, &frame).unwrap();
         let fewer = Frame { draw_capacity: frame.draw_capacity - 1, ..frame };
         let mismatch = compare(&gpu, draws_only, &fewer, &frame).unwrap_err();
-        assert_eq!((mismatch.buffer, mismatch.index), ("draws", 2 * fewer.draw_capacity as usize));
+        let first = (fewer.patch_lists() * fewer.draw_capacity) as usize;
+        assert_eq!((mismatch.buffer, mismatch.index), ("draws", first));
     }
     gpu.finish();
 }

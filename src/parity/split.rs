@@ -2,9 +2,9 @@
 
 use super::chain::{Chain, UNTOUCHED};
 use super::harness::{Gpu, Mismatch, SceneBuffers, same};
-use super::shapes::cases;
+use super::shapes::{cases, three_lists};
 use super::{Case, Random, cages};
-use crate::abi::Factors;
+use crate::abi::{Factors, Frame};
 use crate::frame::tessellation::split::Split;
 use crate::model::Camera;
 use crate::twin;
@@ -15,16 +15,17 @@ fn compare(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<()
     let s = SceneBuffers::new(gpu, case);
     let taus = gpu.upload("taus", given);
     let factors = gpu.upload("factors", &vec![UNTOUCHED; n * size_of::<Factors>() / 4]);
-    let sub_patch_counts = gpu.upload("sub-patch counts", &vec![UNTOUCHED; 2 * n]);
-    let vertex_counts = gpu.upload("vertex counts", &vec![UNTOUCHED; 2 * n]);
+    let counted = case.frame.patch_lists() as usize * n;
+    let [sub_patch_counts, vertex_counts] =
+        ["sub-patch counts", "vertex counts"].map(|name| gpu.upload(name, &vec![UNTOUCHED; counted]));
     let links = (!case.data.links.is_empty()).then(|| gpu.upload("links", &case.data.links));
     let pass = Split::new(gpu.device(), links.is_some()).unwrap();
     let bindings = s.split(&taus, &factors, [&sub_patch_counts, &vertex_counts], links.as_ref());
     gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
     let twin = twin::split::split(&case.frame, &case.scene(), expected);
     same("factors", &gpu.read(&factors, n), &twin.factors)?;
-    same("sub-patch counts", &gpu.read(&sub_patch_counts, 2 * n), &twin.sub_patch_counts)?;
-    same("vertex counts", &gpu.read(&vertex_counts, 2 * n), &twin.vertex_counts)
+    same("sub-patch counts", &gpu.read(&sub_patch_counts, counted), &twin.sub_patch_counts)?;
+    same("vertex counts", &gpu.read(&vertex_counts, counted), &twin.vertex_counts)
 }
 
 #[test]
@@ -68,6 +69,21 @@ fn parity_of_shared_sides() {
         other[at] = 4096 | 4096 << 16;
         assert_eq!(compare(&gpu, &case, &other, &taus).unwrap_err().buffer, "factors");
     }
+    gpu.finish();
+}
+
+/// With a list of patches that are drawn by their corners.
+#[test]
+fn parity_of_three_lists() {
+    let gpu = Gpu::new();
+    let (case, taus) = three_lists();
+    compare(&gpu, &case, &taus, &taus).unwrap();
+    let (twin, n) = (Chain::of_taus(&case, &taus).split, taus.len());
+    let members =
+        |list: usize| twin.sub_patch_counts[list * n..(list + 1) * n].iter().filter(|count| **count > 0).count();
+    assert!((0..3).all(|list| members(list) > 1), "{:?}", twin.sub_patch_counts);
+    let two_lists = Case { frame: Frame { corner_list: 0, ..case.frame }, ..case.clone() };
+    compare(&gpu, &two_lists, &taus, &taus).unwrap();
     gpu.finish();
 }
 

@@ -44,6 +44,7 @@ impl Renderer {
             patches: u64::from(slot.counts.patch_instances),
             triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),
             sub_patches: u64::from(c.plain) + u64::from(c.trimmed),
+            corner_patches: u64::from(c.corners),
             trim_rows: u64::from(c.rows),
             trim_segments: u64::from(c.segments),
             trim_intercepts: u64::from(c.intercepts),

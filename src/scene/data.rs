@@ -87,6 +87,8 @@ pub(crate) struct SceneData {
     /// Patches are also drawn without a trim test.
     #[cfg(feature = "baselines")]
     pub untested: bool,
+    #[cfg(feature = "baselines")]
+    pub(super) corners: Option<bool>,
     /// The way to trim that the request names or the model's size suggests.
     pub(super) way: Option<TakenWay>,
     /// Samples of each pixel.
@@ -257,7 +259,7 @@ impl SceneData {
         };
         #[cfg(feature = "baselines")]
         {
-            data.untested = settings.baseline.untested;
+            (data.untested, data.corners) = (settings.baseline.untested, settings.baseline.corners);
             if let Some(segments) = settings.baseline.slefe_segments {
                 data.division = Division::Slefe(crate::baselines::slefe::words(segments));
             }

@@ -18,6 +18,7 @@ mod after_upload;
 mod arrays;
 mod cells;
 mod cones;
+mod corners;
 mod data;
 mod deep_zoom;
 mod edges;

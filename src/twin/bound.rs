@@ -1,7 +1,7 @@
 //! Twin of the pass `bound`: finds the patches that may be visible, and bounds how finely each must be divided.
 
 use super::cone::looks_away;
-use super::factor::factors;
+use super::factor::{factors, is_undivided};
 use super::view::{Seen, covers_a_centre, far_of, pixels_per_unit, see, to_pixel};
 use super::{MOST_SEGMENTS, Scene};
 pub use crate::abi::constants::bound::DEPTH_SHARE;
@@ -43,6 +43,15 @@ pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u
 }
 
 fn factors_of(frame: &Frame, scene: &Scene<'_>, patch: &Patch, instance: usize, seen: Seen) -> [f32; 2] {
+    // the control points are within the box and need no more segments
+    let of_box = patch.bend.map(|b| b * pixels_per_unit(frame, &scene.instances[instance], &seen));
+    match is_undivided(of_box, 8.0 * frame.deviation_px) {
+        true => [1.0; 2],
+        false => factors_by_net(frame, scene, patch, instance, seen),
+    }
+}
+
+fn factors_by_net(frame: &Frame, scene: &Scene<'_>, patch: &Patch, instance: usize, seen: Seen) -> [f32; 2] {
     let view = &scene.views[instance];
     let (n, k) = patch.degrees();
     let points = &scene.points[patch.first as usize..][..(n + 1) * (k + 1)];
@@ -51,7 +60,7 @@ fn factors_of(frame: &Frame, scene: &Scene<'_>, patch: &Patch, instance: usize, 
     let seen = closer.unwrap_or(seen);
     let bend = patch.bend.map(|b| b * pixels_per_unit(frame, &scene.instances[instance], &seen));
     let tau = factors(bend, budget);
-    if closer.is_none() || patch.is_rational() {
+    if closer.is_none() || patch.is_rational() || tau == [1.0; 2] {
         return tau;
     }
     let within = |p: [f32; 2]| [0, 1].map(|a| p[a].clamp(0.0, frame.size[a]));
@@ -108,4 +117,48 @@ fn bend_seen(points: &[[f32; 4]], (n, k): (usize, usize), view: &View, range: [[
     }
     let times = [n * n.saturating_sub(1), n * k, k * k.saturating_sub(1)].map(|x| x as f32);
     std::array::from_fn(|d| most[d] * times[d])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Camera, Projection};
+    use crate::parity::{Case, cages};
+    use glam::DVec3;
+
+    /// Where the box shows that one segment suffices, the control points say the same: from near and far, across the
+    /// near plane, and in parallel views.
+    #[test]
+    fn the_box_never_asks_for_fewer_segments_than_the_net() {
+        let model = cages::a_box().model;
+        let all = Camera::around(model.bounds(), DVec3::new(1.0, -2.0, 1.5), DVec3::Z, 0.6, (480, 360));
+        let (mut undivided, mut divided) = (0, 0);
+        for k in 0..24 {
+            let away = 0.3 * 1.3f64.powi(k);
+            let eye = all.target + (all.eye - all.target) * away;
+            let mut camera = Camera { eye, ..all };
+            camera.fit_depth(model.bounds());
+            if k % 3 == 0 {
+                camera.projection = Projection::Orthographic { height: 12.0 * away };
+            }
+            let case = Case::new(&model, &camera, 0.5);
+            let (frame, scene) = (&case.frame, &case.scene());
+            for patch_instance in 0..scene.patch_instances.len() {
+                let (placed, _, patch) = scene.patch_instance(patch_instance);
+                let instance = placed.instance as usize;
+                let far = frame.far;
+                let Some(seen) = see(&scene.views[instance], frame, patch.box_min, patch.box_max, 1.0, far) else {
+                    continue;
+                };
+                let of_box = patch.bend.map(|b| b * pixels_per_unit(frame, &scene.instances[instance], &seen));
+                if is_undivided(of_box, 8.0 * frame.deviation_px) {
+                    assert_eq!(factors_by_net(frame, scene, &patch, instance, seen), [1.0; 2], "step {k}");
+                    undivided += u32::from(patch.bend != [0.0; 3]);
+                } else {
+                    divided += 1;
+                }
+            }
+        }
+        assert!(undivided > 100 && divided > 100, "{undivided} undivided, {divided} divided");
+    }
 }

@@ -7,15 +7,15 @@
 //!
 //! Only sums and extrema: the order of the patch instances does not matter.
 
-use super::{FAILED_DRAWS, FAILED_SUB_PATCHES};
+use super::{CORNER_LIST, CORNER_VERTICES, FAILED_DRAWS, FAILED_SUB_PATCHES, PLAIN_LIST, TRIMMED_LIST};
 use crate::abi::{Counters, Factors, Frame, SubPatch};
 use bytemuck::{Pod, Zeroable};
 
-/// `VkDrawIndirectCommand`; a vertex is a sub-patch.
+/// `VkDrawIndirectCommand`; a vertex is a sub-patch, or one of the [`CORNER_VERTICES`] of a patch drawn by its corners.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
 pub struct Draw {
-    /// Sub-patches.
+    /// Number of vertices.
     pub vertex_count: u32,
     /// 1.
     pub instance_count: u32,
@@ -25,8 +25,8 @@ pub struct Draw {
     pub first_instance: u32,
 }
 
-/// Writes `sub_patches` and `draws` (plain, then trimmed: `draw_capacity` each; cleared before), up to their
-/// capacities. `counters` receive the total numbers and the failures.
+/// Writes `sub_patches` and `draws` (list by list, `draw_capacity` each; cleared before), up to their capacities.
+/// `counters` receive the total numbers and the failures.
 ///
 /// The starts are the prefix sums of the counts of [`Split`](super::split::Split), followed by the total.
 pub fn emit(
@@ -37,22 +37,23 @@ pub fn emit(
     (sub_patches, draws): (&mut [SubPatch], &mut [Draw]),
     counters: &mut Counters,
 ) {
-    let n = frame.listed_patch_instances as usize;
-    counters.plain += sub_patch_starts[n];
-    counters.trimmed += sub_patch_starts[2 * n] - sub_patch_starts[n];
-    if sub_patch_starts[2 * n] > frame.sub_patch_capacity {
+    let (n, lists) = (frame.listed_patch_instances as usize, frame.patch_lists());
+    let total = |list: u32| sub_patch_starts[(list as usize + 1) * n] - sub_patch_starts[list as usize * n];
+    let corners = if lists > CORNER_LIST { total(CORNER_LIST) } else { 0 };
+    counters.plain += total(PLAIN_LIST) + corners;
+    counters.trimmed += total(TRIMMED_LIST);
+    counters.corners += corners;
+    if sub_patch_starts[lists as usize * n] > frame.sub_patch_capacity {
         counters.failed |= FAILED_SUB_PATCHES;
     }
     for patch_instance in 0..n {
-        let trimmed = sub_patch_starts[patch_instance + 1] == sub_patch_starts[patch_instance];
-        let slot = if trimmed { n + patch_instance } else { patch_instance };
+        let slot_in = |list: u32| list as usize * n + patch_instance;
+        let count_in = |list: u32| sub_patch_starts[slot_in(list) + 1] - sub_patch_starts[slot_in(list)];
+        let Some(list) = (0..lists).find(|list| count_in(*list) > 0) else { continue };
+        let (slot, count) = (slot_in(list), count_in(list));
         let first = sub_patch_starts[slot];
-        let count = sub_patch_starts[slot + 1] - first;
-        if count == 0 {
-            continue;
-        }
         let vertices = (vertex_starts[slot + 1] - vertex_starts[slot]) / count;
-        let before = vertex_starts[slot] - if trimmed { vertex_starts[n] } else { 0 };
+        let before = vertex_starts[slot] - vertex_starts[list as usize * n];
         let across = factors[patch_instance].splits & 0xffff;
         for k in 0..count {
             let at = first + k;
@@ -62,15 +63,20 @@ pub fn emit(
             sub_patches[at as usize] =
                 SubPatch { patch_instance: patch_instance as u32, place: (k % across) | (k / across) << 8 };
             let draw = (before + k * vertices) / frame.draw_vertices;
-            let used = if trimmed { &mut counters.trimmed_draws } else { &mut counters.plain_draws };
+            let used = match list {
+                PLAIN_LIST => &mut counters.plain_draws,
+                TRIMMED_LIST => &mut counters.trimmed_draws,
+                _ => &mut counters.corner_draws,
+            };
             *used = (*used).max((draw + 1).min(frame.draw_capacity));
             if draw >= frame.draw_capacity {
                 counters.failed |= FAILED_DRAWS;
                 break;
             }
-            let draw = &mut draws[(draw + if trimmed { frame.draw_capacity } else { 0 }) as usize];
-            draw.vertex_count += 1;
-            draw.first_vertex = draw.first_vertex.min(at);
+            let of_one = if list == CORNER_LIST { CORNER_VERTICES } else { 1 };
+            let draw = &mut draws[(draw + list * frame.draw_capacity) as usize];
+            draw.vertex_count += of_one;
+            draw.first_vertex = draw.first_vertex.min(of_one * at);
         }
     }
 }

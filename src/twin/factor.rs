@@ -82,6 +82,12 @@
 pub use crate::abi::constants::factor::SPARE;
 use crate::abi::constants::factor::UP;
 
+/// Whether one segment along each parameter satisfies the bound of [`factors`].
+pub fn is_undivided(bend: [f32; 3], budget: f32) -> bool {
+    let [a, b, c] = bend.map(|x| x / budget);
+    (a + 2.0 * b + c) * UP <= 1.0
+}
+
 /// Segments `(tau_u, tau_v)`, whole numbers of small product, with
 /// `bend[0] / tau_u² + 2 bend[1] / (tau_u tau_v) + bend[2] / tau_v² ≤ budget`.
 ///
@@ -89,7 +95,7 @@ use crate::abi::constants::factor::UP;
 /// `8 deviation_px` over the pixels that one part unit can cover. Valid for factors up to 10⁹.
 pub fn factors(bend: [f32; 3], budget: f32) -> [f32; 2] {
     let [a, b, c] = bend.map(|x| x / budget);
-    if (a + 2.0 * b + c) * UP <= 1.0 {
+    if is_undivided(bend, budget) {
         return [1.0, 1.0];
     }
     let (al, cl) = (a.max(1e-20), c.max(1e-20));

@@ -50,7 +50,8 @@ pub mod view;
 
 pub use crate::abi::constants::push::MAX_PUSH;
 pub use crate::abi::constants::scene::{
-    FAILED_DRAWS, FAILED_INTERCEPTS, FAILED_ROWS, FAILED_SUB_PATCHES, MAX_FACTOR, MAX_SPLIT,
+    CORNER_LIST, CORNER_VERTICES, FAILED_DRAWS, FAILED_INTERCEPTS, FAILED_ROWS, FAILED_SUB_PATCHES, MAX_FACTOR,
+    MAX_SPLIT, PLAIN_LIST, TRIMMED_LIST,
 };
 use crate::abi::{Cell, Curve, Face, FaceInstance, Instance, Link, Patch, View};
 

@@ -64,7 +64,7 @@ pub fn part_runs(
     }
     let begins = (0..n).filter(|k| counts[n + k] != 0);
     let run = |k: usize| PatchRun { place: starts[k], patch_instance: parts[k].first_patch_instance };
-    let scanned = 2 * patch_instances + 1;
+    let scanned = frame.patch_lists() * patch_instances + 1;
     let groups = |threads: u32, group: u32| grid_of(frame, threads.div_ceil(group));
     let (threads, blocks) = (groups(patch_instances, THREADS), groups(scanned, SCAN_BLOCK));
     (begins.map(run).collect(), ListDispatches { threads, blocks, scanned })

@@ -3,8 +3,8 @@
 use super::emit::Draw;
 use crate::abi::{Counters, Frame};
 
-/// Draws of no vertex, plain then trimmed, and counters of zero.
+/// Draws of no vertex, list by list, and counters of zero.
 pub fn reset(frame: &Frame) -> (Vec<Draw>, Counters) {
     let empty = Draw { vertex_count: 0, instance_count: 1, first_vertex: u32::MAX, first_instance: 0 };
-    (vec![empty; 2 * frame.draw_capacity as usize], Counters::default())
+    (vec![empty; (frame.patch_lists() * frame.draw_capacity) as usize], Counters::default())
 }

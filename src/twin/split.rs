@@ -26,7 +26,7 @@
 //! along the axis is not affected.
 
 use super::occlusion::is_drawn;
-use super::{MAX_FACTOR, MAX_SPLIT, Scene};
+use super::{CORNER_LIST, CORNER_VERTICES, MAX_FACTOR, MAX_SPLIT, PLAIN_LIST, Scene, TRIMMED_LIST};
 use crate::abi::{FACE_CLOSED_U, FACE_CLOSED_V, Factors, Frame, Side};
 
 /// What the pass writes.
@@ -34,17 +34,17 @@ use crate::abi::{FACE_CLOSED_U, FACE_CLOSED_V, Factors, Frame, Side};
 pub struct Split {
     /// One for each patch instance.
     pub factors: Vec<Factors>,
-    /// All patch instances as plain, then all as trimmed.
+    /// All patch instances as members of the list of plain ones, then of the others: each is a member of one list.
     pub sub_patch_counts: Vec<u32>,
-    /// Tessellated vertices, likewise.
+    /// Vertices, likewise.
     pub vertex_counts: Vec<u32>,
 }
 
 /// Decides the segments of each patch instance's sides from the factors of all patches of its part.
 pub fn split(frame: &Frame, scene: &Scene<'_>, taus: &[u32]) -> Split {
     let n = frame.listed_patch_instances as usize;
-    let mut out =
-        Split { factors: Vec::with_capacity(n), sub_patch_counts: vec![0; 2 * n], vertex_counts: vec![0; 2 * n] };
+    let empty = vec![0; frame.patch_lists() as usize * n];
+    let mut out = Split { factors: Vec::with_capacity(n), sub_patch_counts: empty.clone(), vertex_counts: empty };
     for patch_instance in 0..n {
         let (placed, face, patch) = scene.patch_instance(patch_instance);
         let part =
@@ -54,7 +54,14 @@ pub fn split(frame: &Frame, scene: &Scene<'_>, taus: &[u32]) -> Split {
             is_drawn(taus[patch_instance]),
         );
         out.factors.push(factors);
-        let slot = if patch.side() == Side::Inside { patch_instance } else { n + patch_instance };
+        let (list, vertices) = match patch.side() {
+            Side::Inside if frame.corner_list != 0 && is_one_cell(&factors) => {
+                (CORNER_LIST, CORNER_VERTICES * sub_patches)
+            }
+            Side::Inside => (PLAIN_LIST, vertices),
+            Side::Outside | Side::Boundary => (TRIMMED_LIST, vertices),
+        };
+        let slot = list as usize * n + patch_instance;
         out.sub_patch_counts[slot] = sub_patches;
         out.vertex_counts[slot] = vertices;
     }
@@ -155,6 +162,11 @@ impl Part<'_> {
         };
         (factors, sub_patches, sub_patches * vertices(most))
     }
+}
+
+/// The patch has one segment a side and one inside: two triangles.
+fn is_one_cell(f: &Factors) -> bool {
+    [f.inner, f.edge_u, f.edge_v, f.splits] == [1 | 1 << 16; 4]
 }
 
 /// The most vertices of a sub-patch with at most these segments along each axis.

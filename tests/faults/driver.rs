@@ -9,11 +9,15 @@
 //! A call that shall fail is not passed on to the driver. One call is the exception: vkWaitForFences waits before it
 //! returns that the device is lost, so that the GPU has finished when handles are destroyed.
 //!
-//! Handles of the device and of its objects are listed; instances are not, nor are semaphores, events and descriptor
-//! pools.
+//! Handles of the device and of its objects are listed; instances and destroyed surfaces are counted. Events and
+//! descriptor pools are neither.
+
+#[path = "instances.rs"]
+mod instances;
 
 use ash::vk;
 use ash::vk::Handle;
+use instances::{create_instance, destroy_instance, destroy_surface, extensions, memory_properties, presents};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ffi::{CStr, c_char, c_void};
 use std::mem::transmute;
@@ -40,6 +44,8 @@ struct State {
     null: bool,
     fault: Option<Fault>,
     injected: u32,
+    instances: i32,
+    surfaces_destroyed: u32,
     calls: BTreeMap<&'static str, u32>,
     /// Kind and handle.
     living: BTreeSet<(&'static str, u64)>,
@@ -119,6 +125,17 @@ impl Driver {
     /// Number of calls since the last plan, except calls that free.
     pub fn count(&self) -> u32 {
         with(|state| state.calls.values().sum::<u32>()) + OTHERS.load(Ordering::Relaxed)
+    }
+
+    /// Number of instances that have not been destroyed.
+    pub fn instances(&self) -> i32 {
+        with(|state| state.instances)
+    }
+
+    /// Number of surfaces that were destroyed, with the null driver.
+    #[allow(dead_code)] // the viewer's test includes this file
+    pub fn surfaces_destroyed(&self) -> u32 {
+        with(|state| state.surfaces_destroyed)
     }
 
     /// Handles that have not been destroyed: for each one the name of the call that frees it, and `-` for a device.
@@ -231,6 +248,7 @@ pairs! {
     create_query_pool destroy_query_pool: vk::Device, vk::QueryPoolCreateInfo<'static> => vk::QueryPool, "vkCreateQueryPool" "vkDestroyQueryPool", |_| 0;
     create_command_pool destroy_command_pool: vk::Device, vk::CommandPoolCreateInfo<'static> => vk::CommandPool, "vkCreateCommandPool" "vkDestroyCommandPool", |_| 0;
     create_fence destroy_fence: vk::Device, vk::FenceCreateInfo<'static> => vk::Fence, "vkCreateFence" "vkDestroyFence", |_| 0;
+    create_semaphore destroy_semaphore: vk::Device, vk::SemaphoreCreateInfo<'static> => vk::Semaphore, "vkCreateSemaphore" "vkDestroySemaphore", |_| 0;
     allocate_memory free_memory: vk::Device, vk::MemoryAllocateInfo<'static> => vk::DeviceMemory, "vkAllocateMemory" "vkFreeMemory", |i| i.allocation_size;
 }
 
@@ -270,7 +288,6 @@ macro_rules! calls {
 }
 
 calls! {
-    create_instance "vkCreateInstance" (info: *const c_void, none: Callbacks, made: *mut u64) {};
     physical_devices "vkEnumeratePhysicalDevices" (instance: vk::Instance, count: *mut u32, made: *mut u64) {};
     map_memory "vkMapMemory" (device: vk::Device, memory: u64, offset: u64, size: u64, flags: u32, made: *mut *mut c_void) {
         let mapped = with(|state| {
@@ -368,58 +385,6 @@ unsafe extern "system" fn nothing() -> i32 {
     0
 }
 
-/// The driver's extensions, and the one that tells the budget.
-unsafe extern "system" fn extensions(
-    physical: vk::PhysicalDevice,
-    layer: *const c_char,
-    count: *mut u32,
-    all: *mut vk::ExtensionProperties,
-) -> vk::Result {
-    let original = real("vkEnumerateDeviceExtensionProperties").expect("asked for before");
-    // SAFETY: the driver's function; room for its answer, and for one more where there is an array.
-    unsafe {
-        let original = transmute::<usize, vk::PFN_vkEnumerateDeviceExtensionProperties>(original);
-        if with(|state| state.full.is_none()) {
-            return original(physical, layer, count, all);
-        }
-        if all.is_null() {
-            let result = original(physical, layer, count, all);
-            *count += 1;
-            return result;
-        }
-        *count -= 1;
-        let result = original(physical, layer, count, all);
-        let mut added = vk::ExtensionProperties::default();
-        let name = ash::ext::memory_budget::NAME.to_bytes_with_nul();
-        added.extension_name.iter_mut().zip(name).for_each(|(to, byte)| *to = *byte as c_char);
-        all.add(*count as usize).write(added);
-        *count += 1;
-        result
-    }
-}
-
-unsafe extern "system" fn memory_properties(
-    physical: vk::PhysicalDevice,
-    properties: *mut vk::PhysicalDeviceMemoryProperties2<'_>,
-) {
-    let original = real("vkGetPhysicalDeviceMemoryProperties2").expect("asked for before");
-    // SAFETY: the driver's function, and the structs of the caller's chain.
-    unsafe {
-        transmute::<usize, vk::PFN_vkGetPhysicalDeviceMemoryProperties2>(original)(physical, properties);
-        let Some(full) = with(|state| state.full) else { return };
-        let heaps = (*properties).memory_properties.memory_heaps;
-        let mut next = (*properties).p_next.cast::<vk::BaseOutStructure<'_>>();
-        while !next.is_null() {
-            if (*next).s_type == vk::StructureType::PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT {
-                let budget = next.cast::<vk::PhysicalDeviceMemoryBudgetPropertiesEXT<'_>>();
-                (*budget).heap_budget = heaps.map(|heap| heap.size);
-                (*budget).heap_usage = heaps.map(|heap| if full { heap.size } else { 0 });
-            }
-            next = (*next).p_next;
-        }
-    }
-}
-
 type Function = vk::PFN_vkVoidFunction;
 
 fn function(address: usize) -> Function {
@@ -430,13 +395,15 @@ fn function(address: usize) -> Function {
 /// The double's function for a call, if it has one; `original` is the driver's.
 fn double(name: &CStr, original: usize) -> Option<usize> {
     let (name, address) = match name.to_bytes() {
+        b"vkCreateInstance" => ("vkCreateInstance", address!(create_instance)),
+        b"vkDestroyInstance" => ("vkDestroyInstance", address!(destroy_instance)),
         b"vkDestroyDevice" => ("vkDestroyDevice", address!(destroy_device)),
         b"vkDestroyPipeline" => ("vkDestroyPipeline", address!(destroy_pipeline)),
         b"vkCreateGraphicsPipelines" => ("vkCreateGraphicsPipelines", address!(graphics)),
         b"vkCreateComputePipelines" => ("vkCreateComputePipelines", address!(compute)),
         name => pair(name).or_else(|| other(name))?,
     };
-    let of_system = ["vkCreateInstance", "vkEnumeratePhysicalDevices"].contains(&name);
+    let of_system = ["vkCreateInstance", "vkDestroyInstance", "vkEnumeratePhysicalDevices"].contains(&name);
     with(|state| {
         if !state.null || of_system {
             state.real.insert(name, original);
@@ -464,8 +431,16 @@ unsafe extern "system" fn get_instance_proc_addr(instance: vk::Instance, name: *
         with(|state| state.real.insert(name, original));
         return function(address);
     }
+    if with(|state| state.null) {
+        match name.to_bytes() {
+            b"vkGetPhysicalDeviceSurfaceSupportKHR" => return function(address!(presents)),
+            b"vkDestroySurfaceKHR" => return function(address!(destroy_surface)),
+            _ => (),
+        }
+    }
     // functions of devices come from get_device_proc_addr
-    let of_instance = [c"vkCreateInstance", c"vkEnumeratePhysicalDevices", c"vkCreateDevice"].contains(&name);
+    let of_instance =
+        [c"vkCreateInstance", c"vkDestroyInstance", c"vkEnumeratePhysicalDevices", c"vkCreateDevice"].contains(&name);
     function(if of_instance { double(name, original).unwrap_or(original) } else { original })
 }
 

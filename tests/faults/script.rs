@@ -127,7 +127,7 @@ fn is_told(error: &GpuError, fault: Fault) -> bool {
 }
 
 /// Each call of create, upload, frame, read back, edit and a sequence of frames fails in turn. Nothing crashes, no
-/// handle of the device leaks, and the error names the call.
+/// instance and no handle of the device leaks, and the error names the call.
 #[test]
 fn each_call_fails_once() {
     let script = Script::new("calls");
@@ -152,6 +152,7 @@ fn each_call_fails_once() {
                     None => assert!(may_be_mended(fault), "{fault:?} is not told"),
                 }
                 assert!(driver.living().is_empty(), "{fault:?} leaks {:?}", driver.living());
+                assert_eq!(driver.instances(), 0, "{fault:?} leaks instances");
                 tried += 1;
             }
         }

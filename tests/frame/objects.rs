@@ -150,6 +150,20 @@ fn only_a_scene_of_many_patches_has_occlusion_culling() {
     }
 }
 
+/// The pipeline of patches that are drawn by their corners exists only in scenes of many patches.
+#[test]
+fn only_a_scene_of_many_patches_draws_some_by_their_corners() {
+    let mut model = shapes::wave();
+    for (count, is_used) in [(16_383, false), (16_384, true)] {
+        let place = |i: usize| DAffine3::from_translation(DVec3::X * (10 * i) as f64);
+        model.instances = (0..count).map(|i| shapes::placed(place(i), None)).collect();
+        let (renderer, objects) = objects(&model, Outputs::default());
+        let has = objects.iter().any(|name| name == "visibility (plain, polynomial, by corners)");
+        assert_eq!(has, is_used, "{count} patches: {objects:?}");
+        assert_silent(renderer);
+    }
+}
+
 /// Cones of normals exist if a part is closed, none of its faces is trimmed, and all of their sides are linked.
 #[test]
 fn only_closed_parts_without_trims_have_cones() {

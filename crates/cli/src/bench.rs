@@ -230,6 +230,7 @@ const TRIM_TABLE: &str = "trim table";
 fn gather(to: &mut Gathered, stats: &FrameStats) {
     to.push("triangles", "", stats.triangles as f64);
     to.push("sub-patches", "", stats.sub_patches as f64);
+    to.push("corner patches", "", stats.corner_patches as f64);
     to.push("hidden parts", "", stats.hidden_parts as f64);
     to.push("listed patches", "", stats.listed_patches as f64);
     to.push("hidden patches", "", stats.hidden_patches as f64);

@@ -5,9 +5,9 @@
 //! ```
 //!
 //! The rows of one group are measured in turn, so that other work on the machine slows all of them alike: their ratios
-//! are comparable, their times are not. Slefes belong to the scene, so each kind has a renderer of its own. The run
-//! ends with the growth of time (`growth`), with `--rate` triangles a second beside those of a plain grid (`rate`); or,
-//! with `--against-fixed`, another table (`against`).
+//! are comparable, their times are not. Slefes and lists of draws belong to the scene, so each kind has a renderer of
+//! its own. The run ends with the growth of time (`growth`), with `--rate` triangles a second beside those of a plain
+//! grid (`rate`); or, with `--against-fixed`, another table (`against`).
 
 mod against;
 mod divided;
@@ -49,6 +49,7 @@ struct Row {
     tolerance_px: f64,
     patches: u64,
     sub_patches: u64,
+    corner_patches: u64,
     triangles: u64,
     /// Median milliseconds of all passes, and of those in quotes in `ARCHITECTURE.md`.
     all_ms: f64,
@@ -69,8 +70,8 @@ struct Row {
     clamps: u64,
 }
 
-/// A renderer for each scene, by the segments of its slefes.
-type Renderers = BTreeMap<Option<usize>, HeadlessRenderer>;
+/// A renderer for each scene, by [`Divided::scene`].
+type Renderers = BTreeMap<(Option<usize>, Option<bool>), HeadlessRenderer>;
 
 /// Sweeps every model.
 pub fn run(args: &SweepArgs) -> Result<Outcome> {
@@ -135,12 +136,12 @@ fn renderer(args: &SweepArgs) -> Result<HeadlessRenderer> {
 
 /// Renderers with the model, one for each kind of scene that the ways to divide need.
 fn renderers(args: &SweepArgs, model: &Model) -> Result<Renderers> {
-    let scenes: BTreeSet<_> = args.factors.iter().map(|divided| divided.slefe_segments()).collect();
-    let uploaded = |slefe_segments| {
+    let scenes: BTreeSet<_> = args.factors.iter().map(|divided| divided.scene()).collect();
+    let uploaded = |(slefe_segments, corners)| {
         let mut renderer = renderer(args)?;
-        let divided = SceneOptions { slefe_segments, ..SceneOptions::default() };
+        let divided = SceneOptions { slefe_segments, corners, ..SceneOptions::default() };
         renderer.upload_baseline(model, SceneSettings::default(), divided)?;
-        Ok((slefe_segments, renderer))
+        Ok(((slefe_segments, corners), renderer))
     };
     scenes.into_iter().map(uploaded).collect()
 }
@@ -195,7 +196,7 @@ impl Group<'_> {
             ..FrameSettings::default()
         };
         let mut draw = |way: &(Divided, f64), outputs| {
-            let renderer = renderers.get_mut(&way.0.slefe_segments()).expect("one for each way");
+            let renderer = renderers.get_mut(&way.0.scene()).expect("one for each way");
             renderer.render(&self.camera, &settings(*way), outputs)
         };
         let mut frames: Vec<Vec<FrameStats>> = vec![Vec::new(); ways.len()];
@@ -228,6 +229,7 @@ impl Group<'_> {
                 tolerance_px: way.1,
                 patches: last.patches,
                 sub_patches: last.sub_patches,
+                corner_patches: last.corner_patches,
                 triangles: last.triangles,
                 all_ms: pass(""),
                 tessellation_ms: pass("tessellation"),
@@ -275,6 +277,7 @@ fn table(rows: &[Row]) -> String {
         "factors",
         "px",
         "patches",
+        "by corners",
         "triangles",
         "all, ms",
         "tessellation",
@@ -296,6 +299,7 @@ fn table(rows: &[Row]) -> String {
             r.factors.clone(),
             r.tolerance_px.to_string(),
             r.patches.to_string(),
+            r.corner_patches.to_string(),
             r.triangles.to_string(),
             format!("{:.2}", r.all_ms),
             format!("{:.2}", r.tessellation_ms),

@@ -50,7 +50,7 @@ pub(crate) struct PatchList<'a> {
 /// The passes, and the counters of all stages.
 pub(crate) struct Common {
     pub(super) passes: Arc<Passes>,
-    /// Plain draws of sub-patches, then trimmed ones.
+    /// Draws of sub-patches, list by list: plain, trimmed, and patches drawn by their corners, if they have a list.
     pub draws: Buffer,
     pub counters: Buffer,
     /// The counters as they were after the reusable results; they stay from frame to frame.
@@ -61,9 +61,10 @@ pub(crate) struct Common {
 impl Common {
     /// `scanned`: elements of the longest prefix sum.
     pub(super) fn new(room: &Room<'_>, passes: &Arc<Passes>, scanned: u32) -> Result<Self, GpuError> {
+        let lists = room.counts.patch_lists();
         Ok(Self {
             passes: Arc::clone(passes),
-            draws: room.indirect::<vk::DrawIndirectCommand>("draws", 2 * room.capacities.tessellation.draws)?,
+            draws: room.indirect::<vk::DrawIndirectCommand>("draws", lists * room.capacities.tessellation.draws)?,
             counters: room.indirect::<Counters>("counters", 1)?,
             counters_of_view: room.structs::<Counters>("counters of the view", 1)?,
             sums: room.words("scan sums", scan::block_count(scanned))?,
@@ -73,7 +74,7 @@ impl Common {
     /// Empties the draws and clears the counters.
     pub(super) fn reset(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let bindings = reset::Bindings { frame: frame.constants, draws: &self.draws, counters: &self.counters };
-        self.passes.reset.record(cmd, &bindings, 2 * frame.capacities.tessellation.draws);
+        self.passes.reset.record(cmd, &bindings, frame.counts.patch_lists() * frame.capacities.tessellation.draws);
         let w = Access::COMPUTE_WRITE;
         cmd.after(w, w);
     }
@@ -95,17 +96,17 @@ impl Common {
         self.passes.scan.record(cmd, scan::Count::Host(count), &bindings);
     }
 
-    /// Records one prefix sum of two elements for each listed patch instance; the total follows the last start. There
-    /// are at most `most` patch instances, and one element and two starts more.
+    /// Records one prefix sum of an element of each of `lists` for each listed patch instance; the total follows the
+    /// last start. There are at most `most` patch instances, and one element and two starts more.
     pub(super) fn scan_listed(
         &self,
         cmd: &Commands<'_>,
         (counts, starts): (&Buffer, &Buffer),
         threads: Threads<'_>,
-        most: u32,
+        (lists, most): (u32, u32),
     ) {
         let dispatches = match threads {
-            Threads::Host(patch_instances) => return self.scan(cmd, counts, starts, 2 * patch_instances),
+            Threads::Host(patch_instances) => return self.scan(cmd, counts, starts, lists * patch_instances),
             Threads::Gpu(dispatches) => dispatches,
         };
         let (sums, w) = (&self.sums, Access::COMPUTE_WRITE);
@@ -116,9 +117,9 @@ impl Common {
             index: (offset_of!(ListDispatches, scanned) / size_of::<u32>()) as u32,
             arguments: dispatches,
             offset: offset_of!(ListDispatches, blocks) as u64,
-            capacity: 2 * most + 1,
+            capacity: lists * most + 1,
         };
-        let total_index = 2 * most + 1;
+        let total_index = lists * most + 1;
         let bindings = scan::Bindings { values: counts, offsets: starts, sums, total: starts, total_index };
         self.passes.scan.record(cmd, count, &bindings);
     }

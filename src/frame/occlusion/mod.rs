@@ -174,7 +174,7 @@ impl Occlusion {
         barrier::images(cmd, &[(&v.image, Access::COLOUR_WRITE, Access::COLOUR_WRITE)]);
         cmd.after(Access::INDIRECT_READ | w, w);
         let draws = reset::Bindings { frame: frame.constants, draws: &c.draws, counters: &c.counters };
-        self.passes.reset.record(cmd, &draws, 2 * frame.capacities.tessellation.draws);
+        self.passes.reset.record(cmd, &draws, frame.counts.patch_lists() * frame.capacities.tessellation.draws);
         cmd.after(w, w);
         frame.stages.tessellation.begin_again(cmd);
         frame.stages.tessellation.split(frame, cmd);

@@ -4,10 +4,13 @@
 //! ```text
 //!   occlusion::list_parts: parts that were not hidden, in scenes of many placed parts
 //!   bound    tau per patch ──occlusion::cull_early──▶ 0 for patches that were hidden
-//!   split    segments per side
+//!   split    segments per side; the list of each patch: plain, trimmed, by its corners
 //!     │(scan) sub-patches, vertices
-//!   emit     list and draws
+//!   emit     lists and draws
 //! ```
+//!
+//! In scenes of many patches, plain patches of one segment a side have a list of their own (`scene/corners.rs`). Pass
+//! `visibility` draws them by their corners, without tessellation stages.
 
 pub(crate) mod bound;
 mod capacities;
@@ -63,15 +66,16 @@ pub(crate) struct Tessellation {
 impl Tessellation {
     pub(super) fn new(room: &Room<'_>, passes: Option<&Arc<Passes>>) -> Result<Self, GpuError> {
         let n = room.counts.patch_instances;
+        let counted = room.counts.patch_lists() * n;
         Ok(Self {
             passes: passes.cloned(),
             taus: room.words("taus", n)?,
             factors: room.structs::<Factors>("factors", n)?,
             sub_patches: room.structs::<SubPatch>("sub-patches", room.capacities.tessellation.sub_patches)?,
-            sub_patch_counts: room.words("sub-patch counts", 2 * n + 1)?,
-            sub_patch_starts: room.words("sub-patch starts", 2 * n + 2)?,
-            vertex_counts: room.words("vertex counts", 2 * n + 1)?,
-            vertex_starts: room.words("vertex starts", 2 * n + 2)?,
+            sub_patch_counts: room.words("sub-patch counts", counted + 1)?,
+            sub_patch_starts: room.words("sub-patch starts", counted + 2)?,
+            vertex_counts: room.words("vertex counts", counted + 1)?,
+            vertex_starts: room.words("vertex starts", counted + 2)?,
         })
     }
 
@@ -104,7 +108,7 @@ impl Tessellation {
         let Some(p) = &self.passes else { return };
         let (s, c) = (frame.scene, &frame.stages.common);
         let PatchList { runs, threads } = frame.patch_list();
-        let most = frame.counts.patch_instances;
+        let most = (frame.counts.patch_lists(), frame.counts.patch_instances);
         let (w, r) = WRITE_TO_READ;
         let split = split::Bindings {
             frame: frame.constants,

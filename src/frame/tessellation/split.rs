@@ -33,7 +33,7 @@ pub(crate) struct Bindings<'a> {
     pub taus: &'a Buffer,
     /// [`Factors`](crate::abi::Factors) per patch instance.
     pub factors: &'a Buffer,
-    /// For each patch instance in sight: plain, then trimmed.
+    /// For each patch instance in sight, list by list: plain, trimmed, by its corners.
     pub sub_patch_counts: &'a Buffer,
     /// Vertices, likewise.
     pub vertex_counts: &'a Buffer,

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //!   sub-patch ──tesc──▶ levels ──tese──▶ exact surface at the vertices ──▶ triangles
+//!   patch of one segment a side ──vert──▶ its four corners ──────────────▶ two triangles   scenes of many patches
 //!        plain    frag  ──────────────────────────────▶ patch instance, (u, v)   depth
 //!        trimmed  frag  trim test of one way          ▶ patch instance, (u, v)   depth, depths of skirts
 //! ```
@@ -10,6 +11,7 @@
 //! the near plane), which begin cleared or with meshes and solids; `border_depths`, cleared before.
 
 use crate::abi::Counters;
+use crate::abi::constants::scene::CORNER_LIST;
 use crate::bindings::{Placed, Primitives};
 use crate::frame::common::draw::Draw;
 use crate::gpu::{
@@ -28,6 +30,8 @@ pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 /// The pass: one pipeline for each kind of patch in the scene.
 pub(crate) struct Visibility {
     plain: Option<Pipeline>,
+    /// Plain patches of one segment a side, if they have a list of their own.
+    corners: Option<Pipeline>,
     trimmed: Option<Pipeline>,
 }
 
@@ -36,6 +40,8 @@ pub(crate) struct Visibility {
 pub(crate) struct Kinds<'a> {
     pub rational: bool,
     pub plain: bool,
+    /// Plain patches of one segment a side have a list of their own.
+    pub corner_list: bool,
     /// Faces share sides.
     pub linked: bool,
     /// The trim test; `None` if no face is trimmed.
@@ -46,6 +52,47 @@ pub(crate) struct Kinds<'a> {
     pub operands: bool,
     /// The most general kind of surface of the volume that trims the scene; `None` without one.
     pub volume: Option<u32>,
+}
+
+impl Kinds<'_> {
+    /// The pipeline of trimmed patches, or of plain ones; `corners`: of those that are drawn by their corners.
+    fn pipeline(self, device: &Device, trimmed: Option<&TrimTest>, corners: bool) -> Result<Pipeline, GpuError> {
+        let within = self.volume.is_some();
+        let (fragment, kind) = match trimmed {
+            None if within => (&shaders::VISIBILITY_VOLUME_FRAG, "plain"),
+            None => (&shaders::VISIBILITY_FRAG, "plain"),
+            Some(t) => (t.within.filter(|_| within).map_or(t.visibility, |w| w.visibility), t.way),
+        };
+        // corners are control points, the same for all faces that meet there
+        let linked = self.linked && trimmed.is_none() && !corners;
+        let surface = match (linked, within) {
+            (false, _) => &shaders::VISIBILITY_TESE,
+            (true, false) => &shaders::VISIBILITY_LINKED_TESE,
+            (true, true) => &shaders::VISIBILITY_LINKED_VOLUME_TESE,
+        };
+        let (vertex, tessellation, by_corners) = match corners {
+            false => (&shaders::VISIBILITY_VERT, Some([&shaders::VISIBILITY_TESC, surface]), ""),
+            true => (&shaders::VISIBILITY_CORNERS_VERT, None, ", by corners"),
+        };
+        let within = if within { ", within a volume" } else { "" };
+        let shared = if linked { ", linked" } else { "" };
+        let weights = if self.rational { "rational" } else { "polynomial" };
+        let name = format!("visibility ({kind}, {weights}{shared}{by_corners}{within})");
+        let draw = Draw {
+            tessellation,
+            constants: &[
+                (constant::SCENE_HAS_RATIONAL, u32::from(self.rational)),
+                (constant::TRIMMED, u32::from(trimmed.is_some())),
+                (constant::TRIMS_HAVE_BINS, u32::from(self.bins)),
+                (constant::SCENE_HAS_OPERANDS, u32::from(self.operands)),
+                (constant::SOLIDS_HAVE, self.volume.unwrap_or_default()),
+            ],
+            colour: &[ColourTarget { format: VISIBILITY_FORMAT, blend: Blend::Replace }],
+            depth: Some(DepthTest { format: DEPTH_FORMAT, compare: vk::CompareOp::GREATER, write: true }),
+            ..Draw::new(&name, vertex, fragment)
+        };
+        draw.pipeline(device)
+    }
 }
 
 /// Its buffers, in binding order.
@@ -69,45 +116,16 @@ pub(crate) struct Bindings<'a> {
 
 impl Visibility {
     pub(crate) fn new(device: &Device, kinds: Kinds<'_>) -> Result<Self, GpuError> {
-        let pipeline = |trimmed: Option<&TrimTest>| {
-            let within = kinds.volume.is_some();
-            let (fragment, kind) = match trimmed {
-                None if within => (&shaders::VISIBILITY_VOLUME_FRAG, "plain"),
-                None => (&shaders::VISIBILITY_FRAG, "plain"),
-                Some(t) => (t.within.filter(|_| within).map_or(t.visibility, |w| w.visibility), t.way),
-            };
-            let linked = kinds.linked && trimmed.is_none();
-            let surface = match (linked, within) {
-                (false, _) => &shaders::VISIBILITY_TESE,
-                (true, false) => &shaders::VISIBILITY_LINKED_TESE,
-                (true, true) => &shaders::VISIBILITY_LINKED_VOLUME_TESE,
-            };
-            let within = if within { ", within a volume" } else { "" };
-            let shared = if linked { ", linked" } else { "" };
-            let weights = if kinds.rational { "rational" } else { "polynomial" };
-            let name = format!("visibility ({kind}, {weights}{shared}{within})");
-            let draw = Draw {
-                tessellation: Some([&shaders::VISIBILITY_TESC, surface]),
-                constants: &[
-                    (constant::SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
-                    (constant::TRIMMED, u32::from(trimmed.is_some())),
-                    (constant::TRIMS_HAVE_BINS, u32::from(kinds.bins)),
-                    (constant::SCENE_HAS_OPERANDS, u32::from(kinds.operands)),
-                    (constant::SOLIDS_HAVE, kinds.volume.unwrap_or_default()),
-                ],
-                colour: &[ColourTarget { format: VISIBILITY_FORMAT, blend: Blend::Replace }],
-                depth: Some(DepthTest { format: DEPTH_FORMAT, compare: vk::CompareOp::GREATER, write: true }),
-                ..Draw::new(&name, &shaders::VISIBILITY_VERT, fragment)
-            };
-            draw.pipeline(device)
-        };
+        let plain = || kinds.pipeline(device, None, false);
+        let corners = || kinds.pipeline(device, None, true);
         Ok(Self {
-            plain: kinds.plain.then(|| pipeline(None)).transpose()?,
-            trimmed: kinds.trimmed.map(|test| pipeline(Some(test))).transpose()?,
+            plain: kinds.plain.then(plain).transpose()?,
+            corners: kinds.corner_list.then(corners).transpose()?,
+            trimmed: kinds.trimmed.map(|test| kinds.pipeline(device, Some(test), false)).transpose()?,
         })
     }
 
-    /// Draws both lists; `draw_capacity` draws of each lie in `draws`, plain first.
+    /// Draws all lists; `draw_capacity` draws of each lie in `draws`: plain, trimmed, by corners.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
@@ -116,15 +134,22 @@ impl Visibility {
         draw_capacity: u32,
     ) {
         let bytes = u64::from(draw_capacity) * size_of::<vk::DrawIndirectCommand>() as u64;
-        let lists = [b.factors.into(), b.sub_patches.into(), b.instances.into()];
+        let lists = [b.sub_patches.into(), b.instances.into()];
         let volume = || b.volume.iter().flat_map(Primitives::resources);
-        let shared = || [b.frame.into()].into_iter().chain(b.placed.resources()).chain(lists);
+        let placed = || [b.frame.into()].into_iter().chain(b.placed.resources());
+        let shared = || placed().chain([b.factors.into()]).chain(lists);
         cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
             if let Some(plain) = &self.plain {
                 let last = volume().chain(b.links.map(Into::into));
                 cmd.bind(plain, &shared().chain(last).collect::<Vec<_>>(), &[]);
                 let count = offset_of!(Counters, plain_draws) as u64;
                 cmd.draw_indirect_count(b.draws, 0, b.counters, count, draw_capacity);
+            }
+            if let Some(corners) = &self.corners {
+                cmd.bind(corners, &placed().chain(lists).chain(volume()).collect::<Vec<_>>(), &[]);
+                let count = offset_of!(Counters, corner_draws) as u64;
+                let first = u64::from(CORNER_LIST) * bytes;
+                cmd.draw_indirect_count(b.draws, first, b.counters, count, draw_capacity);
             }
             if let (Some(trimmed), Some(border_depths)) = (&self.trimmed, b.border_depths) {
                 let test = b.trim.iter().copied().chain(volume());

@@ -10,6 +10,8 @@ use glam::DVec3;
 struct Grid {
     face: Face,
     taus: Vec<u32>,
+    sides: Vec<Side>,
+    corner_list: u32,
     out: Split,
 }
 
@@ -31,11 +33,12 @@ impl Grid {
                 if random.integer(0, 9) < unseen { 0 } else { tau[0] | tau[1] << 16 }
             })
             .collect();
-        let sides = [Side::Outside, Side::Inside, Side::Boundary];
-        let shapes: Vec<Patch> = (0..patches)
-            .map(|_| Patch { shape: Patch::pack_shape((1, 1), false, random.pick(&sides), 0), ..Default::default() })
-            .collect();
-        let frame = Frame { listed_patch_instances: patches as u32, ..Default::default() };
+        let any = [Side::Outside, Side::Inside, Side::Boundary];
+        let sides: Vec<Side> = (0..patches).map(|_| random.pick(&any)).collect();
+        let shape = |side: &Side| Patch { shape: Patch::pack_shape((1, 1), false, *side, 0), ..Default::default() };
+        let shapes: Vec<Patch> = sides.iter().map(shape).collect();
+        let corner_list = random.integer(0, 1);
+        let frame = Frame { listed_patch_instances: patches as u32, corner_list, ..Default::default() };
         let scene = Scene {
             face_instances: &[FaceInstance::default()],
             faces: &[face],
@@ -44,7 +47,7 @@ impl Grid {
             ..Default::default()
         };
         let out = split(&frame, &scene, &taus);
-        Self { face, taus, out }
+        Self { face, taus, sides, corner_list, out }
     }
 
     /// Index of the patch one step along `axis`, around a closed face; `None` at a border.
@@ -91,10 +94,12 @@ fn shared_sides_agree() {
 }
 
 /// Splits are powers of two, and so are factors that differ. Every side and the interior are multiples of the splits,
-/// within the hardware's factor. Each patch gets at least the segments that it needs. Counts match the draws.
+/// within the hardware's factor. Each patch gets at least the segments that it needs. Counts match the draws, and each
+/// patch is a member of one list.
 #[test]
 fn sub_patches_are_within_the_hardware_s_factor() {
     let mut random = Random::new(6);
+    let mut by_corners = 0;
     for _ in 0..3000 {
         let g = Grid::new(&mut random);
         for (n, f) in g.out.factors.iter().enumerate() {
@@ -113,12 +118,19 @@ fn sub_patches_are_within_the_hardware_s_factor() {
                 let powers = [edges[0], edges[1], inner[axis]].iter().all(|x| x.is_power_of_two());
                 assert!(even || powers, "a side of another factor is joined by powers of two");
             }
-            let total = |counts: &[u32]| counts[n] + counts[g.taus.len() + n];
+            let of_list = |counts: &[u32], list: u32| counts[list as usize * g.taus.len() + n];
+            let total = |counts: &[u32]| (0..2 + g.corner_list).map(|list| of_list(counts, list)).sum::<u32>();
             let drawn = if g.taus[n] == 0 { 0 } else { splits[0] * splits[1] };
-            assert_eq!(total(&g.out.sub_patch_counts), drawn);
-            assert_eq!(total(&g.out.vertex_counts), drawn * vertices(most));
+            let plain = g.sides[n] == Side::Inside;
+            let one_cell = g.corner_list == 1 && plain && (splits, most) == ([1, 1], [1, 1]);
+            let list = if one_cell { 2 } else { u32::from(!plain) };
+            assert_eq!((total(&g.out.sub_patch_counts), of_list(&g.out.sub_patch_counts, list)), (drawn, drawn));
+            let vertices = if one_cell { 6 } else { vertices(most) };
+            assert_eq!(total(&g.out.vertex_counts), drawn * vertices);
+            by_corners += u32::from(one_cell && drawn > 0);
         }
     }
+    assert!(by_corners > 300, "{by_corners} patches drawn by their corners");
 }
 
 /// Sides of faces on one curve get the same number of segments of it, each at least as many as it needs, up to the most

@@ -9,7 +9,7 @@ use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use selvedge::ash;
 use selvedge::gpu::{GpuAllocator, HostDevice, Requirements};
 use selvedge::gpu_allocator;
-use std::ffi::{CStr, c_void};
+use std::ffi::{CStr, c_char, c_void};
 use std::mem::ManuallyDrop;
 use std::sync::{Arc, Mutex, PoisonError};
 use winit::raw_window_handle::{HasDisplayHandle, HasWindowHandle};
@@ -49,16 +49,58 @@ pub struct DeviceOptions {
     pub validation: bool,
 }
 
+/// Destroys what was made so far, the last first, unless all was made.
+#[derive(Default)]
+struct Made(Vec<Box<dyn FnOnce()>>);
+
+impl Made {
+    /// `destroy` gets a copy of `owner`.
+    fn push<T: Clone + 'static>(&mut self, owner: &T, destroy: impl FnOnce(&T) + 'static) {
+        let owner = owner.clone();
+        self.0.push(Box::new(move || destroy(&owner)));
+    }
+
+    fn keep(mut self) {
+        self.0.clear();
+    }
+}
+
+impl Drop for Made {
+    fn drop(&mut self) {
+        while let Some(destroy) = self.0.pop() {
+            destroy();
+        }
+    }
+}
+
 impl Context {
-    /// Opens the best device that can draw and present to the window.
+    /// Opens the best device that can draw and present to the window. If that fails, nothing is left of it.
     pub fn new(window: &Window, options: &DeviceOptions) -> Result<Self, ViewError> {
         let display = window.display_handle().map_err(|e| ViewError::Window(e.to_string()))?.as_raw();
+        // SAFETY: the system's loader, and a living window.
+        unsafe {
+            let entry = ash::Entry::load().map_err(|e| ViewError::NoLoader(e.to_string()))?;
+            let extensions = ash_window::enumerate_required_extensions(display)?.to_vec();
+            Self::of_surface(entry, extensions, options, |entry, instance| surface(entry, instance, window))
+        }
+    }
+
+    /// As [`new`](Self::new), of the surface that `make_surface` makes with these extensions of the instance.
+    ///
+    /// # Safety
+    /// The surface is that of a living window.
+    unsafe fn of_surface(
+        entry: ash::Entry,
+        mut extensions: Vec<*const c_char>,
+        options: &DeviceOptions,
+        make_surface: impl FnOnce(&ash::Entry, &ash::Instance) -> Result<vk::SurfaceKHR, ViewError>,
+    ) -> Result<Self, ViewError> {
         let messages: Arc<Mutex<Vec<String>>> = Arc::default();
+        // declared before all else, so that the allocator is gone before its device
+        let mut made = Made::default();
         // SAFETY: plain Vulkan in its usual order: every struct outlives the call that it is given to, the handles of the
         // window are those of a living one, and the messages outlive the instance.
         unsafe {
-            let entry = ash::Entry::load().map_err(|e| ViewError::NoLoader(e.to_string()))?;
-            let mut extensions = ash_window::enumerate_required_extensions(display)?.to_vec();
             let mut layers = Vec::new();
             if options.validation {
                 let installed = entry.enumerate_instance_layer_properties()?;
@@ -81,11 +123,17 @@ impl Context {
                 create = create.push_next(&mut features);
             }
             let instance = entry.create_instance(&create, None)?;
+            made.push(&instance, |instance| instance.destroy_instance(None));
             let debug = options.validation.then(|| messenger(&entry, &instance, &messages)).transpose()?;
+            if let Some(debug) = &debug {
+                made.push(debug, |(debug, messenger)| debug.destroy_debug_utils_messenger(*messenger, None));
+            }
             let surfaces = ash::khr::surface::Instance::new(&entry, &instance);
-            let surface = surface(&entry, &instance, window)?;
+            let surface = make_surface(&entry, &instance)?;
+            made.push(&surfaces, move |surfaces| surfaces.destroy_surface(surface, None));
             let (physical, family, name) = choose(&instance, &surfaces, surface, options.device.as_deref())?;
             let device = device(&instance, physical, family)?;
+            made.push(&device, |device| device.destroy_device(None));
             let queue = device.get_device_queue(family, 0);
             let description = AllocatorCreateDesc {
                 instance: instance.clone(),
@@ -100,10 +148,13 @@ impl Context {
                 .queue_family_index(family)
                 .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER);
             let pool = device.create_command_pool(&create, None)?;
+            made.push(&device, move |device| device.destroy_command_pool(pool, None));
             let allocate = vk::CommandBufferAllocateInfo::default().command_pool(pool).command_buffer_count(1);
             let cmd = device.allocate_command_buffers(&allocate)?[0];
             let fence = device.create_fence(&vk::FenceCreateInfo::default(), None)?;
+            made.push(&device, move |device| device.destroy_fence(fence, None));
             let acquired = device.create_semaphore(&vk::SemaphoreCreateInfo::default(), None)?;
+            made.keep();
             Ok(Self {
                 swapchains: ash::khr::swapchain::Device::new(&instance, &device),
                 push_descriptor: ash::khr::push_descriptor::Device::new(&instance, &device),
@@ -289,3 +340,6 @@ unsafe extern "system" fn on_message(
     messages.lock().unwrap_or_else(PoisonError::into_inner).push(text.into_owned());
     vk::FALSE
 }
+
+#[cfg(test)]
+mod tests;

@@ -63,18 +63,38 @@ pub struct Screen {
 /// Most sizes of pictures that are kept.
 const MOST_TARGETS: usize = 3;
 
-impl Screen {
-    pub fn new(window: &Window, options: &DeviceOptions) -> Result<Self, ViewError> {
-        let context = Context::new(window, options)?;
-        let format = swapchain::format(&context)?.format;
-        let composite = Composite::new(&context, format)?;
+/// What draws on the context's device. If a part fails, those before it are destroyed.
+fn parts(context: &Context) -> Result<(Composite, PanelRenderer, PickBuffer), ViewError> {
+    let format = swapchain::format(context)?.format;
+    let composite = Composite::new(context, format)?;
+    let others = || {
         let panels = PanelRenderer::with_gpu_allocator(
             Arc::clone(context.allocator()),
             context.device.clone(),
             DynamicRendering { color_attachment_format: format, depth_attachment_format: None },
             Options { srgb_framebuffer: true, ..Options::default() },
         )?;
-        let pick = PickBuffer::new(&context)?;
+        Ok::<_, ViewError>((panels, PickBuffer::new(context)?))
+    };
+    match others() {
+        Ok((panels, pick)) => Ok((composite, panels, pick)),
+        Err(error) => {
+            composite.destroy(context);
+            Err(error)
+        }
+    }
+}
+
+impl Screen {
+    pub fn new(window: &Window, options: &DeviceOptions) -> Result<Self, ViewError> {
+        let context = Context::new(window, options)?;
+        let (composite, panels, pick) = match parts(&context) {
+            Ok(parts) => parts,
+            Err(error) => {
+                context.shutdown();
+                return Err(error);
+            }
+        };
         Ok(Self {
             context,
             swapchain: None,
