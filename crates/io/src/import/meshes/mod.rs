@@ -287,7 +287,7 @@ pub(super) fn pieces(bytes: &[u8], ending: &str) -> Result<(Vec<Triangles>, Vec<
         Some(line) => format!("line {line}: {}", w.message),
         None => w.message,
     };
-    let alone = OtherFiles { folder: None, most: 0 };
+    let alone = OtherFiles::new("", None, &super::Options::default());
     let Found { pieces, placements, mut notes, .. } = found(bytes, ending, alone).map_err(wrong)?;
     notes.extend(polygons_left_out(&pieces));
     let lost = notes.into_iter().filter(|(kind, _)| kind.ends_with("left out") && !kind.starts_with("colours"));
