@@ -83,7 +83,8 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
     let mut model = Model { name: model_name(&global.product, name), ..Model::default() };
     model.unit.clone_from(&global.unit_name);
     for body in &bodies {
-        model.parts.push(Part { name: body.name.clone(), closed: body.closed, ..Part::default() });
+        let closed = body.closed && body.shells.lost.is_empty();
+        model.parts.push(Part { name: body.name.clone(), closed, ..Part::default() });
     }
     let (solids, placements): (Vec<_>, Vec<_>) = placements.into_iter().partition(|p| bodies[p.body].solid.is_some());
     for placed in placements {
@@ -196,6 +197,7 @@ fn build(
                     model.parts[part].faces.push(report.record(record(id, part), built));
                 }
                 Err(error) => {
+                    model.parts[part].closed = false;
                     geometry.note(FACE_LOST, id, error.to_string());
                     report.face_records.push(FaceRecord { notes: vec![error.to_string()], ..record(id, part) });
                 }

@@ -81,7 +81,7 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Re
     let mut units = BTreeSet::new();
     let mut solids = Solids::default();
     let add = |model: &mut Model, report: &mut ImportReport, name: String, body: &mut Body, tolerance: f64| {
-        let (closed, meshes) = (body.closed, std::mem::take(&mut body.meshes));
+        let (closed, meshes) = (body.closed && !body.incomplete, std::mem::take(&mut body.meshes));
         model.parts.push(Part { name, closed, meshes, ..Part::default() });
         let lost = |(id, reason): &(u32, String)| FaceRecord {
             id: *id,
@@ -212,6 +212,7 @@ fn build(
                     model.parts[record.part].faces.push(report.record(record, built));
                 }
                 Err(error) => {
+                    model.parts[record.part].closed = false;
                     notes.push(FACE_LOST, || places.of(id), error.to_string());
                     report.face_records.push(FaceRecord { notes: vec![error.to_string()], ..record });
                 }

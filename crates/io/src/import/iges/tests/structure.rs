@@ -22,6 +22,11 @@ fn a_solid() {
     assert_eq!((i.report.faces, i.report.edges, i.report.pcurves, part.faces.len()), (3, 3, 4, 3));
     assert_eq!((i.report.format.as_str(), i.model.unit.as_str()), ("IGES 5.3", "mm"));
     normals_leave(&part.faces, DVec3::new(0.0, 0.0, 2.5));
+    // a face whose surface is none, and one whose loop is a line across it: what is left bounds nothing
+    for (from, to) in [("510,39,1,1,47;", "510,47,1,1,47;"), ("508,1,0,17,1,1,0;", "508,1,0,17,2,1,0;")] {
+        let i = iges(CYLINDER.replacen(from, to, 1).as_bytes(), "cylinder.igs").unwrap();
+        assert_eq!((i.model.parts[0].faces.len(), i.model.parts[0].closed), (2, false), "{:?}", i.warnings);
+    }
 }
 
 /// Each edge is used twice and known by its list and its place there.
