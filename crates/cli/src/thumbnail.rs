@@ -9,7 +9,7 @@ use crate::{Outcome, device};
 use anyhow::{Error, Result, bail};
 use selvedge::picture::{FrameSettings, Outputs, Samples, SceneSettings};
 use selvedge_jobs::{
-    Backdrop, Drawer, Job, JobError, Limits, Loaded, NAMED, ReadOptions, Source, Stop, Viewpoint, lines, read,
+    Backdrop, Drawer, Drawn, Job, JobError, Limits, Loaded, NAMED, ReadOptions, Source, Stop, Viewpoint, lines, read,
     write_png,
 };
 use std::path::{Path, PathBuf};
@@ -41,8 +41,8 @@ pub fn run(args: &ThumbnailArgs) -> Result<Outcome> {
         limits: Limits::default(),
     };
     let mut drawer = Drawer::new(&device::options(args.device.as_deref(), false)).map_err(failure)?;
-    let picture = drawer.draw(&job, &stop).map_err(failure)?.picture;
-    if picture.colour.iter().all(|[.., opacity]| *opacity == 0) {
+    let Drawn { picture, blank, .. } = drawer.draw(&job, &stop).map_err(failure)?;
+    if blank {
         bail!("{file}: nothing is seen with all of it in a picture of {0} x {0}", args.size);
     }
     target::write(&args.output, |to| Ok(write_png(to, picture.size, &picture.colour)?))?;
