@@ -104,6 +104,11 @@ fn no_output_replaces_an_input() {
     fs::write(&grid, "selvedge = 1\n[surface.a]\nshape = \"grid\"\nfile = \"out/bench.csv\"\n").unwrap();
     refused(&["sweep", &grid, "--out", &points], "the same file as the input");
     refused(&["bench", &grid, "--out", &out], "the same file as the input");
+    let loops = path("loops.toml");
+    fs::remove_file(path("out/edit.json")).unwrap();
+    fs::copy(source, path("out/edit.json")).unwrap();
+    fs::write(&loops, "selvedge = 1\n[file.a]\npath = \"out/edit.json\"\n").unwrap();
+    refused(&["bench", &loops, "--edit", "--out", &out], "the same file as the input");
     assert_eq!(fs::read(&ours).unwrap(), fs::read(source).unwrap());
     assert!(!Path::new(&free).exists(), "refused before the work");
 }
