@@ -45,6 +45,7 @@ use super::{
 };
 use crate::brep::{build_face, settle};
 use crate::model::{Instance, Model, Part};
+use entity::Entity;
 use file::File;
 use geometry::{FACE_LOST, Geometry};
 use rayon::prelude::*;
@@ -101,6 +102,7 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
         occurrences: model.instances.iter().map(|i| i.name.clone()).filter(|n| !n.is_empty()).collect(),
         ..ImportReport::default()
     };
+    external(&geometry, &mut report);
     settled(&geometry, &mut bodies, &mut report);
     build(&geometry, &bodies, &mut model, &mut report, options);
     let faces = model.face_count();
@@ -114,6 +116,19 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
     // most of what was read is needed no more, and is given back while the model is used
     rayon::spawn(move || drop((file, bodies)));
     Ok(Import { model, warnings: list, report, ..Import::default() })
+}
+
+/// Names the files that hold the rest of the model, once each: 416. They are not read.
+fn external(geometry: &Geometry<'_>, report: &mut ImportReport) {
+    for entry in geometry.file.entries.iter().filter(|entry| entry.kind == 416 && !entry.blank) {
+        let Ok(entity) = Entity::find(geometry.file, entry.id) else { continue };
+        let named = entity.string(1);
+        if !report.missing_files.contains(&named) {
+            geometry.note("external file not followed", entry.id, named.as_str());
+            report.external_files.push(named.clone());
+            report.missing_files.push(named);
+        }
+    }
 }
 
 /// Makes the Boolean solids from what their operands became, and takes both from the parts.

@@ -148,6 +148,19 @@ fn types_that_are_not_read_are_reported() {
     assert_eq!(i.model.instances.len(), 1);
 }
 
+/// Parts that stand in other files.
+#[test]
+fn external_files_are_named() {
+    let all = [e(SQUARE), e("416,8Hbolt.igs,1HA;"), e("416,8Hbolt.igs,1HB;"), e("408,3,0.,0.,0.;")];
+    let i = import(&all);
+    let told: Vec<_> = i.warnings.iter().map(|w| w.message.clone()).collect();
+    assert!(told.contains(&"external file not followed: bolt.igs".to_owned()), "{told:?}");
+    assert!(told.iter().any(|t| t.starts_with("subfigure left out: ")), "{told:?}");
+    let summary = i.summary();
+    assert_eq!((summary.elsewhere.as_slice(), summary.faces.drawn), (&["bolt.igs".to_owned()][..], 1));
+    assert!(!summary.is_complete());
+}
+
 /// A mark of byte order moves no column.
 #[test]
 fn a_mark_of_byte_order_is_no_column() {
