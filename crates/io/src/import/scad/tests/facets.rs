@@ -185,6 +185,8 @@ fn imported_files() {
         ("import(file = \"open.off\");", "left out: import: the faces do not close"),
         ("import(file = \"gone.off\");", "left out: import: gone.off: "),
         ("import(file = \"t.xyz\");", "left out: import: t.xyz: "),
+        ("import(file = \"../t.off\");", "left out: import: ../t.off: not beside the model"),
+        ("surface(file = \"/etc/passwd\");", "left out: surface: /etc/passwd: not beside the model"),
         ("surface(file = \"t.off\");", "left out: surface: t.off: line 1 holds"),
     ] {
         let told = read(text).warnings;
