@@ -73,7 +73,7 @@ impl Materials {
                 ("newmtl" | "Kd" | "d" | "Tr", _) => false,
                 ("map_Kd" | "map_d", _) => {
                     let what = || format!("{file}:{line}: {}", brief(&text));
-                    warnings.push("texture not used", || Place::File, what);
+                    warnings.push("texture left out", || Place::File, what);
                     true
                 }
                 _ => true,

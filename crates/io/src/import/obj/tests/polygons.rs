@@ -66,13 +66,14 @@ fn colours_come_from_the_file_beside() {
     for expected in [
         "material statement not read: my colours.mtl:6: Kd 1 1",
         "material statement not read: my colours.mtl:7: d -halo 0.5",
-        "texture not used: my colours.mtl:11: map_Kd wood.png",
+        "texture left out: my colours.mtl:11: map_Kd wood.png",
         "coloured.obj:2: materials not read: ../other.mtl: not beside the model",
         "coloured.obj:10: no such material: missing",
     ] {
         assert!(told.contains(expected), "{expected} in {told}");
     }
     assert_eq!(read.warnings.len(), 5);
+    assert!(!read.summary().is_complete(), "as in other formats, a texture is a loss");
 }
 
 #[test]
