@@ -69,7 +69,7 @@ def render_files(
         the end and needs pyarrow.
     skip_existing: files of which every output is there are left alone.
     fail_fast: the first failure is raised. Without it a file or picture that fails has a row that says why, and the
-        others are drawn.
+        others are drawn. A picture that shows nothing of its model has failed.
     strict, search, limit_mib: as in open.
     limit_s: most seconds of work on a file: to read it, to prepare it and to draw its pictures. Beyond, the file is a
         ReadError or its next pictures are a RenderError. A frame that the device has begun is drawn to its end.
