@@ -25,7 +25,7 @@ use std::path::PathBuf;
 const MOST_NESTED: usize = 256;
 
 pub(super) fn read(bytes: &[u8], files: OtherFiles<'_>) -> Result<Found, Wrong> {
-    let file = ::gltf::Gltf::from_slice(bytes).map_err(|e| Wrong::new(e.to_string()))?;
+    let file = parsed(bytes)?;
     let mut found = Found { format: "glTF", unit: "metre".to_owned(), ..Found::default() };
     let buffers: Vec<Vec<u8>> =
         file.buffers().map(|b| buffer(&b, file.blob.as_deref(), files, &mut found.files)).collect::<Result<_, _>>()?;
@@ -58,10 +58,11 @@ pub(super) fn read(bytes: &[u8], files: OtherFiles<'_>) -> Result<Found, Wrong> 
     waiting.reverse();
     let mut shown = HashSet::new();
     while let Some((node, above, depth)) = waiting.pop() {
-        if depth > MOST_NESTED || found.placements.len() + waiting.len() > MOST_PLACED {
-            return Err(Wrong::new(format!(
-                "more than {MOST_PLACED} placed meshes, or nodes nested more than {MOST_NESTED} deep"
-            )));
+        if depth > MOST_NESTED {
+            return Err(Wrong::new(format!("node {}: nodes nested more than {MOST_NESTED} deep", node.index())));
+        }
+        if found.placements.len() + waiting.len() > MOST_PLACED {
+            return Err(Wrong::new(format!("more than {MOST_PLACED} placed meshes")));
         }
         let matrix = node.transform().matrix().map(|c| c.map(f64::from));
         let transform = above * DAffine3::from_mat4(DMat4::from_cols_array_2d(&matrix));
@@ -106,6 +107,33 @@ pub(super) fn read(bytes: &[u8], files: OtherFiles<'_>) -> Result<Found, Wrong> 
         found.placements = all.collect();
     }
     Ok(found)
+}
+
+/// The document. Boxes of positions, which many writers leave out, may be missing: none is used.
+fn parsed(bytes: &[u8]) -> Result<::gltf::Gltf, Wrong> {
+    let wrong = |e: ::gltf::Error| {
+        let old = matches!(e, ::gltf::Error::Deserialize(_) | ::gltf::Error::Binary(_)) && is_first_version(bytes);
+        Wrong::new(if old { format!("glTF 1.0, and 2.0 is read: {e}") } else { e.to_string() })
+    };
+    match ::gltf::Gltf::from_slice(bytes) {
+        Err(::gltf::Error::Validation(all))
+            if all.iter().all(|(path, _)| path.0.ends_with(".min") || path.0.ends_with(".max")) =>
+        {
+            ::gltf::Gltf::from_slice_without_validation(bytes).map_err(wrong)
+        }
+        other => other.map_err(wrong),
+    }
+}
+
+/// Whether a file says that it is of the first version.
+fn is_first_version(bytes: &[u8]) -> bool {
+    if bytes.starts_with(b"glTF") {
+        return bytes.get(4..8) == Some(&1_u32.to_le_bytes()[..]);
+    }
+    let text = String::from_utf8_lossy(bytes);
+    let asset = text.split("\"asset\"").nth(1).unwrap_or_default();
+    let version = asset.split("\"version\"").nth(1).unwrap_or_default();
+    version.trim_start_matches(|c: char| c.is_whitespace() || c == ':' || c == '"').starts_with('1')
 }
 
 /// The bytes of a buffer: within the file, as text in it, or in a file beside it, which `opened` then has.

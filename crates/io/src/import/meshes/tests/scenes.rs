@@ -227,6 +227,16 @@ fn damaged_gltf() {
     let whole = binary(&text(""), &data());
     assert!(refusal(&whole[..whole.len() - 9], "glb").starts_with("t.x: "));
     assert!(refusal(&whole[..10], "glb").starts_with("t.x: "));
+    // boxes of positions are not used, and may be missing; what else is wrong is told
+    let bare = with_data(&data()).replace(",\"min\":[0,0,0],\"max\":[1,1,1]", "");
+    assert!((volume(&import(bare.as_bytes(), "gltf").model) - 27e9 / 6.0).abs() < 1e-3);
+    assert!(refusal(bare.replace("\"mesh\":0", "\"mesh\":7").as_bytes(), "gltf").contains("nodes[1].mesh"));
+    // the first version had objects in place of lists
+    let first = "{\"accessors\": {}, \"asset\": {\"generator\": \"x\", \"version\": \"1.0\"}}";
+    assert!(refusal(first.as_bytes(), "gltf").starts_with("t.x: glTF 1.0, and 2.0 is read: "));
+    assert!(
+        refusal(b"glTF\x01\0\0\0\x14\0\0\0\0\0\0\0\0\0\0\0", "glb").starts_with("t.x: glTF 1.0, and 2.0 is read: ")
+    );
     // a node that is its own child
     let cycle = with_data(&data()).replace("\"children\":[1]", "\"children\":[0]");
     assert!(refusal(cycle.as_bytes(), "gltf").starts_with("t.x: "));
