@@ -43,7 +43,7 @@ mod value;
 use super::{
     FaceCount, FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Options, Place, Warnings, preview, stem, text,
 };
-use crate::brep::{build_face, settle};
+use crate::brep::{FaceGeometry, build_face, settle};
 use crate::model::{Instance, Model, Part};
 use entity::Entity;
 use file::File;
@@ -51,6 +51,7 @@ use geometry::{FACE_LOST, Geometry};
 use rayon::prelude::*;
 use std::sync::Arc;
 use tree::{Body, Placement, SOLID_LOST, Tree};
+use trim::Sheet;
 
 /// Whether the bytes begin like IGES, in any of its forms.
 pub(super) fn recognise(bytes: &[u8]) -> bool {
@@ -195,8 +196,13 @@ fn build(
     for (part, body) in bodies.iter().enumerate() {
         let shared = &body.shells;
         model.parts[part].stated_edges = shared.sources();
-        let solid = shared.faces.par_iter().map(|(f, colour)| (f.id, *colour, build_face(f, &shared.edges, tolerance)));
-        let free = body.sheets.par_iter().map(|(sheet, colour)| (sheet.id, *colour, sheet.build(tolerance)));
+        let of_solid = |f: &FaceGeometry| {
+            let edges = &shared.edges;
+            build_face(f, edges, tolerance).map_err(|why| (why, f.is_sliver(edges, tolerance)))
+        };
+        let solid = shared.faces.par_iter().map(|(f, colour)| (f.id, *colour, of_solid(f)));
+        let alone = |sheet: &Sheet| sheet.build(tolerance).map_err(|why| (why, false));
+        let free = body.sheets.par_iter().map(|(sheet, colour)| (sheet.id, *colour, alone(sheet)));
         let built: Vec<_> = solid.chain(free).map(counted).collect();
         for (id, colour, result) in built {
             match result {
@@ -211,8 +217,8 @@ fn build(
                     }
                     model.parts[part].faces.push(report.record(record(id, part), built));
                 }
-                Err(error) => {
-                    model.parts[part].closed = false;
+                Err((error, is_sliver)) => {
+                    model.parts[part].closed &= is_sliver;
                     geometry.note(FACE_LOST, id, error.to_string());
                     report.face_records.push(FaceRecord { notes: vec![error.to_string()], ..record(id, part) });
                 }
