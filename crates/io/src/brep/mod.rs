@@ -236,8 +236,8 @@ pub struct FaceGeometry {
 }
 
 impl FaceGeometry {
-    /// Whether straight edges bound it that lie along one line, within the tolerance. A body that lacks such a face has no
-    /// gap wider than its tolerance.
+    /// Whether straight edges bound it that lie along one line, within the tolerance and a hundredth of its length. A body
+    /// that lacks such a face has no gap wider than its tolerance.
     pub fn is_sliver(&self, edges: &[Edge], tolerance: f64) -> bool {
         let side = |&(index, forward): &(usize, bool)| {
             let edge = edges.get(index).filter(|e| matches!(e.curve, CurveGeometry::Line { .. }))?;
@@ -252,7 +252,8 @@ impl FaceGeometry {
             };
             let Some(first) = sides.first() else { return false };
             let a = farthest(first[0]);
-            let along = (farthest(a) - a).normalize_or_zero();
+            let along = farthest(a) - a;
+            let (tolerance, along) = (tolerance.min(1e-2 * along.length()), along.normalize_or_zero());
             let is_near = |p: DVec3| (p - a).cross(along).length() <= tolerance;
             let next = sides.iter().cycle().skip(1);
             sides.iter().zip(next).all(|(side, next)| side[1].distance(next[0]) <= tolerance && is_near(side[0]))

@@ -122,7 +122,7 @@ fn slivers_are_no_wider_than_the_tolerance() {
         let list = Edge::chain(1, &points, &mut edges).into_iter().map(|i| (i, true)).collect();
         Boundary::Edges(list)
     };
-    let (thin, wide, open) = (quad(1e-6, 0.0), quad(0.1, 0.0), quad(0.1, 0.05));
+    let (thin, wide, open) = (quad(1e-6, 0.0), quad(0.05, 0.0), quad(0.05, 0.03));
     let triangle = Boundary::Edges(
         Edge::chain(1, &[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ZERO], &mut edges)
             .into_iter()
@@ -137,6 +137,8 @@ fn slivers_are_no_wider_than_the_tolerance() {
     };
     assert!(is_sliver(vec![thin.clone()], 1e-5) && !is_sliver(vec![thin.clone()], 1e-7));
     assert!(!is_sliver(vec![wide.clone()], 1e-2) && is_sliver(vec![wide.clone()], 0.2));
+    // a tolerance of the face's own size says nothing
+    assert!(!is_sliver(vec![triangle.clone()], 10.0));
     assert!(!is_sliver(vec![thin, wide], 1e-2) && !is_sliver(Vec::new(), 1.0) && !is_sliver(vec![triangle], 1e-2));
     assert!(!is_sliver(vec![open], 0.02) && !is_sliver(vec![Boundary::Natural], 1.0));
 }
