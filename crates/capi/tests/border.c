@@ -110,6 +110,7 @@ static int views(const SelvedgeRenderer* renderer, const SelvedgeModel* model)
     WANT(ARGUMENT, selvedge_picture_image(picture, 0, &image), "one image");
     WANT(ARGUMENT, selvedge_picture_image(NULL, SELVEDGE_COLOUR, &image), "picture is a null pointer");
     WANT(FILE_ERROR, selvedge_picture_save_png(picture, "no/such/folder.png"), "cannot write");
+    WANT(FILE_ERROR, selvedge_picture_save_png(picture, "part.step"), "ends in .png");
     selvedge_picture_free(picture);
     selvedge_picture_free(NULL);
 

@@ -59,7 +59,7 @@ impl Approach {
 /// Starts of trim curves and vertices of the placed parts.
 pub fn details(model: &Model) -> impl Iterator<Item = DVec3> + '_ {
     model.placed_parts().flat_map(|(instance, part)| {
-        let vertices = part.meshes.iter().flat_map(|m| m.positions().iter().copied());
+        let vertices = part.meshes.iter().flat_map(|m| (0..m.triangles().len()).flat_map(|t| m.corners(t)));
         let points = part.faces.iter().flat_map(boundary_points).chain(vertices);
         points.map(|p| instance.transform.transform_point3(p))
     })

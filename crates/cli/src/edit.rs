@@ -7,7 +7,7 @@ use crate::args::{BenchArgs, Size};
 use crate::model_renderer::ModelRenderer;
 use crate::progress::during;
 use crate::series::{Gathered, Row};
-use crate::target::{self, JSON};
+use crate::target::{self, JSON, Target};
 use crate::{Outcome, bench, output, path, reading};
 use anyhow::{Result, bail};
 use glam::DVec2;
@@ -41,13 +41,14 @@ struct Report {
 
 /// Drags a loop of every model; prints a table each and writes them all.
 pub fn run(args: &BenchArgs) -> Result<Outcome> {
+    let mut outputs = Vec::new();
     if let Some(dir) = &args.out {
-        target::folder(&bench::inputs(args), dir, [("edit.json".to_owned(), JSON)])?;
+        outputs = target::folder(&bench::inputs(args), dir, [("edit.json".to_owned(), JSON)])?;
     }
     let mut reports = Vec::new();
     let mut complained = false;
     for model in &args.models {
-        let (report, complains) = drag(args, model)?;
+        let (report, complains) = drag(args, model, &outputs)?;
         output::print(&report.text())?;
         complained |= complains || report.different > 0;
         reports.push(report);
@@ -58,8 +59,9 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     Ok(if complained { Outcome::Broken } else { Outcome::Good })
 }
 
-fn drag(args: &BenchArgs, path: &Path) -> Result<(Report, bool)> {
+fn drag(args: &BenchArgs, path: &Path, outputs: &[Target]) -> Result<(Report, bool)> {
     let mut import = reading::open(path, &args.read, &Default::default())?;
+    target::check_read(&import, outputs)?;
     let Some(at) = busiest(&import.model) else { bail!("{}: no face has a loop", path.display()) };
     let Size(width, height) = args.size;
     let camera = path::camera(import.model.bounds(), (width, height), 0, FRAMES);

@@ -9,7 +9,7 @@
 
 use crate::args::{Cli, ReadArgs, ReportArgs, SubdivideArgs};
 use crate::target::{self, MARKDOWN};
-use crate::{Outcome, dispatch, is_of_device, output, reading};
+use crate::{Outcome, dispatch, is_of_device, output, reading, remains};
 use anyhow::{Context, Result, bail};
 use clap::Parser;
 use std::ffi::OsString;
@@ -50,9 +50,11 @@ pub fn run(args: &ReportArgs) -> Result<Outcome> {
     if inputs.iter().any(|path| target::is_standard(path)) {
         bail!("each part reads the models anew, and `-` is standard input, which can be read once");
     }
-    target::folder(&inputs, &args.out, [("report.md".to_owned(), MARKDOWN)])?;
+    let outputs = target::folder(&inputs, &args.out, [("report.md".to_owned(), MARKDOWN)])?;
     for path in inputs {
-        reading::open(path, &ReadArgs::default(), &SubdivideArgs::default())?;
+        let import = reading::open(path, &ReadArgs::default(), &SubdivideArgs::default())?;
+        remains::judge(path, &import.model)?;
+        target::check_read(&import, &outputs)?;
     }
     measured(args, &parts(args))
 }

@@ -19,7 +19,7 @@ use crate::args::{Size, SubdivideArgs, SweepArgs};
 use crate::closer::Approach;
 use crate::progress::during;
 use crate::target::{self, CSV, Target};
-use crate::{Outcome, device, output, reading, verdict};
+use crate::{Outcome, device, output, reading, remains, verdict};
 use anyhow::{Result, bail};
 use glam::{DAffine3, DVec3};
 use selvedge::baselines::SceneOptions;
@@ -119,6 +119,7 @@ fn models(args: &SweepArgs, outputs: &[Target]) -> Result<Vec<(String, Model)>> 
     let mut models = Vec::new();
     for file in &args.models {
         let import = reading::open(file, &args.read, &SubdivideArgs::default())?;
+        remains::judge(file, &import.model)?;
         target::check_read(&import, outputs)?;
         if import.model.trim.is_some() {
             bail!("{}: a volume trims it, and would not go with the copies", file.display());

@@ -21,10 +21,13 @@ const MOST_LINKS: usize = 40;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Form {
     name: &'static str,
+    /// None: any will do.
     endings: &'static [&'static str],
 }
 
 pub const PNG: Form = Form { name: "a PNG picture", endings: &["png"] };
+/// A PNG picture whose name its reader gives.
+pub const ANY_NAME: Form = Form { name: "a PNG picture", endings: &[] };
 pub const NPY: Form = Form { name: "a NumPy array", endings: &["npy"] };
 pub const JSON: Form = Form { name: "JSON", endings: &["json"] };
 pub const CSV: Form = Form { name: "CSV", endings: &["csv"] };
@@ -91,7 +94,7 @@ impl Form {
     /// Checks that the place can have such a file.
     fn check(self, path: &Path) -> Result<()> {
         let shown = path.display();
-        if let Some(ending) = path.extension() {
+        if let Some(ending) = path.extension().filter(|_| !self.endings.is_empty()) {
             let ending = ending.to_string_lossy();
             if !self.endings.iter().any(|known| ending.eq_ignore_ascii_case(known)) {
                 let wanted: Vec<_> = self.endings.iter().map(|e| format!(".{e}")).collect();

@@ -4,20 +4,28 @@
 //! one with any ending, and the caller adds the fields of the thumbnail standard to the PNG.
 
 use crate::args::ThumbnailArgs;
-use crate::{Outcome, device, target};
-use anyhow::{Error, Result};
+use crate::target::{self, ANY_NAME, Target};
+use crate::{Outcome, device};
+use anyhow::{Error, Result, bail};
 use selvedge::picture::{FrameSettings, Outputs, Samples, SceneSettings};
 use selvedge_jobs::{
-    Backdrop, Drawer, Job, JobError, Limits, Loaded, NAMED, ReadOptions, Source, Stop, Viewpoint, lines, read,
+    Backdrop, Drawer, Drawn, Job, JobError, Limits, Loaded, NAMED, ReadOptions, Source, Stop, Viewpoint, lines, read,
     write_png,
 };
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Draws the model from the first of the standard views.
 pub fn run(args: &ThumbnailArgs) -> Result<Outcome> {
+    let output = [Target::new(&args.output, ANY_NAME)];
+    target::check(&[&args.model], &output)?;
     let stop = Stop::default();
-    let Loaded { model, .. } =
-        read(Source::Path(&args.model), &ReadOptions::default(), &stop, &|_| ()).map_err(failure)?;
+    let loaded = read(Source::Path(&args.model), &ReadOptions::default(), &stop, &|_| ()).map_err(failure)?;
+    let Loaded { file, model, summary, report, .. } = loaded;
+    target::check(&report.files_read.iter().map(PathBuf::as_path).collect::<Vec<&Path>>(), &output)?;
+    if !summary.is_complete() {
+        tracing::warn!("{file}: {summary}");
+    }
     let camera = Viewpoint::Standard(NAMED[0]).camera(&model, (args.size, args.size)).map_err(failure)?;
     let job = Job {
         model: Arc::clone(&model),
@@ -33,7 +41,10 @@ pub fn run(args: &ThumbnailArgs) -> Result<Outcome> {
         limits: Limits::default(),
     };
     let mut drawer = Drawer::new(&device::options(args.device.as_deref(), false)).map_err(failure)?;
-    let picture = drawer.draw(&job, &stop).map_err(failure)?.picture;
+    let Drawn { picture, blank, .. } = drawer.draw(&job, &stop).map_err(failure)?;
+    if blank {
+        bail!("{file}: nothing is seen with all of it in a picture of {0} x {0}", args.size);
+    }
     target::write(&args.output, |to| Ok(write_png(to, picture.size, &picture.colour)?))?;
     Ok(Outcome::Good)
 }

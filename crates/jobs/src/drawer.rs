@@ -51,6 +51,14 @@ impl Job {
         FrameSettings { background: Some(self.backdrop.colour()), ..self.frame }
     }
 
+    /// Whether its picture, on nothing but the background's colour, certainly shows nothing.
+    fn is_blank(&self, picture: &Picture) -> bool {
+        if self.outputs.face {
+            return picture.face.iter().all(|face| *face == 0);
+        }
+        self.backdrop.colour()[3] == 0.0 && picture.colour.iter().all(|[.., opacity]| *opacity == 0)
+    }
+
     /// Pixels of the picture.
     pub(crate) fn pixels(&self) -> u64 {
         u64::from(self.camera.size.0) * u64::from(self.camera.size.1)
@@ -72,6 +80,9 @@ pub struct Drawn {
     pub upload_s: f64,
     /// Seconds of the picture; with frames in flight, since the picture before.
     pub draw_s: f64,
+    /// No pixel shows anything of the model. Known where the picture has the image of faces, or a background that hides
+    /// nothing; else `false`.
+    pub blank: bool,
 }
 
 /// A model that the renderer holds.
@@ -121,8 +132,9 @@ impl Drawer {
         let begun = Instant::now();
         let mut picture = self.renderer.render(&job.camera, &job.frame_settings(), job.outputs)?;
         step.test()?;
+        let blank = job.is_blank(&picture);
         job.backdrop.under(picture.size, &mut picture.colour);
-        let drawn = Drawn { picture, upload_s, draw_s: begun.elapsed().as_secs_f64() };
+        let drawn = Drawn { picture, upload_s, draw_s: begun.elapsed().as_secs_f64(), blank };
         let messages = self.renderer.messages();
         let new = messages.get(self.told..).filter(|new| !new.is_empty()).map(|new| new.join("; "));
         self.told = messages.len();
@@ -191,8 +203,9 @@ impl Drawer {
         let mut begun = Instant::now();
         self.renderer.render_stream(&job.frame_settings(), job.outputs, next, |_, view| {
             let mut picture = view.to_picture();
+            let blank = job.is_blank(&picture);
             job.backdrop.under(picture.size, &mut picture.colour);
-            take(Drawn { picture, upload_s, draw_s: begun.elapsed().as_secs_f64() });
+            take(Drawn { picture, upload_s, draw_s: begun.elapsed().as_secs_f64(), blank });
             begun = Instant::now();
             Ok::<_, HeadlessError>(())
         })?;

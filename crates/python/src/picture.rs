@@ -30,7 +30,7 @@ pub fn plain<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py
 impl Picture {
     /// The arrays take over the picture's memory: nothing is copied.
     pub fn new(py: Python<'_>, drawn: Drawn, outputs: Outputs, camera: &CameraFile) -> PyResult<Self> {
-        let Drawn { picture, upload_s, draw_s } = drawn;
+        let Drawn { picture, upload_s, draw_s, blank } = drawn;
         let picture::Picture { size, colour, depth, face, uv, normal, thickness, edge, part, instance, stats, .. } =
             picture;
         if stats.clamps > 0 {
@@ -65,6 +65,7 @@ impl Picture {
         let stats = plain(py, &stats)?;
         stats.set_item("upload_s", upload_s)?;
         stats.set_item("draw_s", draw_s)?;
+        stats.set_item("blank", blank)?;
         Ok(Self { size, images: images.unbind(), camera: plain(py, camera)?.unbind(), stats: stats.unbind() })
     }
 

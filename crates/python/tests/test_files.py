@@ -189,3 +189,16 @@ def test_a_parquet_manifest_has_the_rows_with_their_types(renderer, files, tmp_p
             files, tmp_path / "{stem}.png", manifest=path, renderer=renderer, size=SIZE, fail_fast=True
         )
     assert pq.read_table(path).column("status").to_pylist() == ["drawn", "failed"]
+
+
+def test_a_picture_of_nothing_is_no_success(renderer, tmp_path):
+    nothing, ball = tmp_path / "nothing.csg", tmp_path / "ball.csg"
+    nothing.write_text("difference() { sphere(1); cube([9, 9, 9], center = true); }\n")
+    ball.write_text("sphere(1);\n")
+    rows = selvedge.render_files([nothing, ball], tmp_path / "{stem}.png", renderer=renderer, size=SIZE)
+    assert [row["status"] for row in rows] == ["failed", "drawn"]
+    assert "nothing.csg: nothing is seen" in rows[0]["error"] and not (tmp_path / "nothing.png").exists()
+    model = selvedge.open(nothing)
+    for outputs, background, blank in [([], "none", True), (["face"], "white", True), ([], "white", False)]:
+        assert renderer.render(model, "iso", SIZE, outputs, background=background).stats["blank"] is blank
+    assert renderer.render(selvedge.open(ball), "iso", SIZE).stats["blank"] is False

@@ -13,8 +13,8 @@ pub struct ReadArgs {
     /// Refuse a file of which anything is left out: exit status 2 in place of a warning
     #[arg(long)]
     pub strict: bool,
-    /// Look for parts that stand in other files below this folder, too, not only beside the file that names them; may be
-    /// given several times
+    /// Look for files that a model names below this folder, too, not only beside that model; may be given several
+    /// times
     #[arg(long, value_name = "DIR")]
     pub search: Vec<PathBuf>,
     /// Most MiB of memory that the process holds while a file is read, and with `render` while it is prepared and drawn,

@@ -22,7 +22,7 @@ use crate::args::{Size, TrimsArgs};
 use crate::camera::zoomed;
 use crate::progress::during;
 use crate::target::{self, CSV, JSON};
-use crate::{Outcome, output, reading};
+use crate::{Outcome, output, reading, remains};
 use anyhow::Result;
 use measure::{Bench, Row, Sweep};
 use selvedge::baselines::many_holes;
@@ -47,6 +47,7 @@ pub fn run(args: &TrimsArgs) -> Result<Outcome> {
     for path in &paths {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let import = reading::open(path, &args.read, &Default::default())?;
+        remains::judge(path, &import.model)?;
         target::check_read(&import, &outputs)?;
         rows.extend(measured(args, &name, import.model)?);
     }

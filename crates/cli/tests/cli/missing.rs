@@ -19,17 +19,24 @@ fn file(folder: &TempDir, name: &str, content: &str) -> String {
 fn draws_nothing(folder: &TempDir, model: &str, message: &str) {
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let (png, native, step) = (path("a.png"), path("a.selvedge"), path("a.step"));
+    let (svg, out) = (path("a.svg"), path("out"));
     for call in [
         &["render", model, "-o", &png][..],
         &["check", model],
         &["bench", model],
         &["convert", model, &native],
         &["export", model, &step],
+        &["thumbnail", model, &png, "32"],
+        &["draw", model, "-o", &svg],
+        &["measure", model],
+        &["sweep", model],
+        &["trims", model, "--holes", "0"],
+        &["report", model, "--out", &out],
     ] {
         refused(call, message);
     }
-    let written = [&png, &native, &step].map(|path| fs::exists(path).unwrap());
-    assert_eq!(written, [false; 3]);
+    let written = [&png, &native, &step, &svg].map(|path| fs::exists(path).unwrap());
+    assert_eq!(written, [false; 4]);
     // `info` describes the file all the same
     let info = selvedge(&["info", "--json", model]);
     assert_eq!(info.status.code(), Some(2));
@@ -71,6 +78,9 @@ fn omissions_are_reported_and_strict_refuses_them() {
         assert!(text(&output.stderr).contains(why), "{}", text(&output.stderr));
         refused(&[&call[..], &["--strict"]].concat(), &format!("--strict: {}", &some));
     }
+    let thumbnail = selvedge(&["thumbnail", &some, &png, "32"]);
+    assert_eq!(thumbnail.status.code(), Some(0), "{}", text(&thumbnail.stderr));
+    assert!(text(&thumbnail.stderr).contains(why), "{}", text(&thumbnail.stderr));
     let info = selvedge(&["info", &some]);
     assert_eq!(info.status.code(), Some(0));
     assert!(text(&info.stdout).contains("faces left out: 2\n  2 x degree 0 is not between 1 and 15"));
@@ -105,6 +115,12 @@ fn pictures_of_nothing_are_no_success() {
     let why = "nothing.csg: nothing of it can be drawn: its solids leave no surface";
     refused(&["convert", &nothing, native], why);
     refused(&["export", &nothing, step], why);
+    refused(&["sweep", &nothing], why);
+    refused(&["trims", &nothing, "--holes", "0"], why);
+    let out = folder.path().join("out").to_str().unwrap().to_owned();
+    refused(&["report", &nothing, "--out", &out], why);
+    refused(&["thumbnail", &nothing, &png, "32"], "nothing.csg: nothing is seen");
+    assert!(!fs::exists(&png).unwrap());
     let info = selvedge(&["info", &nothing]);
     assert_eq!(info.status.code(), Some(2));
     assert!(text(&info.stderr).contains(why), "{}", text(&info.stderr));

@@ -50,9 +50,10 @@ fn no_output_replaces_an_input() {
     fs::hard_link(&ours, path("in.npy")).unwrap();
     fs::hard_link(&ours, path("in.csv")).unwrap();
     fs::hard_link(&ours, path("in.selvedge")).unwrap();
+    fs::hard_link(&ours, path("in.svg")).unwrap();
     fs::create_dir(path("out")).unwrap();
     let free = path("free.png");
-    for name in ["bench.csv", "edit.json", "trims.json"] {
+    for name in ["bench.csv", "edit.json", "trims.json", "report.md"] {
         fs::hard_link(&ours, path(&format!("out/{name}"))).unwrap();
     }
     let mut calls: Vec<Vec<&str>> = vec![
@@ -70,6 +71,11 @@ fn no_output_replaces_an_input() {
     calls.push(vec!["bench", &ours, "--out", &out]);
     calls.push(vec!["bench", &ours, "--edit", "--out", &out]);
     calls.push(vec!["trims", &ours, "--out", &out]);
+    calls.push(vec!["report", &ours, "--out", &out]);
+    let (svg, free_svg) = (path("in.svg"), path("free.svg"));
+    calls.push(vec!["draw", &ours, "-o", &svg]);
+    calls.push(vec!["draw", &ours, "-o", &free_svg, "--camera-out", &json]);
+    calls.push(vec!["thumbnail", &ours, &ours, "32"]);
     for call in &calls {
         refused(call, "the same file as the input");
     }
@@ -78,9 +84,12 @@ fn no_output_replaces_an_input() {
     // and so are the files that the scene names
     let scene = path("parts.toml");
     fs::write(&scene, "selvedge = 1\n[file.a]\npath = \"good.step\"\n").unwrap();
-    for call in
-        [&["render", &scene, "-o", &picture][..], &["check", &scene, "--json", &json], &["export", &scene, &ours]]
-    {
+    for call in [
+        &["render", &scene, "-o", &picture][..],
+        &["check", &scene, "--json", &json],
+        &["export", &scene, &ours],
+        &["thumbnail", &scene, &ours, "32"],
+    ] {
         refused(call, "the same file as the input");
     }
     // files that an OpenSCAD file names are inputs, too, even where the import leaves them out
@@ -95,6 +104,11 @@ fn no_output_replaces_an_input() {
     fs::write(&grid, "selvedge = 1\n[surface.a]\nshape = \"grid\"\nfile = \"out/bench.csv\"\n").unwrap();
     refused(&["sweep", &grid, "--out", &points], "the same file as the input");
     refused(&["bench", &grid, "--out", &out], "the same file as the input");
+    let loops = path("loops.toml");
+    fs::remove_file(path("out/edit.json")).unwrap();
+    fs::copy(source, path("out/edit.json")).unwrap();
+    fs::write(&loops, "selvedge = 1\n[file.a]\npath = \"out/edit.json\"\n").unwrap();
+    refused(&["bench", &loops, "--edit", "--out", &out], "the same file as the input");
     assert_eq!(fs::read(&ours).unwrap(), fs::read(source).unwrap());
     assert!(!Path::new(&free).exists(), "refused before the work");
 }
@@ -114,6 +128,8 @@ fn outputs_that_cannot_be_are_found_before_the_work() {
     refused(&["check", &none, "--difference", &path("d.jpg")], "d.jpg: what is written here is a PNG picture");
     refused(&["export", &none, &path("a.iges")], "a.iges: what is written here is a STEP file");
     refused(&["export", &none, &path("no/a.step")], "no/a.step");
+    refused(&["thumbnail", &none, &path("no/a"), "32"], "no/a");
+    refused(&["draw", &none, "-o", &path("a.dxf")], "a.dxf: what is written here is an SVG drawing");
     refused(&["bench", &none, "--out", &scene], "small.toml");
     refused(&["bench", &none, "--out", "-"], "a folder is wanted");
     refused(&["render", &none, "-o", "-", "--stats", "-"], "the same place as another output");

@@ -110,8 +110,8 @@ impl Mesh {
         self.triangles[triangle].map(|v| self.positions[v as usize])
     }
 
-    /// Box of the vertices.
+    /// Box of the triangles. Vertices that no triangle has do not count.
     pub fn bounds(&self) -> Bounds {
-        self.positions.iter().copied().fold(Bounds::EMPTY, Bounds::with)
+        self.triangles.iter().flatten().map(|v| self.positions[*v as usize]).fold(Bounds::EMPTY, Bounds::with)
     }
 }

@@ -82,6 +82,18 @@ mod tests {
         assert!(mesh.warnings[0].message.starts_with("mesh left out: "), "{:?}", mesh.warnings);
     }
 
+    /// A vertex that no facet has is nowhere.
+    #[cfg(feature = "meshes")]
+    #[test]
+    fn a_stray_vertex_without_a_facet_costs_nothing() {
+        for (corners, drawn) in [("0 1 2", 1), ("0 1 3", 0)] {
+            let import = read(&format!("OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1e300\n3 {corners}\n"), "t.off");
+            assert_eq!((import.summary().meshes.drawn, import.summary().is_complete()), (drawn, drawn == 1));
+            let bounds = import.model.bounds();
+            assert!(drawn == 0 || bounds.max == glam::DVec3::new(1.0, 1.0, 0.0), "{bounds:?}");
+        }
+    }
+
     /// A tetrahedron of a red side and three others.
     #[cfg(feature = "meshes")]
     #[test]

@@ -233,12 +233,12 @@ fn read(bytes: &[u8], name: &str, folder: Option<&Path>, options: &Options<'_>) 
             (import, mentions) = step::read(utf8, name, options)?;
             import
         }
-        Some(Format::Scad) => scad::read(&text.text, name, options, OtherFiles::new(folder, options))?,
+        Some(Format::Scad) => scad::read(&text.text, name, options, OtherFiles::new(name, folder, options))?,
         Some(Format::Brlcad) => brlcad(utf8, name)?,
         Some(Format::Bv) => bv(utf8, name)?,
         Some(Format::Scene) => read_scene(bytes, name, folder, options)?,
-        Some(Format::Obj) => obj::read(utf8, name, OtherFiles::new(folder, options))?,
-        Some(Format::Mesh(ending)) => read_mesh(bytes, name, ending, OtherFiles::new(folder, options))?,
+        Some(Format::Obj) => obj::read(utf8, name, OtherFiles::new(name, folder, options))?,
+        Some(Format::Mesh(ending)) => read_mesh(bytes, name, ending, OtherFiles::new(name, folder, options))?,
         None => return Err(ImportError::Format { file: name.to_owned() }),
     };
     if !matches!(format, Some(Format::Mesh(_))) {
@@ -285,7 +285,7 @@ fn read_mesh(bytes: &[u8], name: &str, ending: &str, files: OtherFiles<'_>) -> R
 /// # Errors
 /// [`ImportError::Mesh`] says where the file is damaged, or that the library was built without the feature `meshes`.
 pub fn mesh(bytes: &[u8], name: &str, ending: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
-    read_mesh(bytes, name, ending, OtherFiles::new(folder, &Options::default()))
+    read_mesh(bytes, name, ending, OtherFiles::new(name, folder, &Options::default()))
 }
 
 /// Reads ISO 10303-21 text (STEP AP203, AP214, AP242); `name` is the file's name in messages.
@@ -339,7 +339,7 @@ fn read_scene(bytes: &[u8], name: &str, folder: Option<&Path>, _: &Options<'_>) 
 /// # Errors
 /// [`ImportError::Nothing`] when the text holds no vertex.
 pub fn obj(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
-    let files = OtherFiles::new(folder, &Options::default());
+    let files = OtherFiles::new(name, folder, &Options::default());
     decoded(bytes, name, |text| obj::read(text.as_bytes(), name, files))
 }
 
@@ -404,7 +404,7 @@ pub fn scad(bytes: &[u8], name: &str, facets: Facets) -> Result<Import, ImportEr
 /// # Errors
 /// As [`scad`].
 pub fn scad_with(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Import, ImportError> {
-    let files = OtherFiles::new(Path::new(name).parent(), options);
+    let files = OtherFiles::new(name, Path::new(name).parent(), options);
     decoded(bytes, name, |text| scad::read(text, name, options, files))
 }
 

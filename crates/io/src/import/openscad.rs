@@ -59,7 +59,7 @@ fn open_by(openscad: &Path, path: &Path, name: &str, options: &Options<'_>) -> R
         return Err(ImportError::OpenScad { file: name.to_owned(), message });
     }
     options.tell(Stage::Parse { bytes: text.len() as u64 });
-    let files = OtherFiles::new(path.parent(), options);
+    let files = OtherFiles::new(name, path.parent(), options);
     let mut import = decoded(&text, name, |text| scad::read(text, name, options, files))?;
     let mut warnings = said.warnings.finish(&mut import.report);
     warnings.append(&mut import.warnings);

@@ -64,7 +64,8 @@ pub struct Options<'a> {
     /// Most bytes of a file, before and after gzip is undone. Offsets are 32 bits wide: the limit is 4 GiB at most, and
     /// by default.
     pub most_bytes: Option<u64>,
-    /// Finds parts of an assembly in other files; without it they are left out, each with a warning.
+    /// Finds parts of an assembly in other files; without it they are left out, each with a warning. Materials of OBJ,
+    /// buffers of glTF and files that OpenSCAD imports are read from below the model's folder, else found by this.
     /// [`Folders`](super::Folders) looks on a disk.
     pub files: Option<&'a dyn Files>,
     /// Whether round solids of OpenSCAD's files are round.

@@ -1,10 +1,10 @@
 //! The bytes of files and streams: bounded, gzip undone.
 
-use super::{ImportError, Options, Stage};
+use super::{Files, ImportError, Options, Stage};
 use rayon::prelude::*;
 use std::fs::{self, File, Metadata};
 use std::io::{self, Read, Seek, SeekFrom};
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
 /// A gzip stream may expand by this factor at most. STEP text shrinks 4 to 12 times; deflate itself
 /// cannot exceed 1032.
@@ -17,18 +17,53 @@ const FREE_EXPANSION: u64 = 1 << 20;
 const BEGINNING: u64 = 1 << 20;
 
 /// Where other files stand that a file names, and how much of one is read.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub(super) struct OtherFiles<'a> {
-    /// The folder of the file that names them, if it has one.
+    /// The file that names them.
+    name: &'a str,
+    /// Its folder, if it has one.
     pub folder: Option<&'a Path>,
+    /// Finds those that do not lie there; none of a stream.
+    finder: Option<&'a dyn Files>,
     /// Bytes of one of them, at most.
-    pub most: u64,
+    most: u64,
 }
 
 impl<'a> OtherFiles<'a> {
-    pub fn new(folder: Option<&'a Path>, options: &Options<'_>) -> Self {
-        Self { folder, most: options.most_bytes() }
+    pub fn new(name: &'a str, folder: Option<&'a Path>, options: &Options<'a>) -> Self {
+        Self { name, folder, finder: options.files.filter(|_| folder.is_some()), most: options.most_bytes() }
     }
+
+    /// Path and bytes of the file that this one calls `name`, at most `most` of them. It lies in the folder or below
+    /// it, or where the finder looks: a file that somebody sends opens no other files.
+    ///
+    /// # Errors
+    /// The reason in words.
+    pub fn open(&self, name: &str, most: u64) -> Result<(PathBuf, Vec<u8>), String> {
+        let folder = self.folder.ok_or("the model was not read from a folder")?;
+        let most = most.min(self.most);
+        let own = name.replace('\\', "/");
+        let inside = |c| matches!(c, Component::Normal(_) | Component::CurDir);
+        let is_inside = !own.is_empty() && Path::new(&own).components().all(inside);
+        let path = folder.join(&own);
+        if is_inside && path.exists() {
+            return beside(&path, most).map(|bytes| (path, bytes));
+        }
+        if let Some(finder) = self.finder
+            && let Some(found) = finder.find(name, self.name)
+        {
+            let bytes = finder.read(&found, most).map_err(|e| e.to_string())?;
+            return if bytes.len() as u64 > most { Err(too_long(most)) } else { Ok((found.into(), bytes)) };
+        }
+        if is_inside { beside(&path, most).map(|bytes| (path, bytes)) } else { Err(OUTSIDE.to_owned()) }
+    }
+}
+
+/// Why a file is not opened that may exist.
+const OUTSIDE: &str = "not beside the model, nor below a folder that is searched";
+
+fn too_long(most: u64) -> String {
+    format!("larger than {most} bytes, the most that is read")
 }
 
 /// The bytes of a file, gzip undone.
@@ -82,7 +117,7 @@ pub(super) fn beside(path: &Path, most: u64) -> Result<Vec<u8>, String> {
     }
     let mut bytes = Vec::new();
     File::open(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes)).map_err(|e| e.to_string())?;
-    if bytes.len() as u64 > most { Err(format!("larger than {most} bytes, the most that is read")) } else { Ok(bytes) }
+    if bytes.len() as u64 > most { Err(too_long(most)) } else { Ok(bytes) }
 }
 
 /// Why a path is no file to read: a folder, a device, a socket, or a named pipe that may have no writer.

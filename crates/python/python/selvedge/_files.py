@@ -17,7 +17,7 @@ import numpy as np
 import selvedge
 
 from . import _native
-from ._errors import ClosedError, Error
+from ._errors import ClosedError, Error, RenderError
 
 PathLike = Union[str, "os.PathLike[str]"]
 
@@ -69,7 +69,7 @@ def render_files(
         the end and needs pyarrow.
     skip_existing: files of which every output is there are left alone.
     fail_fast: the first failure is raised. Without it a file or picture that fails has a row that says why, and the
-        others are drawn.
+        others are drawn. A picture that shows nothing of its model has failed.
     strict, search, limit_mib: as in open.
     limit_s: most seconds of work on a file: to read it, to prepare it and to draw its pictures. Beyond, the file is a
         ReadError or its next pictures are a RenderError. A frame that the device has begun is drawn to its end.
@@ -187,12 +187,14 @@ class _Shot:
         if self._pending is not None:
             try:
                 picture = self._pending.result()
+                stats = picture.stats
+                if stats["blank"]:  # the views show all of a model: its solids leave no surface
+                    raise RenderError(f"{self.row['file']}: nothing is seen with all of it in the picture")
                 for name, path in self.arrays.items():
                     with _whole(path) as beside:
                         np.save(beside, picture.images[name])
                 with _whole(self.output) as beside:
                     picture.save(beside)
-                stats = picture.stats
                 self.row.update(self._facts, status="drawn", camera=json.dumps(picture.camera, separators=(",", ":")))
                 self.row.update({name: stats[name] for name in ("clamps", "upload_s", "draw_s")})
             except ClosedError:

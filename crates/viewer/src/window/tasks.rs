@@ -12,10 +12,10 @@ use selvedge_check::{JudgeOptions, Tracer, judge};
 use selvedge_io::import::caught;
 use selvedge_io::{export, native};
 use std::error::Error;
-use std::fs::File;
-use std::io::BufWriter;
+use std::ffi::OsString;
 use std::path::Path;
 use std::sync::Arc;
+use std::{fs, io};
 
 /// Pixels that are judged, beside those at which the face changes.
 const JUDGED: usize = 20_000;
@@ -94,7 +94,8 @@ impl App {
         }
         let mut model = self.session.world.model.clone();
         self.session.scene.now().edit(&mut model);
-        let told = match save(&path, &model) {
+        let open = self.session.world.files.iter().map(|file| file.path.as_path());
+        let told = match save(&path, &model, open) {
             Ok(warnings) if warnings.is_empty() => format!("{} is saved.", path.display()),
             Ok(warnings) => format!("{} is saved, but: {}", path.display(), warnings.join("; ")),
             Err(error) => format!("{} is not saved: {error}", path.display()),
@@ -127,8 +128,18 @@ impl App {
     }
 }
 
-/// Writes a model in the form of the file's ending; returns the omissions. If writing fails, the old file is unchanged.
-fn save(path: &Path, model: &Model) -> Result<Vec<String>, Box<dyn Error>> {
+/// Writes a model in the form of the file's ending; returns the omissions. A file that is `open` is replaced only where
+/// it has the engine's own form: others hold more than the model. If writing fails, the old file is unchanged.
+fn save<'p>(
+    path: &Path,
+    model: &Model,
+    mut open: impl Iterator<Item = &'p Path>,
+) -> Result<Vec<String>, Box<dyn Error>> {
+    let is_own = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("selvedge"));
+    let place = path.canonicalize().ok();
+    if place.is_some() && !is_own(path) && open.any(|file| file.canonicalize().ok() == place) {
+        return Err("it is open, and the saved model would take its place".into());
+    }
     let mut bytes = Vec::new();
     let mut warnings = Vec::new();
     match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
@@ -139,10 +150,21 @@ fn save(path: &Path, model: &Model) -> Result<Vec<String>, Box<dyn Error>> {
         }
         _ => return Err("its name ends neither in .selvedge nor in .step".into()),
     }
-    let beside = path.with_extension("new");
-    std::fs::write(&beside, bytes)?;
-    std::fs::rename(beside, path)?;
+    replace(path, &bytes)?;
     Ok(warnings)
+}
+
+/// Writes a file, which appears when it is whole.
+fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut name = OsString::from(".part-");
+    name.push(path.file_name().unwrap_or_default());
+    let beside = path.with_file_name(name);
+    let written = fs::write(&beside, bytes).and_then(|()| fs::rename(&beside, path));
+    if written.is_err() {
+        // it may never have been there
+        let _ = fs::remove_file(&beside);
+    }
+    written
 }
 
 /// The colours of a picture as the clipboard takes them: sRGB and opacity, not multiplied, row 0 on top.
@@ -152,21 +174,50 @@ fn image(photograph: &Photograph) -> arboard::ImageData<'_> {
 }
 
 /// Writes a PNG file. If writing fails, the old file is unchanged.
-fn write(path: &Path, photograph: &Photograph) -> Result<(), png::EncodingError> {
-    let beside = path.with_extension("png.new");
-    let mut encoder = png::Encoder::new(BufWriter::new(File::create(&beside)?), photograph.size.0, photograph.size.1);
+fn write(path: &Path, photograph: &Photograph) -> Result<(), Box<dyn Error>> {
+    if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+        return Err("its name does not end in .png".into());
+    }
+    let mut bytes: Vec<u8> = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, photograph.size.0, photograph.size.1);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
     let mut writer = encoder.write_header()?;
     writer.write_image_data(photograph.colour.as_flattened())?;
     writer.finish()?;
-    Ok(std::fs::rename(beside, path)?)
+    Ok(replace(path, &bytes)?)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A model that someone else wrote, a picture that is none, a folder that is not there.
+    #[test]
+    fn what_is_written_replaces_nothing_else() {
+        let folder = std::env::temp_dir().join(format!("selvedge-save-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let path = |name: &str| folder.join(name);
+        let (step, own, picture) = (path("a.step"), path("a.selvedge"), path("a.png"));
+        fs::write(&step, "ISO-10303-21;").unwrap();
+        let open = [step.as_path(), own.as_path()];
+        let saved = |path: &Path| save(path, &Model::default(), open.into_iter()).map_err(|e| e.to_string());
+        assert!(saved(&step).unwrap_err().contains("it is open"));
+        assert!(saved(&path("./a.step")).is_err() && saved(&path("none/a.selvedge")).is_err());
+        assert_eq!(fs::read(&step).unwrap(), b"ISO-10303-21;");
+        saved(&own).unwrap();
+        saved(&own).unwrap();
+        let photograph = Photograph { size: (1, 1), colour: vec![[9; 4]], ..Photograph::default() };
+        assert!(write(&step, &photograph).unwrap_err().to_string().contains(".png"));
+        write(&picture, &photograph).unwrap();
+        let old = fs::read(&picture).unwrap();
+        // a pixel is missing
+        assert!(write(&picture, &Photograph { size: (2, 1), ..photograph }).is_err());
+        assert!(fs::read(&picture).unwrap() == old && old.starts_with(b"\x89PNG"));
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 3);
+        fs::remove_dir_all(&folder).unwrap();
+    }
 
     #[test]
     fn a_copied_picture_keeps_its_rows_and_its_opacity() {

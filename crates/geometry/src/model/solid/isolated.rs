@@ -80,7 +80,7 @@ fn isolated_roots<'a>(
             Node::Leaf(p) => Some(&solid.primitives()[p as usize]).filter(|p| matches!(p.shape, Shape::Mesh(_))),
             _ => None,
         };
-        let of = reach::boxes(solid, Boxes::of);
+        let of = reach::boxes(solid, Boxes::of, &[]);
         for &root in operands.roots() {
             match is_mesh(root) {
                 Some(primitive) => candidates.push((s, root, primitive, of[root as usize].of)),

@@ -174,12 +174,12 @@ impl Solid {
     /// A box around the solid: boxes of the primitives under the same operations. Infinite where the
     /// solid may be unbounded.
     pub fn bounds(&self) -> Bounds {
-        self.bounds_over(Boxes::of)
+        self.bounds_over(Boxes::of, &[])
     }
 
-    /// A box around the solid, over boxes of its primitives.
-    pub(crate) fn bounds_over(&self, primitive: impl Fn(&Primitive) -> Boxes) -> Bounds {
-        reach::boxes(self, primitive).last().expect("a tree has a root").of
+    /// A box around the solid, over boxes of its primitives, and of some nodes of its tree in their order.
+    pub(crate) fn bounds_over(&self, primitive: impl Fn(&Primitive) -> Boxes, nodes: &[(usize, Bounds)]) -> Bounds {
+        reach::boxes(self, primitive, nodes).last().expect("a tree has a root").of
     }
 
     /// For each primitive, the box outside which it may be taken as absent, alone or with other primitives beyond

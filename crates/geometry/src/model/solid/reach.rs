@@ -40,10 +40,12 @@ impl Boxes {
     }
 }
 
-/// The boxes of each node of the tree, from the boxes of the primitives.
-pub(super) fn boxes(solid: &Solid, primitive: impl Fn(&Primitive) -> Boxes) -> Vec<Boxes> {
+/// The boxes of each node of the tree, from the boxes of the primitives and those that are `known` of some nodes, in
+/// their order.
+pub(super) fn boxes(solid: &Solid, primitive: impl Fn(&Primitive) -> Boxes, known: &[(usize, Bounds)]) -> Vec<Boxes> {
     let mut boxes: Vec<Boxes> = Vec::with_capacity(solid.tree.nodes().len());
-    for node in solid.tree.nodes() {
+    let mut known = known.iter().peekable();
+    for (i, node) in solid.tree.nodes().iter().enumerate() {
         let at = |i: u32| boxes[i as usize];
         let none = Bounds::EMPTY;
         let (of, not, within) = match *node {
@@ -66,6 +68,7 @@ pub(super) fn boxes(solid: &Solid, primitive: impl Fn(&Primitive) -> Boxes) -> V
                 }
             }
         };
+        let of = known.next_if(|(node, _)| *node == i).map_or(of, |(_, bounds)| meet(of, *bounds));
         boxes.push(Boxes { of, not, within });
     }
     boxes
@@ -73,7 +76,7 @@ pub(super) fn boxes(solid: &Solid, primitive: impl Fn(&Primitive) -> Boxes) -> V
 
 /// See [`Solid::reaches`].
 pub(super) fn reaches(solid: &Solid) -> Vec<Bounds> {
-    let boxes = boxes(solid, Boxes::of);
+    let boxes = boxes(solid, Boxes::of, &[]);
     let mut of_nodes = vec![Bounds::ALL; boxes.len()];
     let mut of_primitives = vec![Bounds::EMPTY; solid.primitives.len()];
     for (i, node) in solid.tree.nodes().iter().enumerate().rev() {

@@ -12,8 +12,9 @@
 //! [`WITHIN`] of the box's diagonal; for Boolean solids it uses boxes turned across the direction. The model is in the
 //! middle to [`CENTRED`] of the picture.
 
+use super::Placed;
 use super::search::{Search, Tolerance};
-use super::{Placed, solid};
+use super::solid::Extent;
 use crate::model::{Bounds, Camera, Model};
 use glam::DVec3;
 
@@ -30,7 +31,8 @@ const MOST_STEPS: usize = 24;
 
 /// How far a model reaches along directions.
 struct Reach<'a> {
-    model: &'a Model,
+    trim: Option<Extent<'a>>,
+    solids: Vec<Extent<'a>>,
     placed: Placed<'a>,
     tolerance: Tolerance,
 }
@@ -40,8 +42,8 @@ impl Reach<'_> {
     fn along(&self, direction: DVec3) -> f64 {
         let mut search = Search::new(&self.placed.bodies, &self.placed.placements, direction);
         let faces = search.refine(self.tolerance);
-        let faces = self.model.trim.as_ref().map_or(faces, |volume| faces.min(solid::reach(volume, direction)));
-        let solids = self.model.solids.iter().map(|solid| solid::reach(solid, direction));
+        let faces = self.trim.as_ref().map_or(faces, |volume| faces.min(volume.reach(direction)));
+        let solids = self.solids.iter().map(|solid| solid.reach(direction));
         solids.filter(|height| height.is_finite()).fold(faces, f64::max)
     }
 
@@ -103,7 +105,8 @@ impl Camera {
     fn fitted<'a>(&self, model: &'a Model, placed: Placed<'a>, bounds: Bounds, fov_y: f64) -> Option<Self> {
         let diagonal = bounds.diagonal();
         let tolerance = Tolerance { analytic: WITHIN * diagonal, other: WITHIN * diagonal };
-        let reach = Reach { model, placed, tolerance };
+        let trim = model.trim.as_ref().map(Extent::new);
+        let reach = Reach { trim, solids: model.solids.iter().map(Extent::new).collect(), placed, tolerance };
         let (right, up, forward) = self.axes();
         let slope_y = FILL * (0.5 * fov_y).tan();
         let slope_x = slope_y * f64::from(self.size.0) / f64::from(self.size.1);

@@ -36,6 +36,7 @@
 //! chapter 10 (Bézier clipping), with the test for level points instead of clipping.
 
 mod carried;
+mod convex;
 mod framing;
 mod height;
 mod search;

@@ -7,10 +7,12 @@
 //!   A - B   box of A, less where a block B goes right through it and takes one of its ends
 //! ```
 //!
-//! *Certainty.* The box contains the solid. It is tight for one primitive and for unions of primitives, to rounding. It
-//! is also tight where blocks along the axes, half-spaces across them and tight boxes meet in a box. Otherwise it may
-//! be larger: where boxes meet and solids do not, and where a difference removes the farthest points.
+//! *Certainty.* The box contains the solid. It is tight for one primitive, for a block that half-spaces cut (see
+//! [`convex`]), and for unions of these, to rounding. It is also tight where blocks along the axes, half-spaces across
+//! them and tight boxes meet in a box. Otherwise it may be larger: where boxes meet and solids do not, and where a
+//! difference removes the farthest points.
 
+use super::convex;
 use crate::model::{Bounds, Boxes, Primitive, Quadric, Shape, Solid};
 use glam::{BVec3, DAffine3, DMat3, DVec3};
 
@@ -20,16 +22,41 @@ const PARALLEL: f64 = 8.0 * f64::EPSILON;
 const LONGEST: f64 = 1e5;
 
 pub(super) fn bounds(solid: &Solid) -> Bounds {
-    solid.bounds_over(boxes)
+    Extent::new(solid).bounds()
 }
 
-/// A height along `direction`, of any length but 0, that no point of the solid exceeds: that of a box with a side
-/// across it. Infinite where the solid may be unbounded there.
-pub(super) fn reach(solid: &Solid, direction: DVec3) -> f64 {
-    let (u, v) = direction.normalize().any_orthonormal_pair();
-    let turn = DAffine3::from_mat3(DMat3::from_cols(direction, u, v).transpose());
-    let turned = |p: &Primitive| boxes(&Primitive { transform: turn * p.transform, ..p.clone() });
-    solid.bounds_over(turned).max.x
+/// A solid whose boxes along several directions are wanted.
+pub(super) struct Extent<'a> {
+    solid: &'a Solid,
+    convex: Vec<convex::Part>,
+}
+
+impl<'a> Extent<'a> {
+    pub fn new(solid: &'a Solid) -> Self {
+        Self { solid, convex: convex::parts(solid) }
+    }
+
+    /// A box along the axes.
+    pub fn bounds(&self) -> Bounds {
+        self.solid.bounds_over(boxes, &self.known(|p| p))
+    }
+
+    /// A height along `direction`, of any length but 0, that no point of the solid exceeds: that of a box with a side
+    /// across it. Infinite where the solid may be unbounded there.
+    pub fn reach(&self, direction: DVec3) -> f64 {
+        let (u, v) = direction.normalize().any_orthonormal_pair();
+        let turn = DAffine3::from_mat3(DMat3::from_cols(direction, u, v).transpose());
+        let turned = |p: &Primitive| boxes(&Primitive { transform: turn * p.transform, ..p.clone() });
+        self.solid.bounds_over(turned, &self.known(|p| turn.transform_point3(p))).max.x
+    }
+
+    /// The nodes of the convex parts, and the boxes of their corners where `turned` moves them to.
+    fn known(&self, turned: impl Fn(DVec3) -> DVec3) -> Vec<(usize, Bounds)> {
+        let of = |part: &convex::Part| {
+            (part.node, part.corners.iter().map(|p| turned(*p)).fold(Bounds::EMPTY, Bounds::with))
+        };
+        self.convex.iter().map(of).collect()
+    }
 }
 
 fn boxes(primitive: &Primitive) -> Boxes {

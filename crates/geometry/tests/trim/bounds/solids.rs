@@ -3,7 +3,8 @@
 use super::support::{assert_box, turns};
 use glam::{DAffine3, DVec3};
 use selvedge_geometry::csg::{Builder, Op};
-use selvedge_geometry::model::{Bounds, Model, Primitive, Quadric, Shape, Solid};
+use selvedge_geometry::model::{Bounds, Camera, Instance, Mesh, Model, Part, Primitive, Quadric, Shape, Solid};
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
 
 fn primitive(shape: Shape, transform: DAffine3) -> Primitive {
     Primitive { shape, transform, colour: [0.5; 4], id: 1 }
@@ -81,6 +82,77 @@ fn expressions_of_blocks() {
     // a turned block goes through nowhere for certain
     let turned = Primitive { transform: DAffine3::from_rotation_z(0.1), ..b() };
     assert_eq!(pair(Op::Difference, a(), turned).bounds(), of([0.0; 3], [4.0; 3]));
+}
+
+/// The intersection of a wide block and the half-spaces `normal · x <= offset`, less others, as one expression.
+fn cut_block(block: Primitive, kept: &[([f64; 3], f64)], taken: &[([f64; 3], f64)]) -> Solid {
+    let transform = block.transform;
+    let half = |(normal, offset): &([f64; 3], f64)| {
+        primitive(Shape::HalfSpace { normal: (*normal).into(), offset: *offset }, transform)
+    };
+    let mut primitives = vec![block];
+    primitives.extend(kept.iter().chain(taken).map(half));
+    let mut builder = Builder::new();
+    let leaves: Vec<u32> = (0..primitives.len() as u32).map(|i| builder.leaf(i)).collect();
+    let (kept, taken) = leaves.split_at(1 + kept.len());
+    let whole = builder.fold(Op::Intersection, kept.iter().copied());
+    let root = taken.iter().fold(whole, |all, leaf| builder.pair(Op::Difference, all, *leaf));
+    Solid::new(primitives, builder.finish(root).unwrap()).unwrap()
+}
+
+/// Against the corners of an octahedron and of what is left of it. Its block is a tenth of its diagonal wider.
+#[test]
+fn blocks_that_half_spaces_cut_are_tight() {
+    let sides: Vec<_> = (0..8).map(|i| ([0, 1, 2].map(|k| if i >> k & 1 == 0 { 1.0 } else { -1.0 }), 2.0)).collect();
+    let tips = [DVec3::X, DVec3::Y, DVec3::Z].map(|e| [2.0 * e, -2.0 * e]).concat();
+    // where z is at most 1, the tip becomes a square
+    let cut = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]].map(|[x, y]| DVec3::new(x, y, 1.0));
+    let below: Vec<DVec3> = tips.iter().copied().filter(|p| p.z < 1.0).chain(cut).collect();
+    let wide = || block([-2.6; 3], [2.6; 3]);
+    for transform in turns() {
+        let placed = || Primitive { transform, ..wide() };
+        let moved =
+            |points: &[DVec3]| points.iter().map(|p| transform.transform_point3(*p)).fold(Bounds::EMPTY, Bounds::with);
+        let whole = cut_block(placed(), &sides, &[]);
+        assert_box(model(whole.clone()).bounds(), moved(&tips), 1e-11);
+        let cut = model(cut_block(placed(), &sides, &[([0.0, 0.0, -1.0], -1.0)]));
+        assert_box(cut.bounds(), moved(&below), 1e-11);
+        // twice the same side, and one that cuts nothing
+        let more = [&sides[..], &[sides[0], ([1.0, 0.3, 0.2], 50.0)]].concat();
+        assert_box(model(cut_block(placed(), &more, &[])).bounds(), moved(&tips), 1e-11);
+        // a part of a union, and the first part of a difference
+        let ball = primitive(Shape::Sphere { radius: 1.0 }, DAffine3::from_translation(transform.translation));
+        let both = Solid::union(&[whole, Solid::of(ball).unwrap()]).unwrap();
+        assert_box(model(both).bounds(), moved(&tips), 1e-11);
+        // sides that leave nothing
+        assert_eq!(model(cut_block(placed(), &sides, &[([1.0, 1.0, 1.0], 2.5)])).bounds(), Bounds::EMPTY);
+    }
+    // a block that a turned one cuts: |x - 3| + |y - 3| <= 3.25 where y is at most 2.6
+    let half = 3.25 * FRAC_1_SQRT_2;
+    let diamond = Primitive {
+        transform: DAffine3::from_translation(DVec3::new(3.0, 3.0, 0.0)) * DAffine3::from_rotation_z(FRAC_PI_4),
+        ..block([-half; 3], [half; 3])
+    };
+    let both = pair(Op::Intersection, wide(), diamond);
+    assert_box(both.bounds(), of([0.15, 0.15, -half], [2.6, 2.6, half]), 1e-11);
+}
+
+/// A camera sees the corners, not the block.
+#[test]
+fn framing_follows_the_corners() {
+    let sides: Vec<_> = (0..8).map(|i| ([0, 1, 2].map(|k| if i >> k & 1 == 0 { 1.0 } else { -1.0 }), 2.0)).collect();
+    let solid = cut_block(block([-9.0; 3], [9.0; 3]), &sides, &[]);
+    let camera = |model: &Model| Camera::framing(model, DVec3::new(1.0, 0.7, 0.4), DVec3::Z, 0.5, (640, 480));
+    let facets = {
+        let tips = [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z].map(|p| 2.0 * p);
+        let upper = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
+        let mesh = Mesh::new(1, tips.to_vec(), upper.to_vec(), Vec::new()).unwrap();
+        let part = Part { meshes: vec![mesh], ..Part::default() };
+        let instance = Instance { part: 0, transform: DAffine3::IDENTITY, colour: None, name: String::new() };
+        Model { parts: vec![part], instances: vec![instance], ..Model::default() }
+    };
+    let (found, expected) = (camera(&model(solid)), camera(&facets));
+    assert!(found.eye.distance(expected.eye) < 1e-3, "{found:?} instead of {expected:?}");
 }
 
 #[test]

@@ -182,6 +182,9 @@ impl Expression {
                 Operand::Shells(index) if operands[*index].faces.is_empty() => {
                     return Err(format!("its operand #{} has no face left", leaf.id));
                 }
+                Operand::Shells(index) if !operands[*index].closed => {
+                    return Err(format!("its operand #{} is not closed, so it has no inside", leaf.id));
+                }
                 Operand::Shells(index) => Shape::Part(operands[*index].clone()),
             };
             let (transform, colour) = (transform * leaf.place, leaf.colour.unwrap_or(GREY));

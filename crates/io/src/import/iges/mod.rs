@@ -43,13 +43,15 @@ mod value;
 use super::{
     FaceCount, FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Options, Place, Warnings, preview, stem, text,
 };
-use crate::brep::{build_face, settle};
+use crate::brep::{FaceGeometry, build_face, settle};
 use crate::model::{Instance, Model, Part};
+use entity::Entity;
 use file::File;
 use geometry::{FACE_LOST, Geometry};
 use rayon::prelude::*;
 use std::sync::Arc;
 use tree::{Body, Placement, SOLID_LOST, Tree};
+use trim::Sheet;
 
 /// Whether the bytes begin like IGES, in any of its forms.
 pub(super) fn recognise(bytes: &[u8]) -> bool {
@@ -83,7 +85,8 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
     let mut model = Model { name: model_name(&global.product, name), ..Model::default() };
     model.unit.clone_from(&global.unit_name);
     for body in &bodies {
-        model.parts.push(Part { name: body.name.clone(), closed: body.closed, ..Part::default() });
+        let closed = body.closed && body.shells.lost.is_empty();
+        model.parts.push(Part { name: body.name.clone(), closed, ..Part::default() });
     }
     let (solids, placements): (Vec<_>, Vec<_>) = placements.into_iter().partition(|p| bodies[p.body].solid.is_some());
     for placed in placements {
@@ -100,6 +103,7 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
         occurrences: model.instances.iter().map(|i| i.name.clone()).filter(|n| !n.is_empty()).collect(),
         ..ImportReport::default()
     };
+    external(&geometry, &mut report);
     settled(&geometry, &mut bodies, &mut report);
     build(&geometry, &bodies, &mut model, &mut report, options);
     let faces = model.face_count();
@@ -113,6 +117,19 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
     // most of what was read is needed no more, and is given back while the model is used
     rayon::spawn(move || drop((file, bodies)));
     Ok(Import { model, warnings: list, report, ..Import::default() })
+}
+
+/// Names the files that hold the rest of the model, once each: 416. They are not read.
+fn external(geometry: &Geometry<'_>, report: &mut ImportReport) {
+    for entry in geometry.file.entries.iter().filter(|entry| entry.kind == 416 && !entry.blank) {
+        let Ok(entity) = Entity::find(geometry.file, entry.id) else { continue };
+        let named = entity.string(1);
+        if !report.missing_files.contains(&named) {
+            geometry.note("external file not followed", entry.id, named.as_str());
+            report.external_files.push(named.clone());
+            report.missing_files.push(named);
+        }
+    }
 }
 
 /// Makes the Boolean solids from what their operands became, and takes both from the parts.
@@ -179,8 +196,13 @@ fn build(
     for (part, body) in bodies.iter().enumerate() {
         let shared = &body.shells;
         model.parts[part].stated_edges = shared.sources();
-        let solid = shared.faces.par_iter().map(|(f, colour)| (f.id, *colour, build_face(f, &shared.edges, tolerance)));
-        let free = body.sheets.par_iter().map(|(sheet, colour)| (sheet.id, *colour, sheet.build(tolerance)));
+        let of_solid = |f: &FaceGeometry| {
+            let edges = &shared.edges;
+            build_face(f, edges, tolerance).map_err(|why| (why, f.is_sliver(edges, tolerance)))
+        };
+        let solid = shared.faces.par_iter().map(|(f, colour)| (f.id, *colour, of_solid(f)));
+        let alone = |sheet: &Sheet| sheet.build(tolerance).map_err(|why| (why, false));
+        let free = body.sheets.par_iter().map(|(sheet, colour)| (sheet.id, *colour, alone(sheet)));
         let built: Vec<_> = solid.chain(free).map(counted).collect();
         for (id, colour, result) in built {
             match result {
@@ -195,7 +217,8 @@ fn build(
                     }
                     model.parts[part].faces.push(report.record(record(id, part), built));
                 }
-                Err(error) => {
+                Err((error, is_sliver)) => {
+                    model.parts[part].closed &= is_sliver;
                     geometry.note(FACE_LOST, id, error.to_string());
                     report.face_records.push(FaceRecord { notes: vec![error.to_string()], ..record(id, part) });
                 }

@@ -5,27 +5,27 @@
 //!                                                material: base colour, linear
 //! ```
 //!
-//! Metres become millimetres, and y, which points up, becomes z. Points and lines, textures, colours of vertices, morph
-//! targets, animations and skins are left out, with a warning; extensions are named. Every access to a buffer is
-//! checked: a file may state any offset.
+//! Metres become millimetres, and y, which points up, becomes z. Points and lines, textures, morph targets, animations
+//! and skins are left out, with a warning, as are colours of vertices that differ; extensions are named. Every access
+//! to a buffer is checked: a file may state any offset.
 //!
 //! Source: Khronos Group, *glTF 2.0 Specification*.
 
 use super::{Found, MOST_PLACED, Piece, Placement, Wrong};
-use crate::import::source::{self, OtherFiles};
+use crate::import::source::OtherFiles;
 use crate::model::Colour;
 use base64::Engine;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use gltf::accessor::{Accessor, DataType, Dimensions};
 use gltf::mesh::{Mode, Primitive};
 use std::collections::HashSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Nodes within nodes.
 const MOST_NESTED: usize = 256;
 
 pub(super) fn read(bytes: &[u8], files: OtherFiles<'_>) -> Result<Found, Wrong> {
-    let file = ::gltf::Gltf::from_slice(bytes).map_err(|e| Wrong::new(e.to_string()))?;
+    let file = parsed(bytes)?;
     let mut found = Found { format: "glTF", unit: "metre".to_owned(), ..Found::default() };
     let buffers: Vec<Vec<u8>> =
         file.buffers().map(|b| buffer(&b, file.blob.as_deref(), files, &mut found.files)).collect::<Result<_, _>>()?;
@@ -40,7 +40,8 @@ pub(super) fn read(bytes: &[u8], files: OtherFiles<'_>) -> Result<Found, Wrong> 
                 found.notes.push(("lines left out", format!("mesh {}, primitive {}", mesh.index(), primitive.index())));
                 continue;
             }
-            if primitive.get(&gltf::Semantic::Colors(0)).is_some() {
+            let colours = primitive.get(&gltf::Semantic::Colors(0));
+            if colours.is_some_and(|colours| single(&colours, &buffers).is_none()) {
                 let what = format!("mesh {}, primitive {}: colours of vertices", mesh.index(), primitive.index());
                 found.notes.push(("colours left out", what));
             }
@@ -57,10 +58,11 @@ pub(super) fn read(bytes: &[u8], files: OtherFiles<'_>) -> Result<Found, Wrong> 
     waiting.reverse();
     let mut shown = HashSet::new();
     while let Some((node, above, depth)) = waiting.pop() {
-        if depth > MOST_NESTED || found.placements.len() + waiting.len() > MOST_PLACED {
-            return Err(Wrong::new(format!(
-                "more than {MOST_PLACED} placed meshes, or nodes nested more than {MOST_NESTED} deep"
-            )));
+        if depth > MOST_NESTED {
+            return Err(Wrong::new(format!("node {}: nodes nested more than {MOST_NESTED} deep", node.index())));
+        }
+        if found.placements.len() + waiting.len() > MOST_PLACED {
+            return Err(Wrong::new(format!("more than {MOST_PLACED} placed meshes")));
         }
         let matrix = node.transform().matrix().map(|c| c.map(f64::from));
         let transform = above * DAffine3::from_mat4(DMat4::from_cols_array_2d(&matrix));
@@ -107,7 +109,34 @@ pub(super) fn read(bytes: &[u8], files: OtherFiles<'_>) -> Result<Found, Wrong> 
     Ok(found)
 }
 
-/// The bytes of a buffer: within the file, as text in it, or beside it, a file that `opened` then has.
+/// The document. Boxes of positions, which many writers leave out, may be missing: none is used.
+fn parsed(bytes: &[u8]) -> Result<::gltf::Gltf, Wrong> {
+    let wrong = |e: ::gltf::Error| {
+        let old = matches!(e, ::gltf::Error::Deserialize(_) | ::gltf::Error::Binary(_)) && is_first_version(bytes);
+        Wrong::new(if old { format!("glTF 1.0, and 2.0 is read: {e}") } else { e.to_string() })
+    };
+    match ::gltf::Gltf::from_slice(bytes) {
+        Err(::gltf::Error::Validation(all))
+            if all.iter().all(|(path, _)| path.0.ends_with(".min") || path.0.ends_with(".max")) =>
+        {
+            ::gltf::Gltf::from_slice_without_validation(bytes).map_err(wrong)
+        }
+        other => other.map_err(wrong),
+    }
+}
+
+/// Whether a file says that it is of the first version.
+fn is_first_version(bytes: &[u8]) -> bool {
+    if bytes.starts_with(b"glTF") {
+        return bytes.get(4..8) == Some(&1_u32.to_le_bytes()[..]);
+    }
+    let text = String::from_utf8_lossy(bytes);
+    let asset = text.split("\"asset\"").nth(1).unwrap_or_default();
+    let version = asset.split("\"version\"").nth(1).unwrap_or_default();
+    version.trim_start_matches(|c: char| c.is_whitespace() || c == ':' || c == '"').starts_with('1')
+}
+
+/// The bytes of a buffer: within the file, as text in it, or in a file beside it, which `opened` then has.
 fn buffer(
     buffer: &gltf::Buffer<'_>,
     blob: Option<&[u8]>,
@@ -125,8 +154,7 @@ fn buffer(
             }
             None => {
                 let name = unescaped(uri);
-                let path = files.folder.map_or_else(|| Path::new(&name).to_path_buf(), |f| f.join(&name));
-                let bytes = source::beside(&path, files.most).map_err(|why| wrong(format!("{name}: {why}")))?;
+                let (path, bytes) = files.open(&name, u64::MAX).map_err(|why| wrong(format!("{name}: {why}")))?;
                 opened.push(path);
                 bytes
             }
@@ -179,8 +207,10 @@ fn piece(primitive: &Primitive<'_>, buffers: &[Vec<u8>]) -> Result<Piece, String
     let smooth = normals.len() == points.len() && normals.iter().all(|n| n.is_finite());
     let normals = if smooth { triangles.iter().map(|t| t.map(|i| normals[i as usize])).collect() } else { Vec::new() };
     let material = primitive.material();
-    let colour: Option<Colour> = material.index().map(|_| {
-        let [r, g, b, a] = material.pbr_metallic_roughness().base_color_factor();
+    let own = primitive.get(&gltf::Semantic::Colors(0)).and_then(|colours| single(&colours, buffers));
+    let colour: Option<Colour> = (material.index().is_some() || own.is_some()).then(|| {
+        let (base, own) = (material.pbr_metallic_roughness().base_color_factor(), own.unwrap_or([1.0; 4]));
+        let [r, g, b, a] = std::array::from_fn(|k| base[k] * own[k]);
         let opaque = material.alpha_mode() == gltf::material::AlphaMode::Opaque;
         [r, g, b, if opaque { 1.0 } else { a }].map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 })
     });
@@ -216,6 +246,23 @@ fn vectors(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<DVec3>, S
         |e: &[u8], k: usize| f64::from(f32::from_le_bytes([e[4 * k], e[4 * k + 1], e[4 * k + 2], e[4 * k + 3]]));
     let all = entries(accessor, buffers)?;
     Ok(all.into_iter().map(|e| DVec3::new(number(e, 0), number(e, 1), number(e, 2))).collect())
+}
+
+/// The colour that all vertices have; `None` where they differ.
+fn single(colours: &Accessor<'_>, buffers: &[Vec<u8>]) -> Option<Colour> {
+    let (size, part): (usize, fn(&[u8]) -> f32) = match colours.data_type() {
+        DataType::U8 => (1, |e| f32::from(e[0]) / 255.0),
+        DataType::U16 => (2, |e| f32::from(u16::from_le_bytes([e[0], e[1]])) / 65535.0),
+        DataType::F32 => (4, |e| f32::from_le_bytes([e[0], e[1], e[2], e[3]])),
+        _ => return None,
+    };
+    if !matches!(colours.dimensions(), Dimensions::Vec3 | Dimensions::Vec4) {
+        return None;
+    }
+    let all = entries(colours, buffers).ok()?;
+    let (first, others) = all.split_first()?;
+    let parts: Vec<f32> = first.chunks_exact(size).map(part).collect();
+    others.iter().all(|e| e == first).then(|| [parts[0], parts[1], parts[2], parts.get(3).copied().unwrap_or(1.0)])
 }
 
 fn numbers(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<u32>, String> {

@@ -233,7 +233,10 @@ pub(super) fn read(bytes: &[u8], name: &str, ending: &str, files: OtherFiles<'_>
     notes.extend(polygons_left_out(&pieces));
     if pieces.iter().all(|p| p.triangles.is_empty()) {
         let beside: String = notes.iter().take(MOST_TOLD).map(|(kind, note)| format!("; {kind}: {note}")).collect();
-        let message = format!("{format} without a triangle{beside}");
+        let message = match pieces.iter().map(|p| p.points.len()).sum::<usize>() {
+            0 => format!("{format} without a triangle{beside}"),
+            points => format!("{format} without a triangle; it holds {points} vertices{beside}"),
+        };
         return Err(ImportError::Mesh { file: name.to_owned(), message });
     }
     let mut model = Model { name: stem(name), unit: unit.clone(), ..Model::default() };
@@ -287,7 +290,7 @@ pub(super) fn pieces(bytes: &[u8], ending: &str) -> Result<(Vec<Triangles>, Vec<
         Some(line) => format!("line {line}: {}", w.message),
         None => w.message,
     };
-    let alone = OtherFiles { folder: None, most: 0 };
+    let alone = OtherFiles::new("", None, &super::Options::default());
     let Found { pieces, placements, mut notes, .. } = found(bytes, ending, alone).map_err(wrong)?;
     notes.extend(polygons_left_out(&pieces));
     let lost = notes.into_iter().filter(|(kind, _)| kind.ends_with("left out") && !kind.starts_with("colours"));

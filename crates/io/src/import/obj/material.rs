@@ -7,12 +7,12 @@
 //! The format names no colour space; programs store the values of their screen, sRGB.
 
 use super::lines::lines;
-use crate::import::source::{self, OtherFiles};
+use crate::import::source::OtherFiles;
 use crate::import::{Place, Warnings, colour, text};
 use crate::model::Colour;
 use std::collections::HashMap;
 use std::fmt::Write;
-use std::path::{Component, Path, PathBuf};
+use std::path::PathBuf;
 
 /// Bytes of one material file that are read.
 const MAX_BYTES: u64 = 1 << 26;
@@ -39,10 +39,10 @@ impl Materials {
     /// Reads one file.
     pub fn open(&mut self, files: OtherFiles<'_>, name: &str, line: usize, warnings: &mut Warnings) {
         self.files += 1;
-        let result = match files.folder {
-            _ if self.files > MAX_FILES => Err("too many files of materials".into()),
-            None => Err("the model was not read from a folder".into()),
-            Some(folder) => load(folder, name, files.most),
+        let result = if self.files > MAX_FILES {
+            Err("too many files of materials".into())
+        } else {
+            files.open(name, MAX_BYTES)
         };
         match result {
             Ok((path, bytes)) => {
@@ -73,7 +73,7 @@ impl Materials {
                 ("newmtl" | "Kd" | "d" | "Tr", _) => false,
                 ("map_Kd" | "map_d", _) => {
                     let what = || format!("{file}:{line}: {}", brief(&text));
-                    warnings.push("texture not used", || Place::File, what);
+                    warnings.push("texture left out", || Place::File, what);
                     true
                 }
                 _ => true,
@@ -105,15 +105,4 @@ pub(super) fn brief(text: &str) -> String {
         words = words.chars().take(40).chain("…".chars()).collect();
     }
     words
-}
-
-/// Path and bytes of `folder/name`, which must not leave the folder; `most` bytes at most.
-fn load(folder: &Path, name: &str, most: u64) -> Result<(PathBuf, Vec<u8>), String> {
-    let inside = |c| matches!(c, Component::Normal(_) | Component::CurDir);
-    let name = name.replace('\\', "/");
-    if name.is_empty() || !Path::new(&name).components().all(inside) {
-        return Err("not beside the model".into());
-    }
-    let path = folder.join(name);
-    source::beside(&path, MAX_BYTES.min(most)).map(|text| (path, text))
 }

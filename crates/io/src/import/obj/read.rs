@@ -202,6 +202,7 @@ impl<'f> Reader<'f> {
                 }
             }
             "end" => self.close(line),
+            "call" => self.named(words.first().copied().unwrap_or_default(), line),
             _ => self.unused(keyword, line),
         }
         Ok(())
@@ -260,6 +261,16 @@ impl<'f> Reader<'f> {
         }
     }
 
+    /// Another file of statements, which is not read.
+    fn named(&mut self, file: &str, line: usize) {
+        let file = brief(file);
+        if !self.report.missing_files.contains(&file) && self.report.missing_files.len() < MAX_UNUSED {
+            self.warn("external file not followed", line, file.clone());
+            self.report.external_files.push(file.clone());
+            self.report.missing_files.push(file);
+        }
+    }
+
     fn unused(&mut self, keyword: &str, line: usize) {
         let known = self.unused.contains_key(keyword) || self.unused.len() < MAX_UNUSED;
         let keyword = if known { brief(keyword) } else { "others".into() };
@@ -280,7 +291,17 @@ impl<'f> Reader<'f> {
             Vec::new()
         });
         for (keyword, (line, count)) in std::mem::take(&mut self.unused) {
-            self.warn("statement not used", line, format!("`{keyword}`, {count} times"));
+            let kind = match keyword.as_str() {
+                "p" => "points not drawn",
+                "l" => "lines not drawn",
+                "curv" => "curves not drawn",
+                _ => "statement not used",
+            };
+            self.warn(kind, line, format!("`{keyword}`, {count} times"));
+        }
+        if self.faces.is_empty() && meshes.is_empty() {
+            let count = self.vertices.len();
+            self.warnings.push("vertices not drawn", || Place::File, || format!("{count} of no face"));
         }
         let meshes = meshes.into_iter().map(|(look, mesh)| (look.object, mesh));
         let model = parts::assemble(self.name, self.faces, meshes, &mut self.report);

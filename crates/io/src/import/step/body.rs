@@ -30,8 +30,10 @@ use std::collections::HashSet;
 /// A body in the terms of `brep`.
 #[derive(Debug, Default)]
 pub(super) struct Body {
-    /// The faces bound a volume.
+    /// The faces bound a volume, as the file states it.
     pub closed: bool,
+    /// A face, shell or mesh of it is lost or hidden: what is left bounds nothing.
+    pub incomplete: bool,
     /// Shared edges.
     pub edges: Vec<Edge>,
     /// Their numbers in the file, where they have one.
@@ -116,6 +118,7 @@ pub(super) fn body(geometry: &Geometry<'_>, id: u32, looks: Looks<'_>, outer: &[
     let trail: Vec<u32> = std::iter::once(id).chain(outer.iter().copied()).collect();
     if let Err(fault) = builder.item(id, &trail) {
         geometry.ledger.note("body left out", id, fault.to_string());
+        builder.body.incomplete = true;
     }
     Body { stated_edges: builder.table.sources(), edges: builder.table.edges, ..builder.body }
 }
@@ -162,10 +165,11 @@ impl<'g, 'a> Builder<'g, 'a> {
     }
 
     /// Counts `#id` if it is hidden.
-    fn hidden(&self, id: u32, kind: &str) -> bool {
+    fn hidden(&mut self, id: u32, kind: &str) -> bool {
         let hidden = self.looks.presentation.hides(id);
         if hidden {
             self.geometry.ledger.ignore(kind, 1);
+            self.body.incomplete = true;
         }
         hidden
     }
@@ -313,6 +317,7 @@ impl<'g, 'a> Builder<'g, 'a> {
     fn lose(&mut self, id: u32, fault: &Fault) {
         self.geometry.ledger.note(FACE_LOST, id, fault.to_string());
         self.body.lost.push((id, fault.to_string()));
+        self.body.incomplete = true;
     }
 
     /// One face, or the parts of a surface that breaks.
@@ -337,6 +342,7 @@ impl<'g, 'a> Builder<'g, 'a> {
     fn guarded(&mut self, kind: &'static str, id: u32, f: impl FnOnce(&mut Self) -> Result<(), Fault>) {
         if let Err(fault) = f(self) {
             self.geometry.ledger.note(kind, id, fault.to_string());
+            self.body.incomplete = true;
         }
     }
 }

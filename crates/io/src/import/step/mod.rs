@@ -81,7 +81,7 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Re
     let mut units = BTreeSet::new();
     let mut solids = Solids::default();
     let add = |model: &mut Model, report: &mut ImportReport, name: String, body: &mut Body, tolerance: f64| {
-        let (closed, meshes) = (body.closed, std::mem::take(&mut body.meshes));
+        let (closed, meshes) = (body.closed && !body.incomplete, std::mem::take(&mut body.meshes));
         model.parts.push(Part { name, closed, meshes, ..Part::default() });
         let lost = |(id, reason): &(u32, String)| FaceRecord {
             id: *id,
@@ -211,7 +211,8 @@ fn build(
                     }
                     model.parts[record.part].faces.push(report.record(record, built));
                 }
-                Err(error) => {
+                Err((error, is_sliver)) => {
+                    model.parts[record.part].closed &= is_sliver;
                     notes.push(FACE_LOST, || places.of(id), error.to_string());
                     report.face_records.push(FaceRecord { notes: vec![error.to_string()], ..record });
                 }
@@ -223,11 +224,11 @@ fn build(
     }
 }
 
+/// The record of a face and its colour; the face, or why there is none, and whether it is a sliver.
+type Outcome = (FaceRecord, Option<Colour>, Result<BuiltFace, (BuildError, bool)>);
+
 /// The faces of some bodies, in their order.
-fn built(
-    bodies: Vec<PartBody>,
-    count: &FaceCount<'_>,
-) -> Vec<(FaceRecord, Option<Colour>, Result<BuiltFace, BuildError>)> {
+fn built(bodies: Vec<PartBody>, count: &FaceCount<'_>) -> Vec<Outcome> {
     let first = bodies.first().map_or(0, |(part, ..)| *part);
     let mut edges = Vec::with_capacity(bodies.len());
     let mut jobs = Vec::with_capacity(bodies.iter().map(|(_, body, _)| body.faces.len()).sum());
@@ -237,7 +238,8 @@ fn built(
     }
     let build = |(part, tolerance, face, colour): (usize, f64, FaceGeometry, Option<Colour>)| {
         let record = FaceRecord { id: face.id, part, tolerance, ..FaceRecord::default() };
-        let result = build_face(&face, &edges[part - first], tolerance);
+        let edges = &edges[part - first];
+        let result = build_face(&face, edges, tolerance).map_err(|why| (why, face.is_sliver(edges, tolerance)));
         count.one();
         (record, colour, result)
     };

@@ -120,6 +120,9 @@ fn primitives(expression: &Expression, operands: &[Arc<Part>]) -> Result<Vec<Pri
                 if part.faces.is_empty() && part.meshes.is_empty() {
                     return Err(format!("its operand #{} has no face left", leaf.id));
                 }
+                if !part.closed {
+                    return Err(format!("its operand #{} is not closed, so it has no inside", leaf.id));
+                }
                 Shape::Part(part.clone())
             }
         };

@@ -233,4 +233,8 @@ fn a_solid_of_faces_is_an_operand() {
     assert_eq!((i.report.bodies, i.report.faces), (1, 3));
     // the records of its faces name no part
     assert!(i.report.face_records.iter().all(|r| r.part == 0));
+    // without one of them it has no inside
+    let i = crate::import::iges(text.replacen("510,39,1,1,47;", "510,47,1,1,47;", 1).as_bytes(), "t.igs").unwrap();
+    let lost = i.warnings.iter().any(|w| w.message.contains("is not closed, so it has no inside"));
+    assert!(lost && i.model.solids.is_empty() && i.summary().draws_nothing(), "{:?}", i.warnings);
 }

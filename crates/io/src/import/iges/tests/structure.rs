@@ -22,6 +22,11 @@ fn a_solid() {
     assert_eq!((i.report.faces, i.report.edges, i.report.pcurves, part.faces.len()), (3, 3, 4, 3));
     assert_eq!((i.report.format.as_str(), i.model.unit.as_str()), ("IGES 5.3", "mm"));
     normals_leave(&part.faces, DVec3::new(0.0, 0.0, 2.5));
+    // a face whose surface is none, and one whose loop is a line across it: what is left bounds nothing
+    for (from, to) in [("510,39,1,1,47;", "510,47,1,1,47;"), ("508,1,0,17,1,1,0;", "508,1,0,17,2,1,0;")] {
+        let i = iges(CYLINDER.replacen(from, to, 1).as_bytes(), "cylinder.igs").unwrap();
+        assert_eq!((i.model.parts[0].faces.len(), i.model.parts[0].closed), (2, false), "{:?}", i.warnings);
+    }
 }
 
 /// Each edge is used twice and known by its list and its place there.
@@ -141,6 +146,19 @@ fn types_that_are_not_read_are_reported() {
     let network = "entity left out: type 420 form 0 is not supported (#5)";
     assert_eq!(told, ["entity of an unknown type not drawn: type 5001", network]);
     assert_eq!(i.model.instances.len(), 1);
+}
+
+/// Parts that stand in other files.
+#[test]
+fn external_files_are_named() {
+    let all = [e(SQUARE), e("416,8Hbolt.igs,1HA;"), e("416,8Hbolt.igs,1HB;"), e("408,3,0.,0.,0.;")];
+    let i = import(&all);
+    let told: Vec<_> = i.warnings.iter().map(|w| w.message.clone()).collect();
+    assert!(told.contains(&"external file not followed: bolt.igs".to_owned()), "{told:?}");
+    assert!(told.iter().any(|t| t.starts_with("subfigure left out: ")), "{told:?}");
+    let summary = i.summary();
+    assert_eq!((summary.elsewhere.as_slice(), summary.faces.drawn), (&["bolt.igs".to_owned()][..], 1));
+    assert!(!summary.is_complete());
 }
 
 /// A mark of byte order moves no column.

@@ -1,7 +1,7 @@
 //! glTF.
 
 use super::{CORNERS, FACES, import, refusal, volume};
-use crate::import::{Options, open_with};
+use crate::import::{Folders, Options, open_with, read_from};
 use base64::Engine;
 use glam::DVec3;
 
@@ -81,6 +81,54 @@ fn buffers_beside_the_file() {
     assert!(named.len() < 4000 && told.ends_with(&most), "{told}");
 }
 
+/// A buffer beyond the file's folder is refused, there or not, and found below a folder that is searched.
+#[test]
+fn buffers_elsewhere() {
+    let root = std::env::temp_dir().join(format!("selvedge-gltf-elsewhere-{}", std::process::id()));
+    let (folder, away) = (root.join("model"), root.join("away/below"));
+    for folder in [&folder, &away] {
+        std::fs::create_dir_all(folder).unwrap();
+    }
+    let (file, beyond) = (folder.join("t.gltf"), root.join("beyond.bin"));
+    for path in [&beyond, &away.join("away.bin"), &folder.join("near.bin")] {
+        std::fs::write(path, data()).unwrap();
+    }
+    let read = |uri: &str, search: bool| {
+        std::fs::write(&file, text(&format!(",\"uri\":\"{uri}\""))).unwrap();
+        let folders = Folders::new(if search { vec![root.join("away")] } else { Vec::new() });
+        let options = Options { files: Some(&folders), ..Options::default() };
+        open_with(&file, &options).map(|import| import.report.files_read).map_err(|e| e.to_string())
+    };
+    let absolute = beyond.display().to_string().replace('\\', "/");
+    for uri in ["../beyond.bin", "%2e%2e/beyond.bin", "..\\\\beyond.bin", "near/../../beyond.bin", &absolute] {
+        let told = read(uri, true).expect_err(uri);
+        assert!(told.contains("beyond.bin: not beside the model, nor below a folder that is searched"), "{told}");
+    }
+    // a folder of this name would lie beside the model
+    for uri in [format!("file://{absolute}"), "http://host/beyond.bin".to_owned()] {
+        let told = read(&uri, true).expect_err(&uri);
+        assert!(told.contains("beyond.bin: ") && told.contains("buffer 0: "), "{told}");
+    }
+    for (uri, search, found) in [
+        ("near.bin", false, Some("near.bin")),
+        ("NEAR.BIN", false, Some("near.bin")),
+        ("../near.bin", false, Some("near.bin")),
+        ("away.bin", false, None),
+        ("away.bin", true, Some("away.bin")),
+        ("../below/away.bin", true, Some("away.bin")),
+    ] {
+        let named = read(uri, search).ok().map(|all| all[0].file_name().unwrap().display().to_string());
+        assert_eq!(named.as_deref(), found, "{uri}");
+    }
+    std::fs::remove_dir_all(&root).unwrap();
+    // a stream has no folder
+    let stream = text(",\"uri\":\"Cargo.toml\"");
+    let folders = Folders::default();
+    let options = Options { files: Some(&folders), ..Options::default() };
+    let told = read_from(&mut stream.as_bytes(), "-.gltf", &options).expect_err("a stream").to_string();
+    assert!(told.contains("Cargo.toml: the model was not read from a folder"), "{told}");
+}
+
 /// What the file states and the model has not is reported. A scene that is not shown is no loss.
 #[test]
 fn what_is_lost_of_gltf_is_reported() {
@@ -123,6 +171,38 @@ fn what_is_lost_of_gltf_is_reported() {
     }
 }
 
+/// The colour of all vertices is a factor of the material's, and no loss.
+#[test]
+fn one_colour_of_vertices_is_drawn() {
+    let with = |colours: &[u8], kind: &str, material: bool| {
+        let coloured = with_data(&[&data()[..], colours].concat())
+            .replace("\"byteLength\":72", &format!("\"byteLength\":{}", 72 + colours.len()))
+            .replace(
+                "\"byteLength\":24}",
+                &format!("\"byteLength\":24}},{{\"buffer\":0,\"byteOffset\":72,\"byteLength\":{}}}", colours.len()),
+            )
+            .replace("\"type\":\"SCALAR\"}", &format!("\"type\":\"SCALAR\"}},{{\"bufferView\":2,\"count\":4,{kind}}}"))
+            .replace("\"POSITION\":0", "\"POSITION\":0,\"COLOR_0\":2");
+        let coloured = if material { coloured } else { coloured.replace(",\"material\":0", "") };
+        let import = import(coloured.as_bytes(), "gltf");
+        let told: Vec<_> = import.warnings.iter().map(|w| w.message.clone()).collect();
+        assert_eq!(import.summary().is_complete(), told.is_empty());
+        (import.model.parts[0].meshes[0].colour, told)
+    };
+    let floats = |last: f32| -> Vec<u8> {
+        let all = [[1.0, 0.5, 0.25]; 3].into_iter().chain([[1.0, 0.5, last]]).flatten();
+        all.flat_map(f32::to_le_bytes).collect()
+    };
+    let (three, four) =
+        ("\"componentType\":5126,\"type\":\"VEC3\"", "\"componentType\":5121,\"normalized\":true,\"type\":\"VEC4\"");
+    assert_eq!(with(&[255; 16], four, true), (Some([0.25, 0.5, 0.75, 0.5]), vec![]));
+    assert_eq!(with(&[255; 16], four, false), (Some([1.0; 4]), vec![]));
+    assert_eq!(with(&floats(0.25), three, true), (Some([0.25, 0.25, 0.1875, 0.5]), vec![]));
+    // one vertex has another
+    let told = vec!["colours left out: mesh 0, primitive 0: colours of vertices".to_owned()];
+    assert_eq!(with(&floats(0.5), three, true), (Some([0.25, 0.5, 0.75, 0.5]), told));
+}
+
 #[test]
 fn damaged_gltf() {
     let whole = with_data(&data());
@@ -147,6 +227,16 @@ fn damaged_gltf() {
     let whole = binary(&text(""), &data());
     assert!(refusal(&whole[..whole.len() - 9], "glb").starts_with("t.x: "));
     assert!(refusal(&whole[..10], "glb").starts_with("t.x: "));
+    // boxes of positions are not used, and may be missing; what else is wrong is told
+    let bare = with_data(&data()).replace(",\"min\":[0,0,0],\"max\":[1,1,1]", "");
+    assert!((volume(&import(bare.as_bytes(), "gltf").model) - 27e9 / 6.0).abs() < 1e-3);
+    assert!(refusal(bare.replace("\"mesh\":0", "\"mesh\":7").as_bytes(), "gltf").contains("nodes[1].mesh"));
+    // the first version had objects in place of lists
+    let first = "{\"accessors\": {}, \"asset\": {\"generator\": \"x\", \"version\": \"1.0\"}}";
+    assert!(refusal(first.as_bytes(), "gltf").starts_with("t.x: glTF 1.0, and 2.0 is read: "));
+    assert!(
+        refusal(b"glTF\x01\0\0\0\x14\0\0\0\0\0\0\0\0\0\0\0", "glb").starts_with("t.x: glTF 1.0, and 2.0 is read: ")
+    );
     // a node that is its own child
     let cycle = with_data(&data()).replace("\"children\":[1]", "\"children\":[0]");
     assert!(refusal(cycle.as_bytes(), "gltf").starts_with("t.x: "));

@@ -86,13 +86,13 @@ fn every_change_of_polygons_has_its_message() {
     one_change_one_message(SOLID, replaced, first, &changes);
 }
 
-/// The form has no names that refer to others: `call` reads another file, and none is read.
+/// `call` names another file, and none is read: that is a loss.
 #[test]
 fn files_that_call_themselves() {
-    assert_eq!(
-        first(&format!("call t.obj\n{SOLID}")),
-        ("t.obj:1: statement not used: `call`, 1 times".to_owned(), (0, 4))
-    );
+    let text = format!("call t.obj\ncall t.obj\n{SOLID}");
+    assert_eq!(first(&text), ("t.obj:1: external file not followed: t.obj".to_owned(), (0, 4)));
+    let summary = crate::import::obj(text.as_bytes(), "t.obj", None).unwrap().summary();
+    assert!(summary.elsewhere == ["t.obj"] && !summary.is_complete());
 }
 
 /// Three surfaces, the second of which is bad.

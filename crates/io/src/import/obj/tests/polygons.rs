@@ -66,13 +66,14 @@ fn colours_come_from_the_file_beside() {
     for expected in [
         "material statement not read: my colours.mtl:6: Kd 1 1",
         "material statement not read: my colours.mtl:7: d -halo 0.5",
-        "texture not used: my colours.mtl:11: map_Kd wood.png",
+        "texture left out: my colours.mtl:11: map_Kd wood.png",
         "coloured.obj:2: materials not read: ../other.mtl: not beside the model",
         "coloured.obj:10: no such material: missing",
     ] {
         assert!(told.contains(expected), "{expected} in {told}");
     }
     assert_eq!(read.warnings.len(), 5);
+    assert!(!read.summary().is_complete(), "as in other formats, a texture is a loss");
 }
 
 #[test]
@@ -80,14 +81,20 @@ fn statements_without_surfaces_are_counted() {
     let read = import("v 0 0 0 1 1 1\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\ns 1\nf 1/1 2/2 3/1\np 1\nl 1 2\nfrobnicate\n");
     let expected = [
         "t.obj:10: statement not used: `frobnicate`, 1 times",
-        "t.obj:9: statement not used: `l`, 1 times",
-        "t.obj:8: statement not used: `p`, 1 times",
+        "t.obj:9: lines not drawn: `l`, 1 times",
+        "t.obj:8: points not drawn: `p`, 1 times",
         "t.obj:6: statement not used: `s`, 1 times",
         "t.obj:1: statement not used: `v with a colour`, 1 times",
         "t.obj:4: statement not used: `vt`, 2 times",
     ];
     assert_eq!(told(&read), expected);
     assert_eq!(read.model.parts[0].meshes[0].triangles(), [[0, 1, 2]]);
+    // nothing but lines, nothing but points
+    let holds = |text: &str| import(text).summary().to_string();
+    assert!(
+        holds("v 0 0 0\nv 1 0 0\nl 1 2\n").contains("it holds 1 x lines (`l`, 1 times), 1 x vertices (2 of no face)")
+    );
+    assert!(holds("v 0 0 0\n").ends_with("nothing of it can be drawn; it holds 1 x vertices (1 of no face)"));
 }
 
 #[test]

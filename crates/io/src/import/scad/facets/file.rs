@@ -1,13 +1,13 @@
-//! `import(file)` and `surface(file)`: files beside the one that names them.
+//! `import(file)` and `surface(file)`: files beside the one that names them, or where others are searched.
 
 use super::solid::Triangles;
 use super::{Body, Region, Shape, dxf, relief, svg};
 use crate::import::meshes;
 use crate::import::scad::Fault;
 use crate::import::scad::args::{Args, Value};
-use crate::import::source::{self, OtherFiles};
+use crate::import::source::OtherFiles;
 use glam::{DAffine2, DVec2};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Bytes of a file that is taken in.
 const MOST_BYTES: u64 = 1 << 30;
@@ -21,10 +21,9 @@ pub(super) fn read(
     let Some(Value::Text(file)) = args.get("file").filter(|v| !matches!(v, Value::Text(t) if t.is_empty())) else {
         return Err(args.fault("no file is named"));
     };
-    let path = files.folder.map_or_else(|| Path::new(file).to_path_buf(), |f| f.join(file));
     let wrong = |what: String| args.fault(format!("{file}: {what}"));
     let of_file = |notes: Vec<String>| -> Vec<String> { notes.into_iter().map(|n| format!("{file}: {n}")).collect() };
-    let bytes = source::beside(&path, MOST_BYTES.min(files.most)).map_err(wrong)?;
+    let (path, bytes) = files.open(file, MOST_BYTES).map_err(wrong)?;
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     if !opened.contains(&path) {
         opened.push(path);

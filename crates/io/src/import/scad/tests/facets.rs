@@ -27,6 +27,27 @@ fn hulls() {
     same(flat, 3.5, |p| polygon(p.x, p.y, &six).max(-p.z).max(p.z - 1.0));
 }
 
+/// Half-spaces stand for facets, in a block that is wider; the box is that of the corners.
+#[test]
+fn boxes_are_those_of_corners() {
+    let hull = format!("hull() {{ cube(size = 1); {} }}", moved(2.0, 3.0, 4.0, "cube(size = 1);"));
+    let tetra = "polyhedron(points = [[0, 0, 0], [10, 0, 0], [0, 10, 0], [0, 0, 10]], \
+        faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]);";
+    let less = format!("difference() {{ {tetra} sphere(r = 1); }}");
+    let (sine, ring) = (5.0 * 60_f64.to_radians().sin(), 2.0 * 22.5_f64.to_radians().cos());
+    for (text, min, max) in [
+        (hull.as_str(), [0.0; 3], [3.0, 4.0, 5.0]),
+        (tetra, [0.0; 3], [10.0; 3]),
+        ("cylinder($fn = 6, h = 4, r1 = 5, r2 = 2);", [-5.0, -sine, 0.0], [5.0, sine, 4.0]),
+        ("sphere($fn = 8, r = 2);", [-ring; 3], [ring; 3]),
+        (less.as_str(), [0.0; 3], [10.0; 3]),
+    ] {
+        let found = import(text).model.bounds();
+        let off = (found.min - DVec3::from(min)).abs().max((found.max - DVec3::from(max)).abs()).max_element();
+        assert!(off < 1e-12, "{text}: {found:?}");
+    }
+}
+
 #[test]
 fn minkowski_sums() {
     same("minkowski() { cube(size = [1, 2, 3]); cube(size = 1, center = true); }", 4.0, |p| {
@@ -164,6 +185,8 @@ fn imported_files() {
         ("import(file = \"open.off\");", "left out: import: the faces do not close"),
         ("import(file = \"gone.off\");", "left out: import: gone.off: "),
         ("import(file = \"t.xyz\");", "left out: import: t.xyz: "),
+        ("import(file = \"../t.off\");", "left out: import: ../t.off: not beside the model"),
+        ("surface(file = \"/etc/passwd\");", "left out: surface: /etc/passwd: not beside the model"),
         ("surface(file = \"t.off\");", "left out: surface: t.off: line 1 holds"),
     ] {
         let told = read(text).warnings;

@@ -233,6 +233,10 @@ fn solids_of_faces_are_operands() {
     assert!(part.closed);
     assert_eq!((part.faces.len(), import.report.faces, import.model.parts.len()), (4, 4, 0));
     assert!(import.report.face_records.iter().all(|r| r.part == 0));
+    // without one of them it has no inside
+    let import = read(&data.replace("#98=PLANE('',#99)", "#98=SPHERICAL_SURFACE('',#99,0.)"));
+    let lost = told(&import).iter().any(|t| t.contains("its operand #70 is not closed, so it has no inside"));
+    assert!(lost && import.model.solids.is_empty() && import.model.parts.is_empty(), "{:?}", told(&import));
 }
 
 /// Its own colour, else that of the operation around it, else the representation's; the occurrence's beats all.

@@ -93,6 +93,30 @@ fn what_a_cut_file_still_holds_is_drawn() {
     assert_eq!(import.model.face_count(), 3);
 }
 
+/// A solid that lacks a face bounds nothing, however the face was lost: it has no volume, no caps, no inside.
+#[test]
+fn a_solid_without_all_its_faces_is_not_closed() {
+    let hidden =
+        |id: u32| replaced(GOOD, "\nENDSEC;\nEND-ISO", &format!("\n#999=INVISIBILITY((#{id}));\nENDSEC;\nEND-ISO"));
+    let voids =
+        |list: &str| replaced(GOOD, "MANIFOLD_SOLID_BREP('can',#64)", &format!("BREP_WITH_VOIDS('can',#64,({list}))"));
+    for (text, faces, closed) in [
+        (GOOD.to_owned(), 3, true),
+        // not to be found, not to be mapped, not to be built, hidden
+        (replaced(GOOD, "(#61,#62,#63)", "(#61,#62,#998)"), 2, false),
+        (replaced(GOOD, "CYLINDRICAL_SURFACE('',#24,5.)", "CYLINDRICAL_SURFACE('',#24,0.)"), 2, false),
+        (replaced(GOOD, "#57=EDGE_LOOP('',(#54))", "#57=EDGE_LOOP('',(#52))"), 2, false),
+        (hidden(62), 2, false),
+        (hidden(998), 3, true),
+        (voids(""), 3, true),
+        (voids("#998"), 3, false),
+    ] {
+        let import = step(text.as_bytes(), "good.step").unwrap();
+        let solid = import.model.parts.iter().find(|part| part.faces.len() > 1).unwrap();
+        assert_eq!((solid.faces.len(), solid.closed), (faces, closed), "{:?}", import.warnings);
+    }
+}
+
 /// Surfaces of one spline shared by every face of a shell: the work is cut off, not the program.
 #[test]
 fn sharing_is_bounded() {
