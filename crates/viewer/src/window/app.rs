@@ -4,6 +4,7 @@ use super::composite::ViewRect;
 use super::engine::{Drawn, Engine, Wanted};
 use super::look::background;
 use super::screen::{Frame, Picture, Screen};
+use super::shown::{Pictures, ShownPicture};
 use super::waiter::Waiter;
 use super::{Failure, ViewError, ViewOptions};
 use crate::measure::Measurement;
@@ -67,14 +68,6 @@ struct Flight {
     free: Vec<egui::TextureId>,
 }
 
-/// The picture that the window shows.
-#[derive(Clone, Copy, PartialEq)]
-pub struct ShownPicture {
-    pub camera: Camera,
-    settings: FrameSettings,
-    generation: u64,
-}
-
 /// Objects that live as long as the window.
 pub struct Opened {
     pub window: Arc<Window>,
@@ -114,7 +107,7 @@ pub struct App {
     pub rests: bool,
     /// The time of the next frame, if no event comes before.
     pub wake: Option<Instant>,
-    pub picture: Option<ShownPicture>,
+    pictures: Pictures,
     pub stats: Option<FrameStats>,
     pub rect: ViewRect,
     /// Pixels of the window.
@@ -181,7 +174,7 @@ impl App {
             again: false,
             rests: false,
             wake: None,
-            picture: None,
+            pictures: Pictures::default(),
             stats: None,
             rect: ViewRect::default(),
             cursor: None,
@@ -202,7 +195,7 @@ impl App {
 
     /// Frames and pictures of a lost device are gone.
     pub fn forget_frames(&mut self) {
-        (self.flight, self.picture) = (None, None);
+        (self.flight, self.pictures) = (None, Pictures::default());
     }
 
     /// A frame is due.
@@ -262,16 +255,16 @@ impl App {
         }
         if self.session.world.is_empty() {
             screen.blank();
-            self.picture = None;
+            self.pictures = Pictures::default();
         }
         let wanted = ShownPicture { camera: due.camera, settings, generation: engine.generation };
-        let is_new = self.picture != Some(wanted) && due.camera.size.0 > 1 && !self.session.world.is_empty();
+        let is_new = self.pictures.is_due(&wanted) && due.camera.size.0 > 1 && !self.session.world.is_empty();
         let generation = engine.generation;
         let scene = engine.drawn(&self.session.world);
         let picture = if is_new { engine.renderer() } else { None };
         let picture = picture.map(|renderer| Picture { renderer, camera: &due.camera, settings });
         let in_picture = picture.is_some().then_some((due, settings, generation, now));
-        let seen_by = in_picture.map(|_| due.camera).or(self.picture.map(|p| p.camera));
+        let seen_by = in_picture.map(|_| due.camera).or(self.pictures.camera(generation));
         // the item under a resting cursor changes with the picture
         let rests = in_picture.is_some() && !self.view.is_dragging();
         let scene = scene.filter(|_| seen_by.is_some());
@@ -293,13 +286,15 @@ impl App {
             fault: self.options.faults.as_ref().and_then(|faults| (faults.0)()),
         };
         let free = output.textures_delta.free;
-        let (drawn, in_picture) = match screen.draw(window, picture, &frame) {
-            Ok(drawn) => (drawn, in_picture),
+        let (drawn, in_picture, pick) = match screen.draw(window, picture, &frame) {
+            Ok(drawn) => (drawn, in_picture, pick),
             Err(Failure::Picture(error)) => {
+                tracing::error!("a view cannot be drawn: {error}");
                 self.ui.tell(format!("This view cannot be drawn: {error}"));
-                // shown until the view changes
-                self.picture = Some(wanted);
-                (true, None)
+                self.pictures.failed(wanted);
+                // its place was one of the picture that is not there: the next frame picks from the one before
+                self.pick = pick;
+                (true, None, None)
             }
             Err(Failure::Screen(error)) => return Err(error),
         };
@@ -410,9 +405,7 @@ impl App {
             let complete = report.as_ref().is_some_and(|r| r.complete);
             self.stats = report.map(|r| r.stats);
             let shown = ShownPicture { camera: due.camera, settings, generation };
-            if complete {
-                self.picture = Some(shown);
-            }
+            self.pictures.drawn(shown, complete);
             // the first picture of a size makes its buffers, and an incomplete one is no measure
             if std::mem::replace(&mut self.drawn, due.camera.size) == due.camera.size && complete {
                 self.view.pacing.took(due.step, start.elapsed());
