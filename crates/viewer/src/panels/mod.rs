@@ -7,7 +7,10 @@
 //!   ├────────┴─────────────────────────────────────────────┴───────┤
 //!   └ status: under the cursor, size, promise, warnings ───────────┘
 //! ```
+//!
+//! Widgets that show no text of their own have a name in egui's accessibility information.
 
+mod colour;
 mod handles;
 mod overlay;
 mod properties;
@@ -84,6 +87,8 @@ pub struct Ui {
     pub save: Option<PathBuf>,
     /// The dialog that was just opened: its text field takes the keys.
     just_opened: Option<Dialog>,
+    /// A colour that is being typed.
+    colour: Option<String>,
 }
 
 /// The dialogs with a text that Enter carries out.
@@ -145,6 +150,7 @@ impl Default for Ui {
             notice: None,
             save: None,
             just_opened: None,
+            colour: None,
         }
     }
 }
@@ -320,6 +326,11 @@ pub fn show(
     status::windows(ctx, ui, session, settings, facts);
     ui.pointer_taken = ctx.is_using_pointer() || ctx.is_pointer_over_area();
     rect
+}
+
+/// What a text field is, for those who do not see it: its label stands beside it.
+fn field(name: &str, text: &str) -> egui::WidgetInfo {
+    egui::WidgetInfo { label: Some(name.to_owned()), ..egui::WidgetInfo::text_edit(true, text, text, "") }
 }
 
 /// How far the arrow keys move a handle that has the keys, points: one a press, ten with Shift. They then lead to no
