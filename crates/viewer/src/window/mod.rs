@@ -17,6 +17,7 @@ mod look;
 mod opening;
 mod photograph;
 mod screen;
+mod selecting;
 mod shown;
 mod swapchain;
 mod targets;
