@@ -133,6 +133,18 @@ fn menus_and_dialogs_have_names_too() {
 }
 
 #[test]
+fn parts_are_moved_apart_by_keys_alone() {
+    let mut bench = Bench::new();
+    bench.lead_to(WidgetType::Slider, "Explode");
+    // only what had the keys a frame before keeps the arrows
+    (0..2).for_each(|_| drop(bench.frame(Vec::new())));
+    bench.press(egui::Key::ArrowRight);
+    let explosion = bench.session.scene.now().explosion;
+    assert!(explosion > 0.0 && bench.ui.commands.is_empty(), "{explosion}, and {:?}", bench.ui.commands);
+    assert!(bench.session.scene.undo() && bench.session.scene.now().explosion == 0.0);
+}
+
+#[test]
 fn a_part_gets_a_colour_by_keys_alone() {
     let mut bench = Bench::new();
     bench.session.scene.change(|state| _ = state.colours.insert(1, [0.0, 0.0, 0.0, 0.25]));
