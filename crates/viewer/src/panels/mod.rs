@@ -63,6 +63,8 @@ pub struct Ui {
     pub quit: bool,
     /// The tree scrolls to the selection once.
     pub show_selection: bool,
+    /// The instance whose row in the tree is under the pointer, or has the keys: the picture marks it.
+    pub pointed: Option<usize>,
     /// The point of the last click.
     pub clicked: Option<DVec3>,
     /// The selection needs a measurement.
@@ -138,6 +140,7 @@ impl Default for Ui {
             pointer_taken: false,
             quit: false,
             show_selection: false,
+            pointed: None,
             clicked: None,
             wants_measure: false,
             measurement: None,

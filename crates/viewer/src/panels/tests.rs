@@ -217,6 +217,22 @@ fn a_click_in_the_tree_selects_and_the_panel_says_what_it_is() {
 }
 
 #[test]
+fn the_row_under_the_pointer_points_at_its_part() {
+    let mut bench = Bench::new();
+    let name = bench.session.world.instance_name(1);
+    bench.frame(Vec::new());
+    let all = bench.frame(Vec::new());
+    let nth = usize::from(bench.session.world.instance_name(0) == name);
+    let (_, row) = all.iter().filter(|(text, _)| *text == name).nth(nth).expect("a row");
+    let (row, away) = (row.center(), egui::Pos2::new(640.0, 400.0));
+    for (place, pointed) in [(row, Some(1)), (away, None)] {
+        // a widget is hovered in the frame after that of the move
+        (0..2).for_each(|_| drop(bench.frame(vec![egui::Event::PointerMoved(place)])));
+        assert_eq!(bench.ui.pointed, pointed, "{place}");
+    }
+}
+
+#[test]
 fn buttons_hide_and_show_again() {
     let mut bench = Bench::new();
     bench.session.select(Some(Picked::Instance(1)), false);

@@ -48,6 +48,7 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
         }
     });
     panel.separator();
+    ui.pointed = None;
     let mut found = std::mem::take(&mut ui.found);
     found.update(&session.world, &ui.search);
     egui::ScrollArea::both().auto_shrink(false).show(panel, |area| {
@@ -131,6 +132,9 @@ fn part(list: &mut egui::Ui, ui: &mut Ui, session: &mut Session, instance: usize
             session.scene.change(|state| _ = state.colours.insert(instance, colour));
         }
         let label = row.selectable_label(selected.binary_search(&instance).is_ok(), name);
+        if label.hovered() || label.has_focus() {
+            ui.pointed = Some(instance);
+        }
         if label.clicked() {
             let add = row.input(|input| input.modifiers.shift);
             session.select(Some(Picked::Instance(instance)), add);
