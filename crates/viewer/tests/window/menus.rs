@@ -5,7 +5,7 @@ use super::living::is_in_place;
 use super::panels::Panels;
 use super::{LEAST_TINT, Screen, opened, opened_with};
 use glam::{DVec2, DVec3};
-use selvedge::model::{Bounds, SurfaceKind};
+use selvedge::model::Bounds;
 use selvedge_io::{import, native};
 use selvedge_viewer::commands::Command;
 use selvedge_viewer::describe::extent;
@@ -23,11 +23,9 @@ fn a_part_is_found_by_name_and_the_view_without_it_is_right() {
     let (_folder, mut program, scene) = opened(display, "assembly.step");
     let mut panels = Panels::new(&scene, WINDOW);
     // the part of a row under the cursor is tinted
-    let (at, hit) = scene.place(|_, face| face.kind == SurfaceKind::Plane);
-    let called = scene.world.instance_name(hit.instance);
-    let nth = (0..hit.instance).filter(|i| scene.world.instance_name(*i) == called).count();
+    let (at, _) = scene.place(|hit, _| hit.instance == 0);
     let plain = display.screen().warmth(at);
-    let row = panels.find(&called, nth);
+    let row = panels.find(&scene.world.instance_name(0), 0);
     program.after(|| display.move_to(row));
     let pointed = display.screen().warmth(at);
     assert!(pointed > plain + LEAST_TINT, "{pointed} where it was {plain}");
