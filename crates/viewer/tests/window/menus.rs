@@ -24,6 +24,7 @@ fn a_part_is_found_by_name_and_the_view_without_it_is_right() {
     let mut panels = Panels::new(&scene, WINDOW);
     // the part of a row under the cursor is tinted
     let (at, _) = scene.place(|hit, _| hit.instance == 0);
+    program.after(|| display.move_to(scene.corner + 4.0));
     let plain = display.screen().warmth(at);
     let row = panels.find(&scene.world.instance_name(0), 0);
     program.after(|| display.move_to(row));
