@@ -26,10 +26,21 @@ fn a_part_is_found_by_name_and_the_view_without_it_is_right() {
     let (at, _) = scene.place(|hit, _| hit.instance == 0);
     program.after(|| display.move_to(scene.corner + 4.0));
     let plain = display.screen().warmth(at);
-    let row = panels.find(&scene.world.instance_name(0), 0);
+    let first = scene.world.instance_name(0);
+    let row = panels.find(&first, 0);
     program.after(|| display.move_to(row));
     let pointed = display.screen().warmth(at);
     assert!(pointed > plain + LEAST_TINT, "{pointed} where it was {plain}");
+
+    // a click selects the whole part
+    for choice in ["Anything", "Parts"] {
+        panels.click(display, &mut program, choice, 0);
+    }
+    display.click(at);
+    let selected = program.wait("selected ");
+    assert!(selected.ends_with(&format!("selected {first}")), "{selected} instead of {first}");
+    program.rest();
+
     let last = scene.world.model.instances.len() - 1;
     let name = scene.world.instance_name(last);
     let before = (0..last).filter(|i| scene.world.instance_name(*i) == name).count();
