@@ -303,9 +303,11 @@ impl Ui {
     }
 }
 
-/// The context of the panels: one pass a frame, since a key or a drag counts once.
+/// The context of the panels: one pass a frame, since a key or a drag counts once. The cursor of a text does not blink:
+/// nothing is drawn while nothing changes.
 pub fn context() -> egui::Context {
     let ctx = egui::Context::default();
+    ctx.all_styles_mut(|style| style.visuals.text_cursor.blink = false);
     ctx.options_mut(|options| options.max_passes = std::num::NonZeroUsize::MIN);
     ctx
 }

@@ -34,6 +34,8 @@ struct Bench {
     modifiers: egui::Modifiers,
     /// The accessibility information of the widget that got the keys in the last frame, if egui has any.
     heard: Option<egui::WidgetInfo>,
+    /// The time until the panels want another frame.
+    delay: std::time::Duration,
 }
 
 impl Bench {
@@ -58,6 +60,7 @@ impl Bench {
             rect: egui::Rect::NOTHING,
             modifiers: egui::Modifiers::NONE,
             heard: None,
+            delay: std::time::Duration::ZERO,
         }
     }
 
@@ -76,6 +79,7 @@ impl Bench {
         };
         let Self { ctx, ui, session, settings, rect, .. } = self;
         let output = ctx.run(input, |ctx| *rect = show(ctx, ui, session, settings, &facts));
+        self.delay = output.viewport_output[&egui::ViewportId::ROOT].repaint_delay;
         // the last one has all that was added to the widget
         self.heard = output.platform_output.events.iter().rev().find_map(|event| match event {
             egui::output::OutputEvent::FocusGained(info) => Some(info.clone()),

@@ -51,7 +51,8 @@ fn a_part_is_found_by_name_and_the_view_without_it_is_right() {
     display.click(field);
     program.settle();
     display.xdotool(&format!("type --delay 30 {name}"));
-    program.settle();
+    // the cursor of a text does not blink
+    program.rest();
     panels.ui.search.clone_from(&name);
     // the field itself shows the name, too
     panels.click(display, &mut program, &name, before + 1);

@@ -133,6 +133,15 @@ fn menus_and_dialogs_have_names_too() {
 }
 
 #[test]
+fn no_frame_is_due_while_a_text_waits_for_keys() {
+    let mut bench = Bench::new();
+    bench.lead_to(WidgetType::TextEdit, "Find");
+    // a second, in which animations end
+    (0..60).for_each(|_| drop(bench.frame(Vec::new())));
+    assert_eq!(bench.delay, std::time::Duration::MAX);
+}
+
+#[test]
 fn parts_are_moved_apart_by_keys_alone() {
     let mut bench = Bench::new();
     bench.lead_to(WidgetType::Slider, "Explode");
