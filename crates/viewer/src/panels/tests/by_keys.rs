@@ -11,7 +11,7 @@ const GRIP: f32 = 100.0;
 
 impl Bench {
     /// The next stop of Tab.
-    fn next(&mut self) -> egui::Id {
+    fn tab(&mut self) -> egui::Id {
         self.press(egui::Key::Tab);
         let focused = |bench: &Self| bench.ctx.memory(|memory| memory.focused());
         if focused(self).is_none() {
@@ -26,7 +26,7 @@ impl Bench {
         (0..3).for_each(|_| drop(self.frame(Vec::new())));
         let (mut stops, mut heard, mut silent) = (Vec::new(), Vec::new(), Vec::new());
         while stops.len() < MOST_STOPS {
-            let stop = self.next();
+            let stop = self.tab();
             if stops.contains(&stop) {
                 return (heard, silent);
             }
@@ -43,7 +43,7 @@ impl Bench {
     /// Leads the keys to a widget of this kind and name.
     fn lead_to(&mut self, kind: WidgetType, name: &str) {
         for _ in 0..MOST_STOPS {
-            self.next();
+            self.tab();
             if self.heard.take().is_some_and(|info| info.typ == kind && info.label.as_deref() == Some(name)) {
                 return;
             }
