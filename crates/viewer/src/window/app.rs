@@ -433,6 +433,9 @@ impl App {
                 self.view.pacing.took(due.step, start.elapsed());
             }
             self.again |= !complete;
+            if complete && engine.drawn(&self.session.world).is_some() {
+                self.joiner.shown();
+            }
             if !self.seen && complete {
                 self.seen = true;
                 tracing::info!("first picture after {:.0} ms", ms(self.begun));
