@@ -258,7 +258,8 @@ impl App {
         self.make_room();
         let effects = self.opened.as_ref().map(|opened| opened.engine.effects());
         self.view.pacing.set_effects(effects.unwrap_or_default());
-        let (due, mut settings, marks) = (self.view.due(now), self.frame_settings(), self.marks());
+        let due = if self.seen { self.view.due(now) } else { self.view.first() };
+        let (mut settings, marks) = (self.frame_settings(), self.marks());
         settings.without = due.step.without;
         let (under, scene_settings) = (self.over_view(), self.scene_settings());
         let Some(Opened { window, waiter, engine, screen, .. }) = &mut self.opened else { return Ok(()) };
@@ -437,7 +438,8 @@ impl App {
                 self.joiner.shown();
             }
             if !self.seen && complete {
-                self.seen = true;
+                // the whole picture is next
+                (self.seen, self.again) = (true, true);
                 tracing::info!("first picture after {:.0} ms", ms(self.begun));
             }
             let (width, height) = due.camera.size;
