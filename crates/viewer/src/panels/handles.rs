@@ -9,7 +9,7 @@
 
 use super::overlay::Place;
 use crate::session::{Section, Session};
-use egui::{Color32, Stroke, Vec2};
+use egui::{Color32, Stroke, Vec2, WidgetInfo};
 use glam::DVec3;
 use selvedge::model::Bounds;
 
@@ -48,6 +48,7 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, session: &mut Session) {
         let area = area.order(egui::Order::Middle).constrain(false).sense(egui::Sense::hover());
         let response = area.show(ctx, |ui| {
             let (rect, response) = ui.allocate_exact_size(Vec2::splat(SIZE), egui::Sense::drag());
+            response.widget_info(|| WidgetInfo::slider(true, section.offset, format!("Handle of section {}", i + 1)));
             let lit = response.hovered() || response.dragged() || response.has_focus();
             let colour = if lit { Color32::from_rgb(255, 150, 20) } else { Color32::from_rgb(40, 170, 90) };
             let painter = ui.ctx().layer_painter(ui.layer_id()).with_clip_rect(place.rect);

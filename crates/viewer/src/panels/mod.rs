@@ -7,7 +7,10 @@
 //!   ├────────┴─────────────────────────────────────────────┴───────┤
 //!   └ status: under the cursor, size, promise, warnings ───────────┘
 //! ```
+//!
+//! Widgets that show no text of their own have a name in egui's accessibility information.
 
+mod colour;
 mod handles;
 mod overlay;
 mod properties;
@@ -60,6 +63,8 @@ pub struct Ui {
     pub quit: bool,
     /// The tree scrolls to the selection once.
     pub show_selection: bool,
+    /// The instance whose row in the tree is under the pointer, or has the keys: the picture marks it.
+    pub pointed: Option<usize>,
     /// The point of the last click.
     pub clicked: Option<DVec3>,
     /// The selection needs a measurement.
@@ -84,6 +89,8 @@ pub struct Ui {
     pub save: Option<PathBuf>,
     /// The dialog that was just opened: its text field takes the keys.
     just_opened: Option<Dialog>,
+    /// A colour that is being typed.
+    colour: Option<String>,
 }
 
 /// The dialogs with a text that Enter carries out.
@@ -133,6 +140,7 @@ impl Default for Ui {
             pointer_taken: false,
             quit: false,
             show_selection: false,
+            pointed: None,
             clicked: None,
             wants_measure: false,
             measurement: None,
@@ -145,6 +153,7 @@ impl Default for Ui {
             notice: None,
             save: None,
             just_opened: None,
+            colour: None,
         }
     }
 }
@@ -294,9 +303,11 @@ impl Ui {
     }
 }
 
-/// The context of the panels: one pass a frame, since a key or a drag counts once.
+/// The context of the panels: one pass a frame, since a key or a drag counts once. The cursor of a text does not blink:
+/// nothing is drawn while nothing changes.
 pub fn context() -> egui::Context {
     let ctx = egui::Context::default();
+    ctx.all_styles_mut(|style| style.visuals.text_cursor.blink = false);
     ctx.options_mut(|options| options.max_passes = std::num::NonZeroUsize::MIN);
     ctx
 }
@@ -320,6 +331,11 @@ pub fn show(
     status::windows(ctx, ui, session, settings, facts);
     ui.pointer_taken = ctx.is_using_pointer() || ctx.is_pointer_over_area();
     rect
+}
+
+/// What a text field is, for those who do not see it: its label stands beside it.
+fn field(name: &str, text: &str) -> egui::WidgetInfo {
+    egui::WidgetInfo { label: Some(name.to_owned()), ..egui::WidgetInfo::text_edit(true, text, text, "") }
 }
 
 /// How far the arrow keys move a handle that has the keys, points: one a press, ten with Shift. They then lead to no

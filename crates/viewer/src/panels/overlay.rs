@@ -174,7 +174,8 @@ fn view_cube(ctx: &egui::Context, rect: Rect, ui: &mut Ui, camera: &Camera) {
     egui::Area::new("cube".into()).fixed_pos(corner).order(egui::Order::Middle).sense(egui::Sense::hover()).show(
         ctx,
         |area| {
-            let (own, response) = area.allocate_exact_size(egui::Vec2::splat(CUBE), egui::Sense::click());
+            // Tab leads past it: keys and the menu have its views
+            let (own, response) = area.allocate_exact_size(egui::Vec2::splat(CUBE), egui::Sense::CLICK);
             let to_panel = |p: DVec2| own.center() + egui::Vec2::new(p.x as f32, p.y as f32) * (0.5 * CUBE);
             let at = response.hover_pos().map(|p| (p - own.center()) / (0.5 * CUBE));
             let under = at.and_then(|p| cube::direction_at(camera, DVec2::new(f64::from(p.x), f64::from(p.y))));

@@ -29,6 +29,7 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
     if let Some(notice) = &ui.notice {
         panel.colored_label(panel.visuals().warn_fg_color, notice);
     }
+    super::colour::show(panel, ui, session);
     super::trims::list(panel, ui, session);
     // content wider than the panel scrolls: the picture keeps its size
     egui::ScrollArea::both().auto_shrink(false).show(panel, |area| {

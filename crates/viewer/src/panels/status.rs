@@ -5,6 +5,7 @@ use crate::commands::{Command, shortcuts};
 use crate::describe;
 use crate::session::Session;
 use crate::settings::Settings;
+use egui::WidgetInfo;
 use selvedge::picture::Style;
 use selvedge_check::light;
 
@@ -173,6 +174,11 @@ fn is_entered(field: &egui::Response, dialog: Dialog, just_opened: &mut Option<D
     field.lost_focus() && field.ctx.input(|input| input.key_pressed(egui::Key::Enter))
 }
 
+/// What a number of pixels is, for those who do not see it.
+fn side(name: &str, pixels: u32) -> WidgetInfo {
+    WidgetInfo { label: Some(name.to_owned()), ..WidgetInfo::drag_value(true, f64::from(pixels)) }
+}
+
 /// The file and the size of a picture to write or to copy.
 fn shot(ctx: &egui::Context, ui: &mut Ui) {
     let mut open = ui.shot.open;
@@ -181,6 +187,7 @@ fn shot(ctx: &egui::Context, ui: &mut Ui) {
         let shot = &mut ui.shot;
         let mut path = shot.path.to_string_lossy().into_owned();
         let field = window.text_edit_singleline(&mut path);
+        field.widget_info(|| super::field("File", &path));
         if field.changed() {
             shot.path = path.into();
         }
@@ -188,9 +195,11 @@ fn shot(ctx: &egui::Context, ui: &mut Ui) {
             wanted = Some(Command::WritePicture);
         }
         window.horizontal(|row| {
-            row.add(egui::DragValue::new(&mut shot.size.0).range(1..=16384));
+            let width = row.add(egui::DragValue::new(&mut shot.size.0).range(1..=16384));
+            width.widget_info(|| side("Width", shot.size.0));
             row.label("x");
-            row.add(egui::DragValue::new(&mut shot.size.1).range(1..=16384));
+            let height = row.add(egui::DragValue::new(&mut shot.size.1).range(1..=16384));
+            height.widget_info(|| side("Height", shot.size.1));
             row.checkbox(&mut shot.transparent, "transparent");
         });
         window.horizontal(|row| {
@@ -213,6 +222,7 @@ fn save(ctx: &egui::Context, ui: &mut Ui) {
         window.label("A file .selvedge, bit for bit, or .step:");
         let mut text = path.to_string_lossy().into_owned();
         let field = window.text_edit_singleline(&mut text);
+        field.widget_info(|| super::field("File", &text));
         if field.changed() {
             *path = text.into();
         }

@@ -1,5 +1,7 @@
 //! Panels without a window: their texts, and the effects of clicks.
 
+mod by_keys;
+
 use super::*;
 use crate::pick::Hit;
 use crate::session::{Loaded, Picked, PointKind, World};
@@ -30,6 +32,10 @@ struct Bench {
     rect: egui::Rect,
     /// Held in each frame.
     modifiers: egui::Modifiers,
+    /// The accessibility information of the widget that got the keys in the last frame, if egui has any.
+    heard: Option<egui::WidgetInfo>,
+    /// The time until the panels want another frame.
+    delay: std::time::Duration,
 }
 
 impl Bench {
@@ -53,6 +59,8 @@ impl Bench {
             view,
             rect: egui::Rect::NOTHING,
             modifiers: egui::Modifiers::NONE,
+            heard: None,
+            delay: std::time::Duration::ZERO,
         }
     }
 
@@ -71,6 +79,12 @@ impl Bench {
         };
         let Self { ctx, ui, session, settings, rect, .. } = self;
         let output = ctx.run(input, |ctx| *rect = show(ctx, ui, session, settings, &facts));
+        self.delay = output.viewport_output[&egui::ViewportId::ROOT].repaint_delay;
+        // the last one has all that was added to the widget
+        self.heard = output.platform_output.events.iter().rev().find_map(|event| match event {
+            egui::output::OutputEvent::FocusGained(info) => Some(info.clone()),
+            _ => None,
+        });
         texts(&output)
     }
 
@@ -204,6 +218,22 @@ fn a_click_in_the_tree_selects_and_the_panel_says_what_it_is() {
     bench.session.select(Some(Picked::Face { instance: 0, face: 0, uv: glam::DVec2::ZERO }), false);
     let id = bench.session.world.model.parts[bench.session.world.model.instances[0].part].faces[0].id;
     assert!(bench.says(&format!("#{id}")) && bench.says("control points"));
+}
+
+#[test]
+fn the_row_under_the_pointer_points_at_its_part() {
+    let mut bench = Bench::new();
+    let name = bench.session.world.instance_name(1);
+    bench.frame(Vec::new());
+    let all = bench.frame(Vec::new());
+    let nth = usize::from(bench.session.world.instance_name(0) == name);
+    let (_, row) = all.iter().filter(|(text, _)| *text == name).nth(nth).expect("a row");
+    let (row, away) = (row.center(), egui::Pos2::new(640.0, 400.0));
+    for (place, pointed) in [(row, Some(1)), (away, None)] {
+        // a widget is hovered in the frame after that of the move
+        (0..2).for_each(|_| drop(bench.frame(vec![egui::Event::PointerMoved(place)])));
+        assert_eq!(bench.ui.pointed, pointed, "{place}");
+    }
 }
 
 #[test]
@@ -372,90 +402,6 @@ fn a_trim_point_follows_the_hand_on_its_surface() {
     let (far, near) = (nearest(&of_face.loops[0]), nearest(&edits[&(part, face, 0)]));
     assert!(far > 2.0 && near < 0.5, "{near} pixels from the hand, {far} before");
     assert!(bench.session.scene.undo() && bench.session.scene.now().edits.is_empty());
-}
-
-#[test]
-fn arrow_keys_move_handles_that_tab_leads_to() {
-    let mut bench = Bench::new();
-    let world = bench.session.world.clone();
-    let part = world.model.instances[0].part;
-    let face = world.model.parts[part].faces.iter().position(|f| !f.loops.is_empty()).expect("a trimmed face");
-    let before = world.model.parts[part].faces[face].loops[0].curves().next().expect("a curve").point(0.0);
-    bench.session.select(Some(Picked::Face { instance: 0, face, uv: before }), false);
-    bench.ui.trims = true;
-    bench.place(world.bounds.centre());
-    bench.tab_to(egui::Vec2::splat(12.0));
-    let camera = *bench.view.camera();
-    bench.press(egui::Key::ArrowDown);
-    assert_eq!(bench.session.scene.now().edits.keys().copied().collect::<Vec<_>>(), [(part, face, 0)]);
-    assert!(bench.ui.commands.is_empty() && *bench.view.camera() == camera, "the view stands still");
-    assert!(bench.session.scene.undo() && bench.session.scene.now().edits.is_empty());
-    bench.ui.trims = false;
-
-    let section = crate::session::Section::across(DVec3::X, world.bounds);
-    bench.session.scene.change(|state| state.sections.push(section));
-    bench.tab_to(egui::Vec2::splat(18.0));
-    bench.press(egui::Key::ArrowRight);
-    let offset = |bench: &Bench| bench.session.scene.now().sections[0].offset;
-    let step = offset(&bench) - section.offset;
-    assert!(step > 0.0, "{step}");
-    bench.modifiers = egui::Modifiers::SHIFT;
-    bench.press(egui::Key::ArrowLeft);
-    let back = section.offset + step - offset(&bench);
-    // the arrow of the moved plane is as long but for perspective
-    assert!((back / step - 10.0).abs() < 0.5, "{back} after {step}");
-    assert!(bench.ui.commands.is_empty(), "{:?}", bench.ui.commands);
-}
-
-#[test]
-fn menus_open_and_choose_by_keys_alone() {
-    let mut bench = Bench::new();
-    bench.press(egui::Key::Tab);
-    assert!(!bench.says("Open..."));
-    bench.press(egui::Key::Enter);
-    assert!(bench.says("Open..."), "the first menu is open");
-    // the menu itself, then its first entry
-    (0..2).for_each(|_| _ = bench.press(egui::Key::Tab));
-    bench.frame(Vec::new());
-    bench.press(egui::Key::Enter);
-    assert_eq!(bench.ui.commands, [Command::OpenDialog]);
-    assert!(!bench.says("Open..."));
-}
-
-#[test]
-fn a_dialog_is_used_by_keys_alone() {
-    let mut bench = Bench::new();
-    bench.ui.obey(Command::Screenshot, &mut bench.session);
-    (0..3).for_each(|_| drop(bench.frame(Vec::new())));
-    bench.frame(vec![egui::Event::Text("2".to_owned())]);
-    assert_eq!(bench.ui.shot.path, Path::new("view.png2"), "its text takes the keys");
-    assert_eq!(bench.ui.commands, []);
-    bench.press(egui::Key::Enter);
-    assert_eq!(std::mem::take(&mut bench.ui.commands), [Command::WritePicture]);
-    // the first one is open still, and Enter is the second one's
-    bench.ui.obey(Command::SaveAs, &mut bench.session);
-    (0..3).for_each(|_| drop(bench.frame(Vec::new())));
-    bench.press(egui::Key::Enter);
-    assert_eq!(std::mem::take(&mut bench.ui.commands), [Command::Save]);
-    bench.press(egui::Key::Escape);
-    for command in std::mem::take(&mut bench.ui.commands) {
-        bench.ui.obey(command, &mut bench.session);
-    }
-    assert!(bench.ui.save.is_none() && !bench.ui.shot.open);
-}
-
-#[test]
-fn keys_select_one_face_after_another_and_give_colours_back() {
-    let mut bench = Bench::new();
-    bench.press(egui::Key::N);
-    for command in std::mem::take(&mut bench.ui.commands) {
-        bench.ui.obey(command, &mut bench.session);
-    }
-    assert!(matches!(bench.session.selection[..], [Picked::Face { instance: 0, face: 0, .. }]));
-    assert!(bench.ui.wants_measure && bench.says("control points"));
-    bench.session.scene.change(|state| _ = state.colours.insert(0, [1.0; 4]));
-    bench.ui.obey(Command::OwnColours, &mut bench.session);
-    assert!(bench.session.scene.now().colours.is_empty());
 }
 
 #[test]

@@ -10,6 +10,7 @@ use crate::pick::PickFilter;
 use crate::session::shown::MOST_SECTIONS;
 use crate::session::{Section, Session};
 use crate::settings::{Lines, Settings, Theme};
+use egui::{WidgetInfo, WidgetType};
 use glam::DVec3;
 use selvedge::picture::Style;
 
@@ -31,10 +32,15 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session, settings: 
         }
         row.separator();
         row.label("Pick");
-        egui::ComboBox::from_id_salt("filter").selected_text(ui.filter.name()).width(80.0).show_ui(row, |list| {
+        let kinds = egui::ComboBox::from_id_salt("filter").selected_text(ui.filter.name()).width(80.0);
+        let kinds = kinds.show_ui(row, |list| {
             for filter in PickFilter::ALL {
                 list.selectable_value(&mut ui.filter, filter, filter.name());
             }
+        });
+        kinds.response.widget_info(|| {
+            let value = Some(ui.filter.name().to_owned());
+            WidgetInfo { current_text_value: value, ..WidgetInfo::labeled(WidgetType::ComboBox, true, "Pick") }
         });
         row.separator();
         let (undo, redo) = session.scene.has();
@@ -52,9 +58,12 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session, settings: 
         row.separator();
         row.label("Explode");
         let slider = row.add(egui::Slider::new(&mut explosion, 0.0..=1.0).show_value(false));
+        slider.widget_info(|| WidgetInfo::slider(true, explosion, "Explode"));
         drag(&slider, session, |state| state.explosion = explosion);
         row.separator();
-        if row.button("?").on_hover_text("Help").clicked() {
+        let help = row.button("?").on_hover_text("Help");
+        help.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, "Help"));
+        if help.clicked() {
             ui.commands.push(Command::Help);
         }
     });
@@ -158,12 +167,15 @@ fn sections(menu: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
     for (i, section) in all.iter().enumerate() {
         menu.horizontal(|row| {
             let mut on = section.on;
-            if row.checkbox(&mut on, "").changed() {
+            let name = format!("Section {}", i + 1);
+            let is_on = row.checkbox(&mut on, "");
+            is_on.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, on, &name));
+            if is_on.changed() {
                 session.scene.change(|state| state.sections[i].on = on);
             }
             let (low, high) = section.range(bounds);
             let mut offset = section.offset;
-            let slider = row.add(egui::Slider::new(&mut offset, low..=high));
+            let slider = row.add(egui::Slider::new(&mut offset, low..=high).text(name));
             drag(&slider, session, |state| state.sections[i].offset = offset);
             if row.button("Flip").clicked() {
                 session.scene.change(|state| state.sections[i] = state.sections[i].flipped());

@@ -6,8 +6,7 @@
 use super::Ui;
 use crate::commands::Command;
 use crate::session::{Picked, Session, World};
-use egui::{Rect, Vec2};
-use selvedge::model::GREY;
+use egui::{Rect, Vec2, WidgetInfo, WidgetType};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -37,7 +36,8 @@ impl Found {
 pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
     panel.horizontal(|row| {
         row.label("Find");
-        row.add(egui::TextEdit::singleline(&mut ui.search).desired_width(f32::INFINITY));
+        let field = row.add(egui::TextEdit::singleline(&mut ui.search).desired_width(f32::INFINITY));
+        field.widget_info(|| super::field("Find", &ui.search));
     });
     panel.horizontal(|row| {
         for (name, command) in [("Show all", Command::ShowAll), ("Hide", Command::Hide), ("Isolate", Command::Isolate)]
@@ -48,6 +48,7 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
         }
     });
     panel.separator();
+    ui.pointed = None;
     let mut found = std::mem::take(&mut ui.found);
     found.update(&session.world, &ui.search);
     egui::ScrollArea::both().auto_shrink(false).show(panel, |area| {
@@ -80,16 +81,18 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
     ui.show_selection = false;
 }
 
-fn eye(row: &mut egui::Ui, session: &mut Session, item: usize) {
+fn eye(row: &mut egui::Ui, session: &mut Session, item: usize, name: &str) {
     let mut visible = !session.scene.now().hidden.contains(&item);
-    if row.checkbox(&mut visible, "").on_hover_text("Shown or hidden").changed() {
+    let eye = row.checkbox(&mut visible, "").on_hover_text("Shown or hidden");
+    eye.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, visible, format!("Show {name}")));
+    if eye.changed() {
         session.scene.change(|state| state.set_hidden(item, !visible));
     }
 }
 
 fn solid_row(list: &mut egui::Ui, session: &mut Session, item: usize, name: &str) {
     list.horizontal(|row| {
-        eye(row, session, item);
+        eye(row, session, item, name);
         row.label(name);
     });
 }
@@ -117,20 +120,21 @@ fn in_sight(seen: egui::Rangef, start: f32, step: f32, count: usize) -> Range<us
 }
 
 fn part(list: &mut egui::Ui, ui: &mut Ui, session: &mut Session, instance: usize, selected: &[usize]) {
-    let world = session.world.clone();
-    let placed = &world.model.instances[instance];
-    let name = world.instance_name(instance);
+    let name = session.world.instance_name(instance);
     list.horizontal(|row| {
-        eye(row, session, instance);
-        let own = world.model.parts[placed.part].faces.iter().find_map(|face| face.colour);
-        let state = session.scene.now();
-        let mut colour = state.colours.get(&instance).copied().or(placed.colour).or(own).unwrap_or(GREY);
+        eye(row, session, instance, &name);
+        let mut colour = session.colour(instance);
         let mut rgb = [colour[0], colour[1], colour[2]];
-        if row.color_edit_button_rgb(&mut rgb).on_hover_text("Colour").changed() {
+        let button = row.color_edit_button_rgb(&mut rgb).on_hover_text("Colour");
+        button.widget_info(|| WidgetInfo::labeled(WidgetType::ColorButton, true, format!("Colour of {name}")));
+        if button.changed() {
             colour[..3].copy_from_slice(&rgb);
             session.scene.change(|state| _ = state.colours.insert(instance, colour));
         }
         let label = row.selectable_label(selected.binary_search(&instance).is_ok(), name);
+        if label.hovered() || label.has_focus() {
+            ui.pointed = Some(instance);
+        }
         if label.clicked() {
             let add = row.input(|input| input.modifiers.shift);
             session.select(Some(Picked::Instance(instance)), add);

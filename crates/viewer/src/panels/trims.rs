@@ -141,6 +141,8 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, ui: &mut Ui, session: &mut S
         // Tab leads to the handle, not to its area, too
         let response = area.constrain(false).sense(egui::Sense::hover()).show(ctx, |ui| {
             let (rect, response) = ui.allocate_exact_size(Vec2::splat(SIZE), egui::Sense::drag());
+            let name = || format!("Point {} of curve {}", handle.point + 1, handle.curve + 1);
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Other, true, name()));
             let lit = response.hovered() || response.dragged() || response.has_focus();
             let fill = if lit { Color32::from_rgb(255, 150, 20) } else { Color32::WHITE };
             let painter = ui.ctx().layer_painter(ui.layer_id()).with_clip_rect(place.rect);

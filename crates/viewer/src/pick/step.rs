@@ -1,9 +1,11 @@
-//! Faces, edges, vertices and parts one after another, in the order of the model: what keys select without a mouse.
+//! Faces, edges, vertices, parts and points one after another, in the order of the model: what keys select without a
+//! mouse. Points of a part are its vertices, then centres, then middles.
 
 use super::PickFilter;
-use crate::session::{Picked, Session, World};
+use crate::session::{Picked, PointKind, Session, World};
 use glam::DVec2;
-use selvedge::model::Face;
+use selvedge::model::{Edge, Face};
+use selvedge_geometry::edges::curve;
 use selvedge_geometry::trim::LoopIndex;
 use std::collections::BTreeSet;
 
@@ -17,6 +19,13 @@ enum Kind {
     Edge,
     Vertex,
     Part,
+    Point,
+}
+
+/// The edges of a part that have a middle, with their numbers: a closed edge has none.
+fn with_middle(world: &World, part: usize) -> impl Iterator<Item = (usize, &Edge)> {
+    let all = world.edges_of(part).into_iter().flat_map(|edges| edges.edges.iter().enumerate());
+    all.filter(|(_, edge)| edge.ends[0] != edge.ends[1] && !edge.curve.is_empty())
 }
 
 impl Kind {
@@ -24,12 +33,13 @@ impl Kind {
         match filter {
             PickFilter::Any | PickFilter::Faces => Self::Face,
             PickFilter::Edges => Self::Edge,
-            PickFilter::Vertices | PickFilter::Points => Self::Vertex,
+            PickFilter::Vertices => Self::Vertex,
             PickFilter::Parts => Self::Part,
+            PickFilter::Points => Self::Point,
         }
     }
 
-    /// How many items of this kind an instance has. Edges and vertices count once they are found.
+    /// How many items of this kind an instance has. Edges and their points count once they are found.
     fn count(self, world: &World, instance: usize) -> usize {
         let part = world.model.instances[instance].part;
         let edges = world.edges_of(part);
@@ -38,30 +48,57 @@ impl Kind {
             Self::Edge => edges.map_or(0, |edges| edges.edges.len()),
             Self::Vertex => edges.map_or(0, |edges| edges.vertices.len()),
             Self::Part => 1,
+            Self::Point => {
+                let vertices = edges.map_or(0, |edges| edges.vertices.len());
+                vertices + world.centres_of(part).len() + with_middle(world, part).count()
+            }
         }
     }
 
     /// The number of an item of this kind in its instance.
-    fn number(self, picked: &Picked) -> Option<usize> {
+    fn number(self, world: &World, picked: &Picked) -> Option<usize> {
+        let part = world.model.instances.get(picked.instance()?)?.part;
+        let vertices = world.edges_of(part).map_or(0, |edges| edges.vertices.len());
+        let centres = world.centres_of(part);
         match (self, *picked) {
             (Self::Face, Picked::Face { face, .. }) => Some(face),
             (Self::Edge, Picked::Edge { edge, .. }) => Some(edge),
-            (Self::Vertex, Picked::Vertex { vertex, .. }) => Some(vertex),
+            (Self::Vertex | Self::Point, Picked::Vertex { vertex, .. }) => Some(vertex),
+            (Self::Point, Picked::Point { kind: PointKind::Centre, of, .. }) => {
+                Some(vertices + centres.iter().position(|(edge, _)| *edge == of)?)
+            }
+            (Self::Point, Picked::Point { kind: PointKind::Middle, of, .. }) => {
+                Some(vertices + centres.len() + with_middle(world, part).position(|(edge, _)| edge == of)?)
+            }
             (Self::Part, Picked::Instance(_)) => Some(0),
             _ => None,
         }
     }
 
-    fn item(self, world: &World, instance: usize, nth: usize) -> Picked {
-        match self {
-            Self::Face => {
-                let face = &world.model.parts[world.model.instances[instance].part].faces[nth];
-                Picked::Face { instance, face: nth, uv: inside(face) }
-            }
+    /// An item of an instance, by its number; `None` where there is none.
+    fn item(self, world: &World, instance: usize, nth: usize) -> Option<Picked> {
+        let placed = world.model.instances.get(instance)?;
+        let part = placed.part;
+        Some(match self {
+            Self::Face => Picked::Face { instance, face: nth, uv: inside(world.model.parts[part].faces.get(nth)?) },
             Self::Edge => Picked::Edge { instance, edge: nth },
             Self::Vertex => Picked::Vertex { instance, vertex: nth },
             Self::Part => Picked::Instance(instance),
-        }
+            Self::Point => {
+                let (vertices, centres) = (world.edges_of(part)?.vertices.len(), world.centres_of(part));
+                let Some(nth) = nth.checked_sub(vertices) else {
+                    return Some(Picked::Vertex { instance, vertex: nth });
+                };
+                let (kind, (of, at)) = match nth.checked_sub(centres.len()) {
+                    None => (PointKind::Centre, centres[nth]),
+                    Some(nth) => {
+                        let (of, edge) = with_middle(world, part).nth(nth)?;
+                        (PointKind::Middle, (of, curve::middle(edge, placed.transform)?))
+                    }
+                };
+                Picked::Point { instance, kind, of, at }
+            }
+        })
     }
 }
 
@@ -70,11 +107,11 @@ impl Kind {
 /// part, none to those of the model. Hidden parts are left out. False where nothing of the kind is shown.
 pub fn step(session: &mut Session, filter: PickFilter, back: bool, add: bool) -> bool {
     let (kind, last) = (Kind::of(filter), session.selection.last().copied());
-    let from = last.and_then(|picked| Some((picked.instance()?, kind.number(&picked))));
+    let from = last.and_then(|picked| Some((picked.instance()?, kind.number(&session.world, &picked))));
     let Some((instance, nth)) = next(&session.world, &session.scene.now().hidden, kind, from, back) else {
         return false;
     };
-    let item = kind.item(&session.world, instance, nth);
+    let Some(item) = kind.item(&session.world, instance, nth) else { return false };
     if !add {
         session.selection.pop();
     }
@@ -131,6 +168,8 @@ fn inside(face: &Face) -> DVec2 {
 mod tests {
     use super::*;
     use crate::session::Loaded;
+    use glam::DAffine3;
+    use selvedge_geometry::edges::curve::CurveShape;
     use std::path::Path;
     use std::sync::Arc;
 
@@ -165,11 +204,18 @@ mod tests {
             |count: &dyn Fn(usize) -> usize| world.model.instances.iter().map(|i| count(i.part)).sum::<usize>();
         let edges = |part: usize| world.edges_of(part).expect("found").edges.len();
         let vertices = |part: usize| world.edges_of(part).expect("found").vertices.len();
+        // a round edge has a centre, and one with two ends a middle
+        let points = |part: usize| {
+            let edges = &world.edges_of(part).expect("found").edges;
+            let open = edges.iter().filter(|edge| edge.ends[0] != edge.ends[1]).count();
+            vertices(part) + world.centres_of(part).len() + open
+        };
         let counts = [
             (PickFilter::Any, of_all(&|part: usize| world.model.parts[part].faces.len())),
             (PickFilter::Edges, of_all(&edges)),
             (PickFilter::Vertices, of_all(&vertices)),
             (PickFilter::Parts, world.model.instances.len()),
+            (PickFilter::Points, of_all(&points)),
         ];
         for (filter, count) in counts {
             session.selection.clear();
@@ -180,6 +226,28 @@ mod tests {
             backward.reverse();
             assert!(forward.iter().zip(&backward).all(|(a, b)| a.is_same(b)), "{filter:?}");
         }
+    }
+
+    #[test]
+    fn points_are_those_of_the_model_and_two_of_them_are_measured() {
+        let mut session = session();
+        let all = around(&mut session, PickFilter::Points, false);
+        let middle_of_line = |picked: &Picked| {
+            let Picked::Point { instance, kind: PointKind::Middle, of, at } = *picked else { return None };
+            let edges = session.world.edges_of(session.world.model.instances[instance].part)?;
+            let edge = edges.edges.get(of)?;
+            let is_line = matches!(curve::shape(edge, DAffine3::IDENTITY), CurveShape::Line(_));
+            is_line.then(|| (at, edge.ends.map(|end| edges.vertices[end])))
+        };
+        let (at, [from, to]) = all.iter().find_map(middle_of_line).expect("a straight edge");
+        // an edge ends at its vertices within the tolerance of the file
+        assert!(at.distance(from.midpoint(to)) < 1e-6 * from.distance(to), "{at} between {from} and {to}");
+        let is_centre = |picked: &&Picked| matches!(picked, Picked::Point { kind: PointKind::Centre, .. });
+        let centre = *all.iter().find(is_centre).expect("a round edge");
+        session.select(Some(centre), false);
+        assert!(step(&mut session, PickFilter::Points, false, true));
+        let [first, second] = session.selection[..] else { panic!("{:?}", session.selection) };
+        assert!(first.is_same(&centre) && second.is_point());
     }
 
     #[test]

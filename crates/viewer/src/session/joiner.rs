@@ -3,8 +3,10 @@
 //! ```text
 //!   files ─▶ 1 ─▶ World ─▶ Joined 1 ┊ its edges, unless other files came: the newest of them are next
 //!   files ─▶ 2 (left out)           ┊
-//!   files ─▶ 3 ─────────────────────╯▶ World ─▶ Joined 3 ─▶ its edges ─▶ EdgesFound 3
+//!   files ─▶ 3 ─────────────────────╯▶ World ─▶ Joined 3 ─▶ its picture is shown ─▶ its edges ─▶ EdgesFound 3
 //! ```
+//!
+//! The upload finds edges, too: found at the same time, both would be later, and so would the picture.
 
 use super::{Loaded, World};
 use selvedge_io::import::{Unwound, caught};
@@ -12,6 +14,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, Sender};
 use std::thread;
+use std::time::Duration;
+
+/// Longest wait for the picture of a model, which may not come.
+const PICTURE: Duration = Duration::from_secs(3);
 
 /// A message of the thread, with the number of the list of files.
 #[derive(Debug)]
@@ -29,6 +35,8 @@ pub enum JoinerEvent {
 pub struct Joiner {
     newest: Arc<AtomicU64>,
     to: Sender<(u64, Vec<Arc<Loaded>>)>,
+    /// The thread waits for a picture no more.
+    go_on: Sender<()>,
     /// The last list whose model was taken, or that failed.
     joined: u64,
     /// The last list that is done with, edges and all.
@@ -46,6 +54,7 @@ impl Joiner {
         tell: impl Fn(JoinerEvent) + Send + 'static,
     ) -> Self {
         let (to, from) = mpsc::channel::<(u64, Vec<Arc<Loaded>>)>();
+        let (go_on, shown) = mpsc::channel();
         let newest = Arc::new(AtomicU64::new(0));
         let wanted = Arc::clone(&newest);
         thread::spawn(move || {
@@ -56,7 +65,13 @@ impl Joiner {
                 }
                 let worked = caught(|| {
                     let world = Arc::new(join(&files));
+                    // of models before
+                    shown.try_iter().for_each(drop);
                     tell(JoinerEvent::Joined(number, Arc::clone(&world)));
+                    if !is_old(number) && !world.is_partial() && !world.is_empty() {
+                        // whether it is shown or not
+                        let _ = shown.recv_timeout(PICTURE);
+                    }
                     if !is_old(number) {
                         // another model follows a preview soon
                         if !world.is_partial() {
@@ -70,7 +85,7 @@ impl Joiner {
                 }
             }
         });
-        Self { newest, to, joined: 0, done: 0 }
+        Self { newest, to, go_on, joined: 0, done: 0 }
     }
 
     /// Starts to put these files together. Lists that still wait are dropped.
@@ -79,6 +94,14 @@ impl Joiner {
         self.newest.store(number, Ordering::Relaxed);
         // the thread runs as long as this is there
         drop(self.to.send((number, files)));
+        drop(self.go_on.send(()));
+    }
+
+    /// A picture of the newest list's model is shown.
+    pub fn shown(&self) {
+        if !self.is_idle() {
+            drop(self.go_on.send(()));
+        }
     }
 
     /// Takes an event of the thread. Returns the model of the newest list, or the failure in words.
@@ -167,6 +190,8 @@ mod tests {
             joiner.join(vec![Arc::new(Loaded { path: path.clone(), import: import.clone(), partial })]);
             let joined = joiner.take(from.recv().expect("an event"));
             let Some(Ok(world)) = joined else { panic!("{joined:?}") };
+            assert!(world.edges_of(0).is_none(), "no picture of it is shown yet");
+            joiner.shown();
             assert!(joiner.take(from.recv().expect("an event")).is_none() && joiner.is_idle());
             assert_eq!((world.is_partial(), world.edges_of(0).is_none()), (partial, partial));
         }

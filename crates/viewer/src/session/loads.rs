@@ -156,8 +156,52 @@ impl Loads {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use selvedge_io::import::Import;
-    use std::sync::mpsc;
+    use selvedge_io::import::{Files, Import};
+    use std::io;
+    use std::sync::mpsc::{self, Receiver, Sender};
+    use std::sync::{Mutex, PoisonError};
+
+    /// Longest time that giving up may take.
+    const GIVEN_UP: Duration = Duration::from_millis(200);
+
+    /// A slow disk: says when a part's file is read, and holds the thread that reads it.
+    struct Held {
+        reads: Mutex<Sender<()>>,
+        go_on: Mutex<Receiver<()>>,
+    }
+
+    impl Files for Held {
+        fn find(&self, name: &str, _: &str) -> Option<String> {
+            Some(name.to_owned())
+        }
+
+        fn read(&self, _: &str, _: u64) -> io::Result<Vec<u8>> {
+            let reads = self.reads.lock().unwrap_or_else(PoisonError::into_inner);
+            reads.send(()).map_err(io::Error::other)?;
+            let go_on = self.go_on.lock().unwrap_or_else(PoisonError::into_inner);
+            go_on.recv().map_err(io::Error::other)?;
+            Err(io::ErrorKind::NotFound.into())
+        }
+    }
+
+    #[test]
+    fn giving_up_waits_for_no_thread() {
+        let (reads, reading) = mpsc::channel();
+        let (release, go_on) = mpsc::channel::<()>();
+        let held = Held { reads: Mutex::new(reads), go_on: Mutex::new(go_on) };
+        let mut loads = Loads::new(Some(Finder(Arc::new(held))));
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../io/src/import/external/tests/pair.stp");
+        loads.begin(path, |_, _| ());
+        reading.recv().expect("a part in another file");
+        // the disk answers after a second
+        std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_secs(1));
+            drop(release);
+        });
+        let start = Instant::now();
+        loads.give_up();
+        assert!(loads.is_idle() && start.elapsed() < GIVEN_UP, "{:?}", start.elapsed());
+    }
 
     /// The first thread may end at any time after the file is opened again.
     #[test]

@@ -28,6 +28,7 @@ pub use shown::{SceneState, Shown};
 pub use undo::History;
 pub use world::{FilePart, World};
 
+use selvedge::model::{Colour, GREY};
 use std::sync::Arc;
 
 /// The state of a session, without the window.
@@ -84,6 +85,14 @@ impl Session {
         all.sort_unstable();
         all.dedup();
         all
+    }
+
+    /// The colour of an instance; of one whose faces have their own, that of the first such face.
+    pub fn colour(&self, instance: usize) -> Colour {
+        let placed = &self.world.model.instances[instance];
+        let own = || self.world.model.parts[placed.part].faces.iter().find_map(|face| face.colour);
+        let changed = self.scene.now().colours.get(&instance).copied();
+        changed.or(placed.colour).or_else(own).unwrap_or(GREY)
     }
 }
 

@@ -380,8 +380,15 @@ impl View {
 
     /// The next picture of the current view: of fewer pixels and effects while the view moves.
     pub fn due(&self, now: Instant) -> Due {
-        let moves = self.moving(now);
-        let step = if moves { self.pacing.step() } else { Step::STILL };
+        self.of(if self.moving(now) { self.pacing.step() } else { Step::STILL })
+    }
+
+    /// The first picture of all, of as many pixels as one of a moving view: it is shown earlier.
+    pub fn first(&self) -> Due {
+        self.of(self.pacing.step())
+    }
+
+    fn of(&self, step: Step) -> Due {
         let size = Pacing::size(step.scale, self.camera.size);
         Due { camera: Camera { size, ..self.camera }, step }
     }

@@ -26,6 +26,7 @@ fn a_moving_view_has_fewer_pixels_and_a_still_one_all() {
     let mut view = view(start);
     let later = start + Duration::from_secs(1);
     assert_eq!((view.due(later).step.scale, view.wake(later)), (1.0, None));
+    assert_eq!((view.first().step.scale, view.first().camera.size), (0.5, (400, 300)));
     view.wheel(DVec2::new(300.0, 200.0), 1.0, later);
     assert!(view.due(later).step.scale < 1.0);
     let wake = view.wake(later).expect("the still picture");

@@ -4,16 +4,17 @@ use super::composite::ViewRect;
 use super::engine::{Drawn, Engine, Wanted};
 use super::look::background;
 use super::screen::{Frame, Picture, Screen};
+use super::selecting::{Click, LookUp};
+use super::shown::{Pictures, ShownPicture};
 use super::waiter::Waiter;
 use super::{Failure, ViewError, ViewOptions};
 use crate::measure::Measurement;
 use crate::navigation::gesture::Held;
 use crate::panels::{Facts, Ui, Verdict};
-use crate::pick::{PickFilter, Seen};
 use crate::session::Picked;
 use crate::session::{Joiner, JoinerEvent, Loaded, LoaderEvent, Loads, Session};
 use crate::settings::{Settings, Theme};
-use crate::view::{Due, Hover, View};
+use crate::view::{Due, View};
 use crate::watch::Watcher;
 use glam::DVec2;
 use selvedge::ash::vk;
@@ -62,17 +63,10 @@ struct Flight {
     pick: Option<DVec2>,
     /// The picture that the pick reads.
     camera: Option<Camera>,
-    /// The scene of that picture.
+    /// The scene of that picture, and the engine's count.
     scene: Option<Drawn>,
-    free: Vec<egui::TextureId>,
-}
-
-/// The picture that the window shows.
-#[derive(Clone, Copy, PartialEq)]
-pub struct ShownPicture {
-    pub camera: Camera,
-    settings: FrameSettings,
     generation: u64,
+    free: Vec<egui::TextureId>,
 }
 
 /// Objects that live as long as the window.
@@ -114,7 +108,7 @@ pub struct App {
     pub rests: bool,
     /// The time of the next frame, if no event comes before.
     pub wake: Option<Instant>,
-    pub picture: Option<ShownPicture>,
+    pub pictures: Pictures,
     pub stats: Option<FrameStats>,
     pub rect: ViewRect,
     /// Pixels of the window.
@@ -122,12 +116,18 @@ pub struct App {
     pub held: Held,
     /// A pick to make: pixels of the view.
     pub pick: Option<DVec2>,
-    /// A click that waits for its pick: whether it adds to the selection, and where it is, pixels of the view.
-    pub click: Option<(bool, DVec2)>,
+    /// A click that waits for its pick.
+    pub click: Option<Click>,
+    /// The last pick, whose result the view has.
+    pub look_up: Option<LookUp>,
+    /// The time of a click whose selection no frame has shown yet.
+    pub selected: Option<Instant>,
     pub failed: Option<ViewError>,
     clipboard: Option<arboard::Clipboard>,
     /// Of the validation layer.
     pub messages: Vec<String>,
+    /// The first frame was shown.
+    shows: bool,
     /// The first picture was shown.
     seen: bool,
     /// Size of the engine's last picture.
@@ -181,16 +181,19 @@ impl App {
             again: false,
             rests: false,
             wake: None,
-            picture: None,
+            pictures: Pictures::default(),
             stats: None,
             rect: ViewRect::default(),
             cursor: None,
             held: Held::default(),
             pick: None,
             click: None,
+            look_up: None,
+            selected: None,
             failed: None,
             clipboard: None,
             messages: Vec::new(),
+            shows: false,
             seen: false,
             drawn: (0, 0),
             explosion: 0.0,
@@ -202,7 +205,7 @@ impl App {
 
     /// Frames and pictures of a lost device are gone.
     pub fn forget_frames(&mut self) {
-        (self.flight, self.picture) = (None, None);
+        (self.flight, self.pictures, self.look_up) = (None, Pictures::default(), None);
     }
 
     /// A frame is due.
@@ -220,6 +223,11 @@ impl App {
         let draws = self.flight.is_some() || self.due || self.wake.is_some();
         let uploads = self.opened.as_ref().is_none_or(|opened| opened.engine.is_busy());
         !draws && !uploads && self.loads.is_idle() && self.joiner.is_idle()
+    }
+
+    /// No frame is due or in flight: the window shows everything as it is.
+    pub fn is_up_to_date(&self) -> bool {
+        self.flight.is_none() && !self.due && !self.again
     }
 
     /// The cursor in pixels of the view, where it is over it and not over a panel.
@@ -250,7 +258,8 @@ impl App {
         self.make_room();
         let effects = self.opened.as_ref().map(|opened| opened.engine.effects());
         self.view.pacing.set_effects(effects.unwrap_or_default());
-        let (due, mut settings, marks) = (self.view.due(now), self.frame_settings(), self.marks());
+        let due = if self.seen { self.view.due(now) } else { self.view.first() };
+        let (mut settings, marks) = (self.frame_settings(), self.marks());
         settings.without = due.step.without;
         let (under, scene_settings) = (self.over_view(), self.scene_settings());
         let Some(Opened { window, waiter, engine, screen, .. }) = &mut self.opened else { return Ok(()) };
@@ -262,22 +271,22 @@ impl App {
         }
         if self.session.world.is_empty() {
             screen.blank();
-            self.picture = None;
+            self.pictures = Pictures::default();
         }
         let wanted = ShownPicture { camera: due.camera, settings, generation: engine.generation };
-        let is_new = self.picture != Some(wanted) && due.camera.size.0 > 1 && !self.session.world.is_empty();
+        let is_new = self.pictures.is_due(&wanted) && due.camera.size.0 > 1 && !self.session.world.is_empty();
         let generation = engine.generation;
         let scene = engine.drawn(&self.session.world);
         let picture = if is_new { engine.renderer() } else { None };
         let picture = picture.map(|renderer| Picture { renderer, camera: &due.camera, settings });
         let in_picture = picture.is_some().then_some((due, settings, generation, now));
-        let seen_by = in_picture.map(|_| due.camera).or(self.picture.map(|p| p.camera));
+        let seen_by = in_picture.map(|_| due.camera).or(self.pictures.camera(generation));
         // the item under a resting cursor changes with the picture
         let rests = in_picture.is_some() && !self.view.is_dragging();
         let scene = scene.filter(|_| seen_by.is_some());
         // without a picture of what is open there is nothing to click
         self.click = self.click.filter(|_| scene.is_some());
-        let clicked = self.click.map(|(_, at)| at);
+        let clicked = self.click.map(|click| click.at);
         let pick = clicked.or(self.pick.take()).or(under.filter(|_| rests)).filter(|_| scene.is_some());
         if scene.is_none() && self.view.wants_point().is_some() {
             self.view.hold(None);
@@ -293,19 +302,21 @@ impl App {
             fault: self.options.faults.as_ref().and_then(|faults| (faults.0)()),
         };
         let free = output.textures_delta.free;
-        let (drawn, in_picture) = match screen.draw(window, picture, &frame) {
-            Ok(drawn) => (drawn, in_picture),
+        let (drawn, in_picture, pick) = match screen.draw(window, picture, &frame) {
+            Ok(drawn) => (drawn, in_picture, pick),
             Err(Failure::Picture(error)) => {
+                tracing::error!("a view cannot be drawn: {error}");
                 self.ui.tell(format!("This view cannot be drawn: {error}"));
-                // shown until the view changes
-                self.picture = Some(wanted);
-                (true, None)
+                self.pictures.failed(wanted);
+                // its place was one of the picture that is not there: the next frame picks from the one before
+                self.pick = pick;
+                (true, None, None)
             }
             Err(Failure::Screen(error)) => return Err(error),
         };
         if drawn {
             waiter.watch(screen.context.fence);
-            self.flight = Some(Flight { picture: in_picture, pick, camera: seen_by, scene, free });
+            self.flight = Some(Flight { picture: in_picture, pick, camera: seen_by, scene, generation, free });
         } else {
             screen.free_textures(&free)?;
         }
@@ -397,9 +408,16 @@ impl App {
 
     /// The frame in flight has finished.
     pub fn frame_done(&mut self, result: Result<(), vk::Result>) -> Result<(), ViewError> {
-        let Some(Flight { picture, pick, camera, scene, free }) = self.flight.take() else { return Ok(()) };
+        let Some(Flight { picture, pick, camera, scene, generation, free }) = self.flight.take() else { return Ok(()) };
         result?;
         tracing::debug!("frame");
+        let ms = |since: Instant| since.elapsed().as_secs_f64() * 1e3;
+        if !std::mem::replace(&mut self.shows, true) {
+            tracing::info!("first frame after {:.0} ms", ms(self.begun));
+        }
+        if let Some(click) = self.selected.take() {
+            tracing::debug!("its selection is shown {:.1} ms after the click", ms(click));
+        }
         let Some(Opened { engine, screen, .. }) = &mut self.opened else { return Ok(()) };
         screen.free_textures(&free)?;
         if let Some((due, settings, generation, start)) = picture {
@@ -410,17 +428,19 @@ impl App {
             let complete = report.as_ref().is_some_and(|r| r.complete);
             self.stats = report.map(|r| r.stats);
             let shown = ShownPicture { camera: due.camera, settings, generation };
-            if complete {
-                self.picture = Some(shown);
-            }
+            self.pictures.drawn(shown, complete);
             // the first picture of a size makes its buffers, and an incomplete one is no measure
             if std::mem::replace(&mut self.drawn, due.camera.size) == due.camera.size && complete {
                 self.view.pacing.took(due.step, start.elapsed());
             }
             self.again |= !complete;
+            if complete && engine.drawn(&self.session.world).is_some() {
+                self.joiner.shown();
+            }
             if !self.seen && complete {
-                self.seen = true;
-                tracing::info!("first picture after {:.0?}", self.begun.elapsed());
+                // the whole picture is next
+                (self.seen, self.again) = (true, true);
+                tracing::info!("first picture after {:.0} ms", ms(self.begun));
             }
             let (width, height) = due.camera.size;
             let (time, without) = (start.elapsed(), settings.without);
@@ -429,27 +449,7 @@ impl App {
         let samples = screen.picked();
         let scene = scene.filter(|scene| Arc::ptr_eq(&scene.world, &self.session.world));
         if let (Some(at), Some(camera), Some(samples), Some(scene)) = (pick, camera, samples, scene) {
-            let scale = f64::from(camera.size.0) / f64::from(self.rect.width.max(1));
-            let Drawn { world, state, instances } = &scene;
-            let placed = |number: usize| state.placement(number, world);
-            let seen = Seen { world, instances, hidden: &state.hidden, placement: &placed, camera: &camera };
-            let hit = samples.pick(&seen, at * scale, self.ui.filter);
-            let before = self.view.hover.and_then(|h| h.hit.picked);
-            self.view.hover = Some(Hover { cursor: at, hit });
-            if self.view.wants_point().is_some_and(|start| start.distance(at) < 1.0) {
-                self.view.hold(hit.point);
-                self.catch_up();
-            }
-            // a pick at an earlier place does not serve a click
-            if let Some((add, _)) = self.click.take_if(|(_, place)| place.distance(at) < 0.5) {
-                match self.ui.filter {
-                    PickFilter::Points => self.session.select_point(hit.picked, add),
-                    _ => self.session.select(hit.picked, add),
-                }
-                self.ui.selected(&self.session, hit.point);
-                self.again = true;
-            }
-            self.again |= before != hit.picked;
+            self.picked(&samples, &scene, LookUp { at, camera, generation, filter: self.ui.filter });
         }
         if self.again || self.pick.is_some() || self.click.is_some() {
             self.redraw();

@@ -239,7 +239,7 @@ impl App {
                 && button == Button::Left
                 && let Some(at) = self.over_view()
             {
-                self.click = Some((self.held.shift, at));
+                self.clicked(at);
             }
         }
         self.redraw();

@@ -58,7 +58,9 @@ impl App {
             Picked::Edge { .. } | Picked::Vertex { .. } | Picked::Point { .. } => None,
         };
         let dragging = self.view.is_dragging();
-        let hovered = self.view.hover.as_ref().filter(|_| !dragging).and_then(|h| mark(h.hit.picked.as_ref()?));
+        let under = self.view.hover.as_ref().and_then(|hover| hover.hit.picked);
+        let under = under.or(self.ui.pointed.map(Picked::Instance));
+        let hovered = under.filter(|_| !dragging).and_then(|picked| mark(&picked));
         (hovered, self.session.selection.iter().filter_map(mark).collect())
     }
 }

@@ -17,6 +17,8 @@ mod look;
 mod opening;
 mod photograph;
 mod screen;
+mod selecting;
+mod shown;
 mod swapchain;
 mod targets;
 mod tasks;
@@ -52,10 +54,11 @@ pub struct ViewOptions {
     pub faults: Option<Faults>,
 }
 
-/// Imitates failures of Vulkan, for tests: a lost surface, a lost device.
+/// Imitates failures of Vulkan, for tests: a lost surface, a lost device, no memory for a picture.
 #[derive(Clone)]
 pub struct Faults(
-    /// Called before each frame; a result is handled as that of the frame's first call.
+    /// Called before each frame; a result is handled as that of the frame's first call, and lack of memory as that of the
+    /// picture's images.
     pub Arc<dyn Fn() -> Option<vk::Result> + Send + Sync>,
 );
 

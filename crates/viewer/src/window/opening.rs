@@ -17,7 +17,7 @@ const TRIES: u32 = 10;
 const PAUSE: Duration = Duration::from_millis(500);
 
 impl App {
-    /// Opens window and device; begins to read the files.
+    /// Opens the window, begins to read the files, and opens the device.
     pub fn open_window(&mut self, events: &ActiveEventLoop) -> Result<(), ViewError> {
         let mut attributes = Window::default_attributes().with_title("selvedge");
         if let Some((width, height)) = self.options.size {
@@ -29,6 +29,10 @@ impl App {
         let root = egui::ViewportId::ROOT;
         let input = egui_winit::State::new(self.context.clone(), root, &window, scale, window.theme(), None);
         self.watch_panels();
+        // threads read while the device is opened
+        for file in std::mem::take(&mut self.options.files) {
+            self.load(file);
+        }
         let (waiter, engine, screen) = self.open_device(&window)?;
         tracing::info!("window on {} after {:.0?}", screen.context.name, self.begun.elapsed());
         self.opened = Some(Opened { window, input, waiter, engine, screen });
@@ -42,9 +46,6 @@ impl App {
                     drop(proxy.send_event(Event::Dark(dark)));
                 }
             });
-        }
-        for file in std::mem::take(&mut self.options.files) {
-            self.load(file);
         }
         self.redraw();
         Ok(())

@@ -185,7 +185,8 @@ impl Screen {
     /// [`Failure::Picture`] when the engine could not record its picture, or there is no memory for it: the frame is shown
     /// with the picture before.
     pub fn draw(&mut self, window: &Window, picture: Option<Picture<'_>>, frame: &Frame<'_>) -> Result<bool, Failure> {
-        if let Some(fault) = frame.fault {
+        let is_full = frame.fault == Some(vk::Result::ERROR_OUT_OF_DEVICE_MEMORY);
+        if let Some(fault) = frame.fault.filter(|_| !is_full) {
             self.lost(window, Presented::of(Err(fault))?)?;
         }
         let Some(image) = self.acquire(window)? else { return Ok(false) };
@@ -193,7 +194,9 @@ impl Screen {
         let mut failed = None;
         self.begin()?;
         if let Some(picture) = picture {
-            let drawn = self.target(picture.camera.size).and_then(|target| {
+            let full = || ViewError::Memory("imitated".to_owned());
+            let target = if is_full { Err(full()) } else { self.target(picture.camera.size) };
+            let drawn = target.and_then(|target| {
                 self.record_into(picture, &self.targets[target])?;
                 Ok(target)
             });

@@ -204,8 +204,7 @@ impl Program {
         while self.line(STILL).is_some() {}
     }
 
-    /// Waits until the program is silent for a moment: a menu that was opened has its place. A text field whose cursor
-    /// blinks never rests.
+    /// Waits until the program is silent for a moment: a menu that was opened has its place.
     pub fn settle(&mut self) {
         while self.line(MOMENT).is_some() {}
     }

@@ -1,8 +1,10 @@
-//! Losses of the surface and of the device, and a display of another scale: the window goes on, and looks the same.
+//! Losses of the surface and of the device, no memory for a picture, and a display of another scale: the window goes on,
+//! and looks the same.
 
-use super::hand::Program;
+use super::hand::{Program, numbers};
 use super::living::is_in_place;
 use super::{SIZE, Screen, opened, opened_in};
+use glam::DVec3;
 use selvedge::ash::vk;
 use selvedge::model::SurfaceKind;
 use std::path::Path;
@@ -14,14 +16,21 @@ const LOSSES: [(&str, vk::Result, &str); 2] = [
     ("surface", vk::Result::ERROR_SURFACE_LOST_KHR, "the surface is lost, and made again"),
     ("device", vk::Result::ERROR_DEVICE_LOST, "the device is open again"),
 ];
+/// Names no memory for any picture while there is such a file.
+const NO_MEMORY: &str = "memory";
+/// How far a picked point may be from that of an exact ray, relative to the model's size: some roundings of `f64`.
+const PICKED: f64 = 1e-9;
 /// Width of the tree, points.
 const TREE: f64 = 220.0;
 /// Least brightness of a light background, of 255; a dark one has a quarter of it.
 const LIGHT: i32 = 200;
 
-/// The loss that a file names, which is then gone.
+/// The loss that a file names, which is then gone; lack of memory stays.
 pub fn take(file: &Path) -> Option<vk::Result> {
     let name = std::fs::read_to_string(file).ok()?;
+    if name == NO_MEMORY {
+        return Some(vk::Result::ERROR_OUT_OF_DEVICE_MEMORY);
+    }
     std::fs::remove_file(file).ok()?;
     LOSSES.iter().find(|(known, ..)| *known == name).map(|(_, result, _)| *result)
 }
@@ -56,6 +65,30 @@ fn a_lost_surface_and_a_lost_device_change_nothing_that_is_shown() {
     }
     assert!(is_in_place(&program.after(|| display.key("ctrl+z"))), "hiding is undone still");
     assert!(program.picture(display) != picture);
+    program.close(display);
+}
+
+/// The window shows the picture before, and that is what the hand points at.
+#[test]
+fn without_memory_for_a_picture_the_one_before_is_picked_from() {
+    let Some(screen) = Screen::open((900, 560)) else { return };
+    let display = &screen.display;
+    let (folder, mut program, scene) = opened(display, "bracket.step");
+    // not flat: elsewhere a ray from another side would meet the surface in another point
+    let (at, hit) = scene.place(|_, face| face.kind == SurfaceKind::Cylinder);
+    lose(folder.path(), NO_MEMORY);
+    let said = program.after(|| display.key("3"));
+    assert!(said.iter().any(|line| line.contains("a view cannot be drawn")), "{}", said.join("\n"));
+    display.click(at);
+    let selected = program.wait("selected ");
+    assert!(selected.contains(&format!("cylinder #{}", hit.face)), "{selected}");
+    let found = DVec3::from_slice(&numbers(&program.wait("point: "), "point: "));
+    let off = found.distance(hit.point) / scene.world.bounds.diagonal();
+    assert!(off < PICKED, "{found} instead of {}", hit.point);
+    program.rest();
+    std::fs::remove_file(folder.path().join(LOSS)).expect("there");
+    let said = program.after(|| display.key("1"));
+    assert!(said.iter().any(|line| line.contains("picture of ")), "{}", said.join("\n"));
     program.close(display);
 }
 

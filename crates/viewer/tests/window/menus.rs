@@ -3,7 +3,7 @@
 use super::hand::{PICTURE, numbers, read_png};
 use super::living::is_in_place;
 use super::panels::Panels;
-use super::{Screen, opened, opened_with};
+use super::{LEAST_TINT, Screen, opened, opened_with};
 use glam::{DVec2, DVec3};
 use selvedge::model::Bounds;
 use selvedge_io::{import, native};
@@ -22,6 +22,25 @@ fn a_part_is_found_by_name_and_the_view_without_it_is_right() {
     let display = &screen.display;
     let (_folder, mut program, scene) = opened(display, "assembly.step");
     let mut panels = Panels::new(&scene, WINDOW);
+    // the part of a row under the cursor is tinted
+    let (at, _) = scene.place(|hit, _| hit.instance == 0);
+    program.after(|| display.move_to(scene.corner + 4.0));
+    let plain = display.screen().warmth(at);
+    let first = scene.world.instance_name(0);
+    let row = panels.find(&first, 0);
+    program.after(|| display.move_to(row));
+    let pointed = display.screen().warmth(at);
+    assert!(pointed > plain + LEAST_TINT, "{pointed} where it was {plain}");
+
+    // a click selects the whole part
+    for choice in ["Anything", "Parts"] {
+        panels.click(display, &mut program, choice, 0);
+    }
+    display.click(at);
+    let selected = program.wait("selected ");
+    assert!(selected.ends_with(&format!("selected {first}")), "{selected} instead of {first}");
+    program.rest();
+
     let last = scene.world.model.instances.len() - 1;
     let name = scene.world.instance_name(last);
     let before = (0..last).filter(|i| scene.world.instance_name(*i) == name).count();
@@ -32,7 +51,8 @@ fn a_part_is_found_by_name_and_the_view_without_it_is_right() {
     display.click(field);
     program.settle();
     display.xdotool(&format!("type --delay 30 {name}"));
-    program.settle();
+    // the cursor of a text does not blink
+    program.rest();
     panels.ui.search.clone_from(&name);
     // the field itself shows the name, too
     panels.click(display, &mut program, &name, before + 1);
