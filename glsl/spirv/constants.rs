@@ -30,6 +30,14 @@ pub mod blister {
 pub mod border {
     pub const NO_BORDER: f32 = -3.0e38;
 }
+pub mod border_around {
+    pub const AROUND: u32 = 9;
+    pub const BORDER_POINTS: u32 = 16;
+    pub const NOBODY: u32 = 15;
+    pub const OWN: u32 = 4;
+    pub const ROWS_OF_FIRST: u32 = 0x50c84f2a;
+    pub const ROWS_OF_LAST: u32 = 0x6b1e73d9;
+}
 pub mod border_cells {
     pub const BAND_ROUNDING: f32 = 1e-4;
     pub const BORDER_BANDS: u32 = 4;
@@ -41,6 +49,10 @@ pub mod border_find {
     pub const OTHER: u32 = 0xffffffff;
     pub const POINTS: u32 = 16;
     pub const ROWS: i32 = 16;
+}
+pub mod border_followed {
+    pub const FOLLOWED_GROUP: u32 = 64;
+    pub const FOLLOWED_SHOWN: u32 = 16;
 }
 pub mod border_mesh {
     pub const LEADS_NOWHERE_PX: f32 = 1.5;
@@ -57,15 +69,7 @@ pub mod border_pixel {
 pub mod border_reach {
     pub const ASIDE: f32 = 0.015625;
     pub const MOST_FROM_MIDDLE: f32 = 1.5;
-    pub const REMAINDER_PX: f32 = 0.25;
-}
-pub mod border_seen {
-    pub const AROUND: u32 = 9;
-    pub const BORDER_POINTS: u32 = 16;
-    pub const NOBODY: u32 = 15;
-    pub const OWN: u32 = 4;
-    pub const ROWS_OF_FIRST: u32 = 0x50c84f2a;
-    pub const ROWS_OF_LAST: u32 = 0x6b1e73d9;
+    pub const REMAINDER_PX: f32 = 0.125;
 }
 pub mod bound {
     pub const DEPTH_SHARE: f32 = 1.5;
@@ -260,6 +264,7 @@ pub mod push {
 }
 pub mod refine {
     pub const CLOSE_ENOUGH: f32 = 5e-4;
+    pub const DAMPED_STEPS: u32 = 8;
     pub const MAX_STEP: f32 = 0.25;
     pub const NEWTON_STEPS: u32 = 4;
 }
@@ -271,6 +276,8 @@ pub mod scene {
     pub const BORDER_U1: u32 = 2;
     pub const BORDER_V0: u32 = 4;
     pub const BORDER_V1: u32 = 8;
+    pub const CORNER_LIST: u32 = 2;
+    pub const CORNER_VERTICES: u32 = 6;
     pub const ENCODE_SUMMED: u32 = 2;
     pub const FACE_CLOSED_U: u32 = 1;
     pub const FACE_CLOSED_V: u32 = 2;
@@ -284,6 +291,7 @@ pub mod scene {
     pub const FAILED_BLOCK_LEAVES: u32 = 32;
     pub const FAILED_DRAWS: u32 = 2;
     pub const FAILED_EDGE_CHORDS: u32 = 1024;
+    pub const FAILED_FOLLOWED_POINTS: u32 = 2048;
     pub const FAILED_FRAGMENTS: u32 = 128;
     pub const FAILED_GAP_CANDIDATES: u32 = 16;
     pub const FAILED_INTERCEPTS: u32 = 8;
@@ -298,6 +306,7 @@ pub mod scene {
     pub const MAX_SPLIT: u32 = 64;
     pub const MESH_NORMALS: u32 = 2;
     pub const MESH_SOLID: u32 = 1;
+    pub const PLAIN_LIST: u32 = 0;
     pub const SIDE_BOUNDARY: u32 = 2;
     pub const SIDE_INSIDE: u32 = 1;
     pub const SIDE_OUTSIDE: u32 = 0;
@@ -310,6 +319,7 @@ pub mod scene {
     pub const STYLE_TECHNICAL: u32 = 5;
     pub const STYLE_ZEBRA: u32 = 3;
     pub const TAU_HIDDEN: u32 = 0x8000;
+    pub const TRIMMED_LIST: u32 = 1;
 }
 pub mod segments {
     pub const LINES_PER_SEGMENT: u32 = 32;
@@ -436,6 +446,9 @@ pub mod view {
     pub const PIXEL_ROUNDING: f32 = 0.015625;
     pub const RUN: f32 = 16.0;
     pub const SLAB_ROUNDING: f32 = 1e-5;
+}
+pub mod visibility_corners {
+    pub const CORNER_ORDER: u32 = 0xe58;
 }
 pub mod visibility_surface {
     pub const MAX_BEND: f32 = 0.25;

@@ -46,7 +46,7 @@ pub fn emit(
     if sub_patch_starts[lists as usize * n] > frame.sub_patch_capacity {
         counters.failed |= FAILED_SUB_PATCHES;
     }
-    for patch_instance in 0..n {
+    for (patch_instance, factors) in factors.iter().enumerate().take(n) {
         let slot_in = |list: u32| list as usize * n + patch_instance;
         let count_in = |list: u32| sub_patch_starts[slot_in(list) + 1] - sub_patch_starts[slot_in(list)];
         let Some(list) = (0..lists).find(|list| count_in(*list) > 0) else { continue };
@@ -54,7 +54,7 @@ pub fn emit(
         let first = sub_patch_starts[slot];
         let vertices = (vertex_starts[slot + 1] - vertex_starts[slot]) / count;
         let before = vertex_starts[slot] - vertex_starts[list as usize * n];
-        let across = factors[patch_instance].splits & 0xffff;
+        let across = factors.splits & 0xffff;
         for k in 0..count {
             let at = first + k;
             if at >= frame.sub_patch_capacity {
