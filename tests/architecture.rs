@@ -9,7 +9,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("math", &[]),
     ("spline", &["math"]),
     ("model", &["csg", "math", "spline"]),
-    ("trim", &["math", "spline", "model"]),
+    ("trim", &["csg", "math", "spline", "model"]),
     ("construct", &["math", "spline", "model", "trim"]),
     ("edges", &["math", "silhouette", "spline", "trim", "model"]),
     ("silhouette", &["math", "spline"]),

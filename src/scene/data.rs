@@ -472,8 +472,7 @@ impl SceneData {
         self.placements.push(i.transform * DAffine3::from_translation(origin));
         let instance = self.instances.len() as u32 - 1;
         for face in faces {
-            let f = &self.faces[face];
-            let next = self.faces.get(face + 1);
+            let (f, next) = (&self.faces[face], self.faces.get(face + 1));
             let end = |of: fn(&abi::Face) -> u32, all: usize| next.map_or(all as u32, of);
             let placed = self.face_instances.len() as u32;
             let cells = end(|n| n.first_cell, self.cells.len()) - f.first_cell;
