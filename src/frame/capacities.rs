@@ -163,7 +163,7 @@ mod tests {
             let first = Capacities::first(counts, u32::MAX);
             first.for_picture(counts, size, both(RANGE)).unwrap().antialiasing.followed
         };
-        assert_eq!([of(false, (4096, 4096)), of(true, (64, 64)), of(true, (4096, 4096))], [0, 1 << 12, 1 << 19]);
+        assert_eq!([of(false, (4096, 4096)), of(true, (64, 64)), of(true, (4096, 4096))], [0, 1 << 12, 1 << 20]);
         assert_eq!(of(true, (1 << 15, 1 << 15)), RANGE / 12);
         let counts = Counts { follows_borders: true, ..Default::default() };
         let c = Counters { followed_points: 100_000, failed: 2048, ..Default::default() };

@@ -145,8 +145,8 @@ fn only_smooth_borders_have_what_they_need() {
     let smooth = settings(Smooth::Borders, TrimWay::Auto);
     // four passes, the image, the list and its grids
     assert_eq!(of_borders(&planes(), smooth), 7);
-    // two passes more, and three lists: a plate of several patches, and a curved one
-    assert_eq!(of_borders(&shapes::plate(), smooth), 12);
+    assert_eq!(of_borders(&shapes::plate(), smooth), 7);
+    // two passes more, and three lists
     assert_eq!(of_borders(&shapes::wave(), smooth), 12);
     assert_eq!(of_borders(&shapes::plate(), settings(Smooth::None, TrimWay::Auto)), 0);
     assert_eq!(of_borders(&shapes::plate(), SceneSettings { samples: Samples::Four, ..smooth }), 0);

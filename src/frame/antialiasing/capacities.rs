@@ -5,7 +5,7 @@ use crate::frame::capacities::grown;
 use crate::frame::counts::{Counts, SMALLER, TooMany};
 
 /// As many pixels as one point that is followed: of the points beside outlines of small balls, one in sixty is.
-const PIXELS_OF_A_POINT: u64 = 32;
+const PIXELS_OF_A_POINT: u64 = 16;
 /// Bytes of a point, and of a pixel that waits for its points: each list has as many.
 const BYTES: usize = size_of::<FollowedPoint>();
 const _: () = assert!(size_of::<FollowedPixel>() <= BYTES);

@@ -94,13 +94,13 @@ impl Joiner {
         self.newest.store(number, Ordering::Relaxed);
         // the thread runs as long as this is there
         drop(self.to.send((number, files)));
-        drop(self.go_on.send(()));
+        let _ = self.go_on.send(());
     }
 
     /// A picture of the newest list's model is shown.
     pub fn shown(&self) {
         if !self.is_idle() {
-            drop(self.go_on.send(()));
+            let _ = self.go_on.send(());
         }
     }
 

@@ -299,7 +299,7 @@ impl<'f> Reader<'f> {
             };
             self.warn(kind, line, format!("`{keyword}`, {count} times"));
         }
-        if self.faces.is_empty() && meshes.is_empty() {
+        if self.faces.is_empty() && meshes.is_empty() && !self.vertices.is_empty() {
             let count = self.vertices.len();
             self.warnings.push("vertices not drawn", || Place::File, || format!("{count} of no face"));
         }
