@@ -39,6 +39,7 @@ mod carried;
 mod convex;
 mod framing;
 mod height;
+mod polyhedron;
 mod search;
 mod solid;
 

@@ -137,6 +137,34 @@ fn blocks_that_half_spaces_cut_are_tight() {
     assert_box(both.bounds(), of([0.15, 0.15, -half], [2.6, 2.6, half]), 1e-11);
 }
 
+/// A tetrahedron of four half-spaces, without a block; with one of them away it is open.
+#[test]
+fn half_spaces_that_enclose_something_are_tight() {
+    let planes = [([-1.0, 0.0, 0.0], -1.0), ([0.0, -1.0, 0.0], -1.0), ([0.0, 0.0, -1.0], -1.0), ([1.0; 3], 6.0)];
+    let corners = [[1.0, 1.0, 1.0], [4.0, 1.0, 1.0], [1.0, 4.0, 1.0], [1.0, 1.0, 4.0]].map(DVec3::from);
+    let ball = || primitive(Shape::Sphere { radius: 2.0 }, DAffine3::IDENTITY);
+    for transform in turns() {
+        let half = |(normal, offset): &([f64; 3], f64)| {
+            primitive(Shape::HalfSpace { normal: (*normal).into(), offset: *offset }, transform)
+        };
+        let part = |planes: &[([f64; 3], f64)]| {
+            let solids: Vec<Solid> = planes.iter().map(|plane| Solid::of(half(plane)).unwrap()).collect();
+            solids[1..].iter().fold(solids[0].clone(), |all, solid| all.intersection(solid).unwrap())
+        };
+        let expected = corners.map(|p| transform.transform_point3(p)).into_iter().fold(Bounds::EMPTY, Bounds::with);
+        assert_box(model(part(&planes)).bounds(), expected, 1e-10);
+        assert_eq!(model(part(&planes[1..])).bounds(), Bounds::EMPTY);
+        // nothing is left: no box either
+        let empty = [&planes[..], &[([1.0; 3], 2.5)]].concat();
+        assert_eq!(model(part(&empty)).bounds(), Bounds::EMPTY);
+        // an open part without a plane across an axis takes nothing from the box of what it is cut with
+        if transform != DAffine3::IDENTITY {
+            let cut = part(&planes[1..]).intersection(&Solid::of(ball()).unwrap()).unwrap();
+            assert_box(model(cut).bounds(), of([-2.0; 3], [2.0; 3]), 1e-12);
+        }
+    }
+}
+
 /// A camera sees the corners, not the block.
 #[test]
 fn framing_follows_the_corners() {
