@@ -1,8 +1,8 @@
 //! Faces thinner than the tolerance of their body.
 //!
 //! ```text
-//!       ╭──────▶──────╮        Each point of the border has another edge within the tolerance, which runs the other way:
-//!     ╭─╯ ╭────◀────╮ ╰─╮      the face lies between the two. Edges no longer than the tolerance need none.
+//!       ╭──────▶──────╮        Each point of the border has another edge within the tolerance, which runs the other
+//!     ╭─╯ ╭────◀────╮ ╰─╮      way: the face lies between the two. Edges no longer than the tolerance need none.
 //!     ●───╯         ╰───●
 //! ```
 //!
@@ -26,8 +26,8 @@ const THIN: f64 = 1e-2;
 const MOST_NODES: usize = 1024;
 
 impl FaceGeometry {
-    /// Whether the face is nowhere wider than the tolerance, mm, and a hundredth of its extent. A body that lacks such a
-    /// face has no gap wider than its tolerance.
+    /// Whether the face is nowhere wider than the tolerance, mm, and a hundredth of its extent. A body that lacks such
+    /// a face has no gap wider than its tolerance.
     pub fn is_sliver(&self, edges: &[Edge], tolerance: f64) -> bool {
         let borders: Option<Vec<Vec<EdgeCurve>>> = self.bounds.iter().map(|b| border(b, edges, tolerance)).collect();
         let Some(borders) = borders.filter(|all| !all.is_empty()) else { return false };

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //!        ╱╲ half-spaces
-//!    ┌──╱──╲──┐ block        Intersections, and differences of a half-space, make parts. Readers make such blocks larger
-//!    │ ╱    ╲ │              than the part, so that no side of the block is one of the part. Half-spaces that enclose
-//!    └╱──────╲┘              something by themselves are a part, too.
+//!    ┌──╱──╲──┐ block        Intersections, and differences of a half-space, make parts. Readers make such blocks
+//!    │ ╱    ╲ │              larger than the part, so that no side of the block is one of the part. Half-spaces that
+//!    └╱──────╲┘              enclose something by themselves are a part, too.
 //! ```
 
 use super::polyhedron::{self, Plane};

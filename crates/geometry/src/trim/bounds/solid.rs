@@ -9,8 +9,8 @@
 //!
 //! *Certainty.* The box contains the solid. It is tight for one primitive, for a block that half-spaces cut and for
 //! half-spaces that enclose something (see [`convex`]), and for unions of these, to rounding. It is also tight where
-//! blocks along the axes, half-spaces across them and tight boxes meet in a box. Otherwise it may be larger: where boxes
-//! meet and solids do not, and where a difference removes the farthest points.
+//! blocks along the axes, half-spaces across them and tight boxes meet in a box. Otherwise it may be larger: where
+//! boxes meet and solids do not, and where a difference removes the farthest points.
 
 use super::convex;
 use crate::model::{Bounds, Boxes, Primitive, Quadric, Shape, Solid};
