@@ -144,6 +144,13 @@ fn pictures_of_nothing_are_no_success() {
     assert_eq!(info.status.code(), Some(2));
     assert!(text(&info.stderr).contains(why), "{}", text(&info.stderr));
     assert_eq!(written.each_ref().map(|path| fs::exists(path).unwrap()), [false; 2]);
+    // all below a plane
+    let open = "selvedge = 1\n[solid.a]\nshape = \"half-space\"\nnormal = [0, 0, 1]\noffset = 1\n";
+    let open = file(&folder, "open.toml", open);
+    let why = "no box holds its solids: they are unbounded, or empty";
+    refused(&["render", &open, "-o", &png], why);
+    let info = selvedge(&["info", &open]);
+    assert!(info.status.code() == Some(2) && text(&info.stderr).contains(why), "{}", text(&info.stderr));
     // a sliver that one ray in thousands meets is something
     let sliver =
         file(&folder, "sliver.csg", "difference() { sphere(r = 1); cube(size = [1.98, 9, 9], center = true); }");
