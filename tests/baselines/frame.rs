@@ -100,7 +100,7 @@ fn baselines_leave_out_what_lies_behind() {
     let mut left_out = |way: Way| {
         renderer.upload_baseline(&model, way.settings(), way.options()).unwrap();
         let settings = FrameSettings { all_passes: true, ..FrameSettings::default() };
-        let mut draw = || renderer.render(&camera, &settings, Outputs::default()).unwrap().stats;
+        let mut draw = || renderer.render(&camera, &settings, Outputs::ALL).unwrap().stats;
         [draw(), draw(), draw()].map(|stats| stats.hidden_patches)
     };
     let sorted = Sorted::Tuned;

@@ -3,7 +3,7 @@
 
 use crate::hidden::crowd;
 use crate::shapes::{self, solids};
-use crate::support::{assert_identical, assert_silent, watched_with};
+use crate::support::{assert_identical, assert_silent, watched_for, watched_with};
 use crate::watched::renderer;
 use glam::{DAffine3, DVec3};
 use selvedge::headless::HeadlessRenderer;
@@ -176,7 +176,7 @@ fn a_colour_changes_no_other_image_and_draws_nothing_else_anew() {
 fn changes_stay_whatever_is_loaded() {
     let mut model = scene();
     let settings = SceneSettings::default();
-    let mut renderer = watched_with(&model, settings);
+    let mut renderer = watched_for(Outputs::default(), &model, settings);
     let (moved, gone) = (0, 7);
     renderer.set_transform(moved, step(0)).unwrap();
     renderer.set_visible(gone, false).unwrap();
