@@ -80,9 +80,9 @@ impl HeadlessRenderer {
         })
     }
 
-    /// The images that pictures of the next model will have: its upload makes what they need. Without this call an upload
-    /// makes what the picture before needed, at first the colour alone, and a picture with other images has the model
-    /// uploaded anew.
+    /// The images that pictures of the next model will have: its upload makes what they need. Without this call an
+    /// upload makes what the picture before needed, at first the colour alone, and a picture with other images has the
+    /// model uploaded anew.
     pub fn expect(&mut self, outputs: Outputs) {
         self.expected = Some(outputs);
     }
@@ -338,8 +338,8 @@ impl HeadlessRenderer {
         Ok(())
     }
 
-    /// The formats for pictures with these images, of a scene with or without thickness. Images that one pass makes come
-    /// together: another choice among them makes no other renderer.
+    /// The formats for pictures with these images, of a scene with or without thickness. Images that one pass makes
+    /// come together: another choice among them makes no other renderer.
     fn formats_with(&self, outputs: Outputs, thickness: bool) -> TargetFormats {
         let (points, numbers) = (outputs.has_points(), outputs.has_numbers());
         let outputs = Outputs {

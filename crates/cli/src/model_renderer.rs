@@ -72,7 +72,7 @@ pub fn device(args: &FrameArgs, most_memory: Option<u64>) -> Result<HeadlessRend
 }
 
 impl ModelRenderer {
-    /// Opens the device and uploads the model, with lines along edges if `lines` is set, for pictures with these images.
+    /// Opens the device and uploads the model for pictures with these images, with lines along edges if `lines` is set.
     pub fn with_lines(
         args: &FrameArgs,
         import: &Import,
