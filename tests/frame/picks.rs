@@ -73,6 +73,7 @@ fn picks(renderer: &mut HeadlessRenderer, model: &Model, camera: &Camera) -> Pic
 }
 
 fn check(renderer: &mut HeadlessRenderer, name: &str, model: &Model, cameras: &[Camera]) {
+    renderer.expect(ALL);
     renderer.upload(model).unwrap();
     for camera in cameras {
         let found = picks(renderer, model, camera);
