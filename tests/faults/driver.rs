@@ -22,7 +22,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ffi::{CStr, c_char, c_void};
 use std::mem::transmute;
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// The call that shall fail, the `nth` of its name counted from 0, and the result that it returns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,6 +63,9 @@ static STATE: Mutex<Option<State>> = Mutex::new(None);
 /// Calls of the null driver that cannot fail, except calls that free.
 static OTHERS: AtomicU32 = AtomicU32::new(0);
 static TURN: Mutex<()> = Mutex::new(());
+/// An instance that the double does not see, never destroyed. It keeps the system's drivers loaded: the loader unloads
+/// them with the last instance, and loading them takes most of the time of a short script.
+static KEPT: OnceLock<(ash::Entry, ash::Instance)> = OnceLock::new();
 
 fn with<T>(f: impl FnOnce(&mut State) -> T) -> T {
     f(STATE.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_default())
@@ -81,6 +84,11 @@ impl Driver {
         let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: the system's loader.
         let loader = unsafe { ash::Entry::load() }.expect("these tests need Vulkan: apt install libvulkan1");
+        KEPT.get_or_init(|| {
+            // SAFETY: the entry is loaded, and stays so beside its instance.
+            let instance = unsafe { loader.create_instance(&vk::InstanceCreateInfo::default(), None) };
+            (loader.clone(), instance.expect("the loader makes an instance"))
+        });
         let real = loader.static_fn().get_instance_proc_addr;
         let real = address!(real);
         *STATE.lock().unwrap_or_else(PoisonError::into_inner) = Some(State {

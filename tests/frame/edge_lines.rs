@@ -51,6 +51,7 @@ pub fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture 
 
 /// The picture of a scene that replaces the renderer's.
 fn draw_next(renderer: &mut HeadlessRenderer, (model, settings): (&Model, SceneSettings), camera: &Camera) -> Picture {
+    renderer.expect(ALL);
     renderer.upload_with(model, settings).unwrap();
     renderer.render(camera, &FrameSettings::default(), ALL).unwrap()
 }

@@ -6,7 +6,7 @@
 
 use crate::edges::{blocks, contrast_errors, coverage_errors, covered, root_mean_square};
 use crate::shapes;
-use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, render_next, watched_with};
+use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, render_next, watched_for};
 use crate::watched::{limited, renderer};
 use glam::DVec3;
 use selvedge::gpu::LowerLimits;
@@ -75,7 +75,7 @@ fn borders_are_as_the_frame_sixteen_times_as_large() {
         let views = if model.parts.iter().any(|part| !part.meshes.is_empty()) { &both[..1] } else { &both[..] };
         for camera in views {
             renderer.upload_with(&model, settings(Smooth::None, TrimWay::Auto)).unwrap();
-            let blocks = blocks(&mut renderer, camera);
+            let blocks = blocks(&mut renderer, camera, Outputs::ALL);
             let rough = contrast_errors(&render(&mut renderer, camera), &blocks);
             let smooth = render_next(&mut renderer, &model, settings(Smooth::Borders, TrimWay::Auto), camera);
             let smooth = contrast_errors(&smooth, &blocks);
@@ -132,7 +132,7 @@ fn nothing_else_changes() {
 #[test]
 fn only_smooth_borders_have_what_they_need() {
     let of_borders = |model: &Model, settings: SceneSettings| {
-        let mut renderer = watched_with(model, settings);
+        let mut renderer = watched_for(Outputs::default(), model, settings);
         renderer.render(&perspective(model, SIZE), &FrameSettings::default(), Outputs::default()).unwrap();
         let objects = renderer.objects();
         assert_silent(renderer);

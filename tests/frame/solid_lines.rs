@@ -1,7 +1,7 @@
 //! Lines of Boolean solids: where exact rays beside each other see two surfaces there is a line, and nowhere else.
 
 use crate::shapes::solids::{at, ball, below, block, cone, moved, post, ring, solid, turned};
-use crate::support::{assert_silent, orthographic, perspective, watched, watched_with};
+use crate::support::{assert_silent, orthographic, perspective, watched_with};
 use crate::watched::renderer;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -46,14 +46,17 @@ pub fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture 
 
 /// The picture of a scene that replaces the renderer's.
 fn draw_next(renderer: &mut HeadlessRenderer, (model, settings): (&Model, SceneSettings), camera: &Camera) -> Picture {
+    let outputs = Outputs { edge: true, ..Outputs::ALL };
+    renderer.expect(outputs);
     renderer.upload_with(model, settings).unwrap();
-    renderer.render(camera, &FrameSettings::default(), Outputs { edge: true, ..Outputs::ALL }).unwrap()
+    renderer.render(camera, &FrameSettings::default(), outputs).unwrap()
 }
 
 /// With the first budget, of 4000 bytes and each a tenth less than the last, for which lists are made band by band.
 pub fn draw_in_bands(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
-    let mut renderer = watched(&Model::default());
     let outputs = Outputs { edge: true, ..Outputs::ALL };
+    let mut renderer = renderer();
+    renderer.expect(outputs);
     let mut budget = 4_000;
     loop {
         renderer.upload_with(model, SceneSettings { solid_budget: Some(budget), ..settings }).unwrap();

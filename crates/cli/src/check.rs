@@ -51,7 +51,8 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     target::check(&inputs, &outputs)?;
     target::check_read(&import, &outputs)?;
     let lines = args.edges.then(|| judged_lines(views.iter().map(|view| view.camera.size.1).min().unwrap_or(1)));
-    let mut renderer = ModelRenderer::with_lines(&args.frame, &import, lines)?;
+    let images = Outputs { edge: args.edges, ..Outputs::ALL };
+    let mut renderer = ModelRenderer::with_lines(&args.frame, &import, lines, images)?;
     let tracer = during("preparing the exact model", || Tracer::new(&import.model));
     let sun =
         model_renderer::sun(&args.frame, &import).map(|towards| SunTracer::new(&import.model, towards)).transpose()?;
@@ -59,7 +60,7 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     let mut verdicts = Vec::new();
     for (index, View { name, camera }) in views.iter().enumerate() {
         let times = args.zoom.get(index).copied().unwrap_or(1.0);
-        let picture = renderer.render(camera, Outputs { edge: args.edges, ..Outputs::ALL })?;
+        let picture = renderer.render(camera, images)?;
         let judgement = verdict::of(&tracer, camera, &picture, args.samples, tolerance_px, times, name);
         if let Some(path) = pictures.get(index) {
             output::png(path, picture.size, &judgement.paint())?;
