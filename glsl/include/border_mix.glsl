@@ -53,7 +53,7 @@ layout(scalar, push_constant) uniform Push { uint capacity; }; // points that fo
 
 #include "border_seen.glsl"
 #include "border_reach.glsl"
-// BORDER_POINTS a pixel of the list: where others than patches are asked, too
+// BORDER_POINTS a pixel of the list. Only scenes with meshes or Boolean solids have them.
 layout(scalar, binding = 11) writeonly buffer SeenPoints { BorderPoint seen_points[]; };
 
 // Some point of some face may be listed (src/scene/face.rs).
