@@ -62,19 +62,19 @@ fn all_edges_of_a_glass_block_have_lines() {
 fn the_programs_judge_finds_no_fault() {
     let clear = |p| painted(BLUE, p);
     let shapes = [
-        ("a block with a round hole", solid("A-B", vec![clear(block(LOW, HIGH)), clear(post(0.6, -2.0, 4.0))]), 0),
-        // one pixel beside each outline of the post; their cause is not known: docs/design/edges.md, "Limits"
-        ("an opaque post through a block", model(vec![glass(BLUE, LOW, HIGH), one(post(0.5, -1.5, 3.0))]), 2),
-        ("an opaque ball within a block", model(vec![glass(BLUE, LOW, HIGH), one(ball(0.6, 0.0))]), 0),
-        ("two blocks", model(vec![glass(BLUE, LOW, [0.2, 1.0, 1.0]), glass(BLUE, [-0.3; 3], [1.4, 0.5, 0.5])]), 0),
+        ("a block with a round hole", solid("A-B", vec![clear(block(LOW, HIGH)), clear(post(0.6, -2.0, 4.0))])),
+        // the block's bottom runs into the post behind the post's outline, too, where the post hides it
+        ("an opaque post through a block", model(vec![glass(BLUE, LOW, HIGH), one(post(0.5, -1.5, 3.0))])),
+        ("an opaque ball within a block", model(vec![glass(BLUE, LOW, HIGH), one(ball(0.6, 0.0))])),
+        ("two blocks", model(vec![glass(BLUE, LOW, [0.2, 1.0, 1.0]), glass(BLUE, [-0.3; 3], [1.4, 0.5, 0.5])])),
     ];
     let (mut renderer, mut seen, mut faults) = (renderer(), 0, Vec::new());
-    for (nth, (name, model, beside_outlines)) in shapes.into_iter().enumerate() {
+    for (nth, (name, model)) in shapes.into_iter().enumerate() {
         let (view, camera) = cameras(&model)[nth % 2];
         let found = judged_by_program(&mut renderer, &model, &camera);
         println!("{name}, {view}: {found:?}");
         seen += found.visible;
-        if found.missing > 0 || found.stray > beside_outlines {
+        if (found.missing, found.stray) != (0, 0) {
             faults.push(format!("{name}, {view}: {found:?}"));
         }
     }
