@@ -66,6 +66,8 @@ const float CLOSE_PX = 0.02;
 // Two are enough, but for what is narrower than a pixel (steps are at most MAX_STEP) and beside folds, where each step
 // leaves a quarter of the distance.
 const uint POINT_STEPS = 8u;
+// Distance from a point at which the steps end: the rounding of a place in a picture 2000 pixels wide.
+const float POINT_MET_PX = 1.0 / 4096.0;
 
 // A sheet near the pixel's centre.
 struct Sheet {
@@ -135,8 +137,10 @@ float depth_at(Sheet s, vec2 pixel, out bool is_open) {
         bool nearer = dot(miss, miss) < least;
         if (nearer) nearest = uv;
         if (nearer) least = dot(miss, miss);
+        bool met = least <= POINT_MET_PX * POINT_MET_PX;
         vec2 step_;
-        if (newton_step(pixels_along(q, qu, qv), miss, s.patch_, step_)) uv -= step_;
+        if (newton_step(pixels_along(q, qu, qv), miss, s.patch_, step_) && !met) uv -= step_;
+        if (met) break; // only here: see refine.glsl
     }
     // a paraboloid also meets the ray behind the eye
     bool meets = q.w > 0.0 && length(miss) <= ON_PIXEL_PX;
