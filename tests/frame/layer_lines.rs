@@ -2,6 +2,7 @@
 
 use crate::edge_lines::centres;
 use crate::layers::{BLUE, glass, model, one, painted};
+use crate::shapes;
 use crate::shapes::solids::{ball, block, post, solid};
 use crate::solid_lines::{
     HALF, JUNCTION, OFF, OFF_AT_JUNCTIONS, SIZE, SOLID, away, draw, draw_in_bands, judged_by_program, lines, with,
@@ -17,6 +18,13 @@ const HIGH: [f64; 3] = [1.0; 3];
 
 fn glass_block() -> Model {
     model(vec![glass(BLUE, LOW, HIGH)])
+}
+
+/// The same as a part of six faces.
+fn glass_part() -> Model {
+    let mut part = shapes::cube();
+    part.instances[0].colour = Some(BLUE);
+    part
 }
 
 fn cameras(model: &Model) -> [(&'static str, Camera); 2] {
@@ -35,16 +43,21 @@ fn edges_of_block(camera: &Camera) -> Vec<DVec2> {
     edges.flat_map(points).map(|p| camera.project(p).unwrap().0).collect()
 }
 
-/// All twelve edges of a block of glass have lines, those at its back, too.
+/// All twelve edges of a block of glass have lines, those at its back, too: of a Boolean solid, and of a part, whose edges
+/// have their own numbers.
 #[test]
 fn all_edges_of_a_glass_block_have_lines() {
-    let block = glass_block();
-    for (view, camera) in cameras(&block) {
+    let (block, part) = (glass_block(), glass_part());
+    let [from_afar, parallel] = cameras(&block);
+    for (model, (view, camera), is_part) in
+        [(&block, from_afar, false), (&block, parallel, false), (&part, parallel, true)]
+    {
         let settings = EdgeSettings { which: EdgeChoice::Sharp, ..lines() };
-        let picture = draw(&block, with(settings), &camera);
+        let picture = draw(model, with(settings), &camera);
         let edges = edges_of_block(&camera);
         let corners: Vec<DVec2> = edges.chunks(1001).flat_map(|edge| [edge[0], edge[1000]]).collect();
-        let marked: Vec<DVec2> = centres(&picture).filter(|(_, edge)| *edge == SOLID).map(|(at, _)| at).collect();
+        let own = |edge: u32| if is_part { (1..SOLID).contains(&edge) } else { edge == SOLID };
+        let marked: Vec<DVec2> = centres(&picture).filter(|(_, edge)| own(*edge)).map(|(at, _)| at).collect();
         let near_corner = |p: DVec2| away(p, &corners) < JUNCTION;
         let is_bare = |p: &&DVec2| !near_corner(**p) && away(**p, &marked) > HALF + 0.5;
         let is_stray = |p: &&DVec2| {
