@@ -43,8 +43,8 @@ fn edges_of_block(camera: &Camera) -> Vec<DVec2> {
     edges.flat_map(points).map(|p| camera.project(p).unwrap().0).collect()
 }
 
-/// All twelve edges of a block of glass have lines, those at its back, too: of a Boolean solid, and of a part, whose edges
-/// have their own numbers.
+/// All twelve edges of a block of glass have lines, those at its back, too: of a Boolean solid, and of a part, whose
+/// edges have their own numbers.
 #[test]
 fn all_edges_of_a_glass_block_have_lines() {
     let (block, part) = (glass_block(), glass_part());
