@@ -14,6 +14,7 @@ mod engine;
 mod events;
 mod living;
 mod look;
+mod made;
 mod opening;
 mod photograph;
 mod screen;
