@@ -199,6 +199,13 @@ impl Program {
         panic!("it never said `{what}`; it said\n{}", self.all.join("\n"));
     }
 
+    /// Waits until it has said `what`, before or from now on.
+    pub fn said(&mut self, what: &str) {
+        if !self.all.iter().any(|line| line.contains(what)) {
+            self.wait(what);
+        }
+    }
+
     /// Waits until the program is silent; it may be reading.
     pub fn quiet(&mut self) {
         while self.line(STILL).is_some() {}
