@@ -18,6 +18,7 @@ mod instances;
 use ash::vk;
 use ash::vk::Handle;
 use instances::{create_instance, destroy_instance, destroy_surface, extensions, memory_properties, presents};
+use instances::{surface_capabilities, surface_formats};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ffi::{CStr, c_char, c_void};
 use std::mem::transmute;
@@ -46,6 +47,8 @@ struct State {
     injected: u32,
     instances: i32,
     surfaces_destroyed: u32,
+    /// Width and height of each surface, with the null driver.
+    window: (u32, u32),
     calls: BTreeMap<&'static str, u32>,
     /// Kind and handle.
     living: BTreeSet<(&'static str, u64)>,
@@ -144,6 +147,12 @@ impl Driver {
     #[allow(dead_code)] // the viewer's test includes this file
     pub fn surfaces_destroyed(&self) -> u32 {
         with(|state| state.surfaces_destroyed)
+    }
+
+    /// From now on every surface has this size, with the null driver.
+    #[allow(dead_code)] // the viewer's test includes this file
+    pub fn set_window(&self, size: (u32, u32)) {
+        with(|state| state.window = size);
     }
 
     /// Handles that have not been destroyed: for each one the name of the call that frees it, and `-` for a device.
@@ -257,6 +266,7 @@ pairs! {
     create_command_pool destroy_command_pool: vk::Device, vk::CommandPoolCreateInfo<'static> => vk::CommandPool, "vkCreateCommandPool" "vkDestroyCommandPool", |_| 0;
     create_fence destroy_fence: vk::Device, vk::FenceCreateInfo<'static> => vk::Fence, "vkCreateFence" "vkDestroyFence", |_| 0;
     create_semaphore destroy_semaphore: vk::Device, vk::SemaphoreCreateInfo<'static> => vk::Semaphore, "vkCreateSemaphore" "vkDestroySemaphore", |_| 0;
+    create_swapchain destroy_swapchain: vk::Device, vk::SwapchainCreateInfoKHR<'static> => vk::SwapchainKHR, "vkCreateSwapchainKHR" "vkDestroySwapchainKHR", |_| 0;
     allocate_memory free_memory: vk::Device, vk::MemoryAllocateInfo<'static> => vk::DeviceMemory, "vkAllocateMemory" "vkFreeMemory", |i| i.allocation_size;
 }
 
@@ -311,6 +321,15 @@ calls! {
             let (first, end) = (offset as usize / 8, (offset + state.bytes[&buffer]).div_ceil(8) as usize);
             state.memory.get_mut(&memory).into_iter().for_each(|words| words[first..end].fill(0));
         });
+    };
+    swapchain_images "vkGetSwapchainImagesKHR" (device: vk::Device, chain: u64, count: *mut u32, made: *mut u64) {
+        // SAFETY: room for the number, and for that many where there is an array.
+        unsafe {
+            *count = 2;
+            if !made.is_null() {
+                (0..2).for_each(|nth| made.add(nth).write(fresh()));
+            }
+        }
     };
     bind_image "vkBindImageMemory" (device: vk::Device, image: u64, memory: u64, offset: u64) {};
     command_buffers "vkAllocateCommandBuffers" (device: vk::Device, info: *const c_void, made: *mut u64) {
@@ -443,6 +462,8 @@ unsafe extern "system" fn get_instance_proc_addr(instance: vk::Instance, name: *
         match name.to_bytes() {
             b"vkGetPhysicalDeviceSurfaceSupportKHR" => return function(address!(presents)),
             b"vkDestroySurfaceKHR" => return function(address!(destroy_surface)),
+            b"vkGetPhysicalDeviceSurfaceCapabilitiesKHR" => return function(address!(surface_capabilities)),
+            b"vkGetPhysicalDeviceSurfaceFormatsKHR" => return function(address!(surface_formats)),
             _ => (),
         }
     }
