@@ -32,9 +32,10 @@ pub struct Seen {
 pub fn run(file: &Path, size: (u32, u32)) -> Result<BTreeMap<u32, Seen>, Box<dyn Error>> {
     let model = selvedge_io::import::open(file)?.model;
     let mut renderer = HeadlessRenderer::new(&HeadlessOptions::default())?;
+    let outputs = Outputs { depth: true, face: true, ..Outputs::default() };
+    renderer.expect(outputs);
     renderer.upload(&model)?;
     let camera = Camera::framing(&model, Camera::FROM, DVec3::Z, Camera::FOV_DEG.to_radians(), size);
-    let outputs = Outputs { depth: true, face: true, ..Outputs::default() };
     let picture = renderer.render(&camera, &FrameSettings::default(), outputs)?;
     let mut faces = BTreeMap::new();
     // row after row from the top; background has face 0 and an infinite depth

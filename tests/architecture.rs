@@ -306,6 +306,22 @@ fn no_shader_depends_on_the_size_of_a_subgroup() {
     assert_eq!(asks.map(|(path, _)| path).collect::<Vec<_>>(), [""; 0]);
 }
 
+/// The header of a source: the lines of its module's documentation.
+fn header(text: &str) -> String {
+    text.lines().take_while(|line| line.starts_with("//!")).collect::<Vec<_>>().join("\n")
+}
+
+/// A pass with a twin says in its header how near its results are to the twin's.
+#[test]
+fn passes_state_their_parity() {
+    let headers =
+        files("src/frame").into_iter().map(|path| (relative(&path), header(&fs::read_to_string(path).unwrap())));
+    let with_twins: Vec<_> = headers.filter(|(_, header)| header.contains("Twin: ")).collect();
+    assert!(with_twins.len() > 20, "only {} passes were found", with_twins.len());
+    let silent = with_twins.iter().filter(|(_, header)| !header.to_lowercase().contains("parity"));
+    assert_eq!(silent.map(|(path, _)| path).collect::<Vec<_>>(), [""; 0]);
+}
+
 /// Names that mean one thing in GLSL and another in Rust.
 const HOMONYMS: &[&str] =
     &["BLOCK", "CHORDS", "GROUP", "MARGIN", "MARGIN_PX", "MOST_CELLS", "MOST_STEPS", "ROUNDING", "SIDE", "SPARE"];

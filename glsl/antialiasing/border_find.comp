@@ -45,6 +45,7 @@ uint key_at(ivec2 at, float depth) {
     uint word = imageLoad(visibility, at).x;
     if (sees_nothing(word) || sees_other(word)) {
         if (depth >= UNSEEN) return 0u;
+        if (!SCENE_HAS_MESHES_OR_SOLIDS) return OTHER;
         if (sees_nothing(word)) word = imageLoad(meshes_and_solids, at).x;
         if (!is_sampled(word)) return OTHER;
         return sees_solid(word) && seen_side(word) >= frame.side_count ? FACET : word;
@@ -110,15 +111,19 @@ void main() {
         bool sampled = key != 0u && key != OTHER;
         if (at.y < int(end) && (!alone || sampled && any(jump) || crease)) listed |= 1u << row;
     }
+    if (listed == 0u) return;
+    uint count = uint(bitCount(listed));
+    uint n = atomicAdd(grids.count, count);
+    uint last = n + count - 1u;
     for (; listed != 0u; listed &= listed - 1u) {
         ivec2 at = first + ivec2(0, findLSB(listed));
-        uint n = atomicAdd(grids.count, 1u);
         list[n].pixel = uint(at.x) | uint(at.y) << 16;
-        uvec3 pixels = grid_of(n / GROUP + 1u);
-        uvec3 points = grid_of(n / (GROUP / POINTS) + 1u);
-        for (uint axis = 0u; axis < 3u; ++axis) {
-            atomicMax(grids.pixels[axis], pixels[axis]);
-            if (SCENE_HAS_MESHES_OR_SOLIDS) atomicMax(grids.points[axis], points[axis]);
-        }
+        ++n;
+    }
+    uvec3 pixels = grid_of(last / GROUP + 1u);
+    uvec3 points = grid_of(last / (GROUP / POINTS) + 1u);
+    for (uint axis = 0u; axis < 3u; ++axis) {
+        atomicMax(grids.pixels[axis], pixels[axis]);
+        if (SCENE_HAS_MESHES_OR_SOLIDS) atomicMax(grids.points[axis], points[axis]);
     }
 }

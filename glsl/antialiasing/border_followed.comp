@@ -1,8 +1,9 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `border_followed`: the mean of what a pixel's points see, once pass `border_follow` has followed those that
-// pass `border_mix` listed; in scenes without meshes and Boolean solids. One thread a listed pixel.
+// Pass `border_followed`: makes the mean of what a pixel's points see. Pass `border_mix` lists points, and pass
+// `border_follow` follows them before. Scenes with meshes or Boolean solids do not have this pass. One thread a listed
+// pixel.
 #include "scene.glsl"
 #include "view.glsl"
 #include "visible.glsl"

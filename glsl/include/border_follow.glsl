@@ -34,7 +34,7 @@ layout(scalar, binding = 10) readonly buffer FollowedLists { FollowedGrids follo
 
 #include "border_around.glsl"
 #include "border_reach.glsl"
-// BORDER_POINTS a pixel of the list: where others than patches are asked, too
+// BORDER_POINTS a pixel of the list. Only scenes with meshes or Boolean solids have them.
 layout(scalar, binding = 11) writeonly buffer SeenPoints { BorderPoint seen_points[]; };
 
 // Whether the face is there at (u, v) of a patch, or where its surface goes on over a seam.

@@ -53,7 +53,7 @@ layout(scalar, push_constant) uniform Push { uint capacity; }; // points that fo
 
 #include "border_seen.glsl"
 #include "border_reach.glsl"
-// BORDER_POINTS a pixel of the list: where others than patches are asked, too
+// BORDER_POINTS a pixel of the list. Only scenes with meshes or Boolean solids have them.
 layout(scalar, binding = 11) writeonly buffer SeenPoints { BorderPoint seen_points[]; };
 
 // Some point of some face may be listed (src/scene/face.rs).
@@ -66,6 +66,8 @@ const float CLOSE_PX = 0.02;
 // Two are enough, but for what is narrower than a pixel (steps are at most MAX_STEP) and beside folds, where each step
 // leaves a quarter of the distance.
 const uint POINT_STEPS = 8u;
+// Distance from a point at which the steps end: the rounding of a place in a picture 2000 pixels wide.
+const float POINT_MET_PX = 1.0 / 4096.0;
 
 // A sheet near the pixel's centre.
 struct Sheet {
@@ -135,8 +137,10 @@ float depth_at(Sheet s, vec2 pixel, out bool is_open) {
         bool nearer = dot(miss, miss) < least;
         if (nearer) nearest = uv;
         if (nearer) least = dot(miss, miss);
+        bool met = least <= POINT_MET_PX * POINT_MET_PX;
         vec2 step_;
-        if (newton_step(pixels_along(q, qu, qv), miss, s.patch_, step_)) uv -= step_;
+        if (newton_step(pixels_along(q, qu, qv), miss, s.patch_, step_) && !met) uv -= step_;
+        if (met) break; // only here: see refine.glsl
     }
     // a paraboloid also meets the ray behind the eye
     bool meets = q.w > 0.0 && length(miss) <= ON_PIXEL_PX;
@@ -177,13 +181,9 @@ void mix_later(FollowedPixel pixel) {
     for (uint axis = 0u; axis < 3u; ++axis) atomicMax(followed.pixels[axis], pixels[axis]);
 }
 
-// Whether the face's depth jumps between the pixel and the one at `step_`: by more than to the other side.
-bool jumps_to(ivec2 at, ivec2 step_, float own) {
-    float ahead = imageLoad(resolved, at + step_).a - own;
-    ivec2 other = at - step_;
-    float back = is_in_picture(other) ? imageLoad(resolved, other).a - own : 0.0;
-    return abs(ahead) >= abs(back) && jumps(back, ahead, own);
-}
+// Whether a face's depth jumps between the pixel, whose depth is `own`, and a pixel around: by more than to the pixel on
+// the other side. `ahead` and `back` are the depths of these two less `own`.
+bool jumps_to(float ahead, float back, float own) { return abs(ahead) >= abs(back) && jumps(back, ahead, own); }
 
 void main() {
     uint n = thread_number();
@@ -203,7 +203,12 @@ void main() {
     uint met_from[MOST_SHEETS];
     uint met_count = 0u;
     uint placed[AROUND]; // the placed face of each pixel around, from 1 on
-    for (uint n = 0u; n < AROUND; ++n) placed[n] = 0u;
+    float ahead[AROUND]; // depth of each pixel around less the own one; 0 beside the picture
+    for (uint n = 0u; n < AROUND; ++n) {
+        ivec2 beside = around(at, n);
+        placed[n] = 0u;
+        ahead[n] = is_in_picture(beside) ? imageLoad(resolved, beside).a - own_depth : 0.0;
+    }
     for (uint k = 0u; k < AROUND; ++k) {
         uint from = (k + OWN) % AROUND; // the pixel itself first
         ivec2 beside = around(at, from);
@@ -216,7 +221,8 @@ void main() {
         uint face = face_instance_of(seen_patch_instance(seen)) << 1;
         placed[from] = (face >> 1) + 1u;
         // a second sheet of the pixel's own face
-        if (own_patch && k > 0u && face == met[0] && jumps_to(at, beside - at, own_depth)) face |= 1u;
+        bool jump = jumps_to(ahead[from], ahead[AROUND - 1u - from], own_depth);
+        if (own_patch && k > 0u && face == met[0] && jump) face |= 1u;
         bool known = met_count == MOST_SHEETS;
         for (uint i = 0u; i < met_count; ++i) known = known || met[i] == face;
         if (known) continue;

@@ -1,5 +1,6 @@
 // How far a sheet's terms of second order reach, for pass `border_mix`, and where a face's surface goes on beyond the
-// ends of its domain, for pass `border_follow`, too. Needs scene.glsl. Twin: src/twin/border_reach.rs, which has the derivation.
+// ends of its domain, for pass `border_follow`, too. Needs scene.glsl. Twin: src/twin/border_reach.rs, which has the
+// derivation.
 //
 //     q(u, v) - terms  ≈  u² (|u| + 3 h / 2) q_uuu / 6  +  v² (|v| + 3 h / 2) q_vvv / 6  +  |u v| (|u| + |v|) q_uv_ / 2
 //

@@ -172,8 +172,11 @@ uint change(ivec2 at, ivec2 beside, PixelSees seen, PixelSees next) {
     if (push.lists != 0u) {
         vec2 from = c.first ? a : b;
         vec2 to = c.first ? b : a;
-        reach = c.why != CHANGE_FOLD ? 1.0 : c.first ? c.share : 1.0 - c.share;
-        to = mix(from, to, max(reach - 1.0 / 256.0, 0.0));
+        if (c.why == CHANGE_FOLD) {
+            reach = c.first ? c.share : 1.0 - c.share;
+            // at the fold itself rounding decides whether the sheet is there
+            to = mix(from, to, max(reach - 1.0 / 256.0, 0.0));
+        }
         end = end_of(f, from, to, tile_near(c.first ? at : beside), cosine, cut);
     }
     if (end <= 1.0) {

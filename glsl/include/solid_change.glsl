@@ -134,9 +134,16 @@ float end_of(Sheet f, vec2 from, vec2 to, uint tile, out float cosine, out bool 
                 }
             }
             if (share >= best || !is_on_leaf(leaf, p, side >> SIDE_SHIFT, f.surface, slack)) continue;
+            vec3 across = across_surface(side, p);
+            if (is_opaque && leaf.item != item) {
+                // a side that is turned away from the eye lies behind its primitive, which hides the sheet before it
+                bool away = dot(across, eye_ray(frame, mix(from, to, share)).d) > 0.0;
+                bool inward = ((side & SIDE_NEGATIVE) != 0u) != ((leaf.flags & LEAF_NEGATIVE) != 0u);
+                if (away != inward) continue;
+            }
             best = share;
             cut = (leaf.flags & LEAF_CAP) != 0u;
-            cosine = abs(dot(normal_on(f, p), across_surface(side, p)));
+            cosine = abs(dot(normal_on(f, p), across));
         }
     }
     return best;

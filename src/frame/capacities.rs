@@ -173,6 +173,18 @@ mod tests {
         assert!(!more.takes_as_much(had));
     }
 
+    /// Lists by the picture's size stay within the storage buffer that every device binds.
+    #[test]
+    fn lists_of_the_largest_picture_fit_into_every_device() {
+        let counts = Counts { follows_borders: true, trim: Some(TakenWay::Exact), ..Default::default() };
+        let of = |size| {
+            let Capacities { gaps, antialiasing, .. } =
+                Capacities::first(counts, u32::MAX).for_picture(counts, size, both(RANGE)).unwrap();
+            (gaps.candidates, antialiasing.followed)
+        };
+        assert_eq!((of((640, 480)), of((16384, 16384))), ((38_400, 19_200), (RANGE / 12, RANGE / 12)));
+    }
+
     #[test]
     fn more_than_can_be_counted_is_an_error() {
         let over = |counts: Counts| counts.check(u32::MAX).err().map(|error| (error.what, error.most, error.bytes));

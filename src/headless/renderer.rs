@@ -32,6 +32,8 @@ pub struct HeadlessRenderer {
     pub(super) device: ManuallyDrop<HeadlessDevice>,
     /// What the renderer draws into.
     pub(super) formats: TargetFormats,
+    /// What pictures of the next model will have.
+    expected: Option<Outputs>,
     watch: Option<Watch>,
 }
 
@@ -73,8 +75,16 @@ impl HeadlessRenderer {
             renderer: ManuallyDrop::new(renderer),
             device: ManuallyDrop::new(device),
             formats,
+            expected: None,
             watch: None,
         })
+    }
+
+    /// The images that pictures of the next model will have: its upload makes what they need. Without this call an
+    /// upload makes what the picture before needed, at first the colour alone, and a picture with other images has the
+    /// model uploaded anew.
+    pub fn expect(&mut self, outputs: Outputs) {
+        self.expected = Some(outputs);
     }
 
     /// Replaces the model; the next picture shows it.
@@ -125,10 +135,23 @@ impl HeadlessRenderer {
     fn upload_request(
         &mut self,
         model: Arc<Model>,
-        request: SceneRequest,
+        mut request: SceneRequest,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<(), HeadlessError> {
-        Ok(self.renderer.upload_request(model, request, progress)?)
+        let mut formats = self.formats;
+        if let Some(outputs) = self.expected {
+            request.settings.thickness |= outputs.thickness;
+            formats = self.formats_with(outputs, request.settings.thickness);
+        }
+        if formats == self.formats {
+            self.renderer.upload_request(model, request, progress)?;
+        } else {
+            self.device.device().alive()?;
+            self.land()?;
+            self.renew(formats, |_, renderer| renderer.upload_request(model, request, progress))?;
+        }
+        self.expected = None;
+        Ok(())
     }
 
     /// Replaces a trim loop of the model, which was uploaded as editable; see [`Renderer::edit_loop`].
@@ -307,33 +330,48 @@ impl HeadlessRenderer {
         let mut request = source.request();
         let lacks_thickness = outputs.thickness && !request.thickness;
         request.settings.thickness |= outputs.thickness;
-        // images that one pass makes come together: another choice among them makes no other renderer
+        let formats = self.formats_with(outputs, request.thickness);
+        if formats != self.formats || lacks_thickness {
+            let source = source.with(request);
+            self.renew(formats, |this, renderer| renderer.upload_source(source, &|_| this.pause()))?;
+        }
+        Ok(())
+    }
+
+    /// The formats for pictures with these images, of a scene with or without thickness. Images that one pass makes
+    /// come together: another choice among them makes no other renderer.
+    fn formats_with(&self, outputs: Outputs, thickness: bool) -> TargetFormats {
         let (points, numbers) = (outputs.has_points(), outputs.has_numbers());
         let outputs = Outputs {
             depth: points,
             face: points,
             uv: points,
             normal: points,
-            thickness: request.thickness,
+            thickness,
             edge: numbers,
             part: numbers,
             instance: numbers,
         };
-        let formats = TargetFormats { outputs, ..self.formats };
-        if formats != self.formats || lacks_thickness {
-            let source = source.with(request);
-            self.noting(|this| {
-                let mut renderer = renderer(this.device.device(), formats)?;
-                renderer.upload_source(source, &|_| this.pause())?;
-                if let Some((x, y)) = this.renderer.take_pick() {
-                    renderer.pick(x, y);
-                }
-                *this.renderer = renderer;
-                this.formats = formats;
-                Ok(())
-            })?;
-        }
-        Ok(())
+        TargetFormats { outputs, ..self.formats }
+    }
+
+    /// Another renderer takes the place of this one, which shares its pipelines until then. If `upload` fails, this one
+    /// stays.
+    fn renew(
+        &mut self,
+        formats: TargetFormats,
+        upload: impl FnOnce(&Self, &mut Renderer) -> Result<(), RenderError>,
+    ) -> Result<(), HeadlessError> {
+        self.noting(|this| {
+            let mut renderer = renderer(this.device.device(), formats)?;
+            upload(this, &mut renderer)?;
+            if let Some((x, y)) = this.renderer.take_pick() {
+                renderer.pick(x, y);
+            }
+            *this.renderer = renderer;
+            this.formats = formats;
+            Ok(())
+        })
     }
 }
 

@@ -18,11 +18,12 @@ mod instances;
 use ash::vk;
 use ash::vk::Handle;
 use instances::{create_instance, destroy_instance, destroy_surface, extensions, memory_properties, presents};
+use instances::{surface_capabilities, surface_formats};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ffi::{CStr, c_char, c_void};
 use std::mem::transmute;
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// The call that shall fail, the `nth` of its name counted from 0, and the result that it returns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +47,8 @@ struct State {
     injected: u32,
     instances: i32,
     surfaces_destroyed: u32,
+    /// Width and height of each surface, with the null driver.
+    window: (u32, u32),
     calls: BTreeMap<&'static str, u32>,
     /// Kind and handle.
     living: BTreeSet<(&'static str, u64)>,
@@ -63,6 +66,9 @@ static STATE: Mutex<Option<State>> = Mutex::new(None);
 /// Calls of the null driver that cannot fail, except calls that free.
 static OTHERS: AtomicU32 = AtomicU32::new(0);
 static TURN: Mutex<()> = Mutex::new(());
+/// An instance that the double does not see, never destroyed. It keeps the system's drivers loaded: the loader unloads
+/// them with the last instance, and loading them takes most of the time of a short script.
+static KEPT: OnceLock<(ash::Entry, ash::Instance)> = OnceLock::new();
 
 fn with<T>(f: impl FnOnce(&mut State) -> T) -> T {
     f(STATE.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_default())
@@ -81,6 +87,11 @@ impl Driver {
         let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: the system's loader.
         let loader = unsafe { ash::Entry::load() }.expect("these tests need Vulkan: apt install libvulkan1");
+        KEPT.get_or_init(|| {
+            // SAFETY: the entry is loaded, and stays so beside its instance.
+            let instance = unsafe { loader.create_instance(&vk::InstanceCreateInfo::default(), None) };
+            (loader.clone(), instance.expect("the loader makes an instance"))
+        });
         let real = loader.static_fn().get_instance_proc_addr;
         let real = address!(real);
         *STATE.lock().unwrap_or_else(PoisonError::into_inner) = Some(State {
@@ -136,6 +147,12 @@ impl Driver {
     #[allow(dead_code)] // the viewer's test includes this file
     pub fn surfaces_destroyed(&self) -> u32 {
         with(|state| state.surfaces_destroyed)
+    }
+
+    /// From now on every surface has this size, with the null driver.
+    #[allow(dead_code)] // the viewer's test includes this file
+    pub fn set_window(&self, size: (u32, u32)) {
+        with(|state| state.window = size);
     }
 
     /// Handles that have not been destroyed: for each one the name of the call that frees it, and `-` for a device.
@@ -249,6 +266,7 @@ pairs! {
     create_command_pool destroy_command_pool: vk::Device, vk::CommandPoolCreateInfo<'static> => vk::CommandPool, "vkCreateCommandPool" "vkDestroyCommandPool", |_| 0;
     create_fence destroy_fence: vk::Device, vk::FenceCreateInfo<'static> => vk::Fence, "vkCreateFence" "vkDestroyFence", |_| 0;
     create_semaphore destroy_semaphore: vk::Device, vk::SemaphoreCreateInfo<'static> => vk::Semaphore, "vkCreateSemaphore" "vkDestroySemaphore", |_| 0;
+    create_swapchain destroy_swapchain: vk::Device, vk::SwapchainCreateInfoKHR<'static> => vk::SwapchainKHR, "vkCreateSwapchainKHR" "vkDestroySwapchainKHR", |_| 0;
     allocate_memory free_memory: vk::Device, vk::MemoryAllocateInfo<'static> => vk::DeviceMemory, "vkAllocateMemory" "vkFreeMemory", |i| i.allocation_size;
 }
 
@@ -303,6 +321,15 @@ calls! {
             let (first, end) = (offset as usize / 8, (offset + state.bytes[&buffer]).div_ceil(8) as usize);
             state.memory.get_mut(&memory).into_iter().for_each(|words| words[first..end].fill(0));
         });
+    };
+    swapchain_images "vkGetSwapchainImagesKHR" (device: vk::Device, chain: u64, count: *mut u32, made: *mut u64) {
+        // SAFETY: room for the number, and for that many where there is an array.
+        unsafe {
+            *count = 2;
+            if !made.is_null() {
+                (0..2).for_each(|nth| made.add(nth).write(fresh()));
+            }
+        }
     };
     bind_image "vkBindImageMemory" (device: vk::Device, image: u64, memory: u64, offset: u64) {};
     command_buffers "vkAllocateCommandBuffers" (device: vk::Device, info: *const c_void, made: *mut u64) {
@@ -435,6 +462,8 @@ unsafe extern "system" fn get_instance_proc_addr(instance: vk::Instance, name: *
         match name.to_bytes() {
             b"vkGetPhysicalDeviceSurfaceSupportKHR" => return function(address!(presents)),
             b"vkDestroySurfaceKHR" => return function(address!(destroy_surface)),
+            b"vkGetPhysicalDeviceSurfaceCapabilitiesKHR" => return function(address!(surface_capabilities)),
+            b"vkGetPhysicalDeviceSurfaceFormatsKHR" => return function(address!(surface_formats)),
             _ => (),
         }
     }

@@ -33,6 +33,41 @@ pub unsafe extern "system" fn destroy_surface(_: vk::Instance, _: u64, _: Callba
     with(|state| state.surfaces_destroyed += 1);
 }
 
+/// At least one image, and as many as wanted.
+pub unsafe extern "system" fn surface_capabilities(
+    _: vk::PhysicalDevice,
+    _: u64,
+    answer: *mut vk::SurfaceCapabilitiesKHR,
+) -> vk::Result {
+    call("vkGetPhysicalDeviceSurfaceCapabilitiesKHR", || {
+        let (width, height) = with(|state| state.window);
+        let current_extent = vk::Extent2D { width, height };
+        // SAFETY: room for the answer.
+        unsafe { *answer = vk::SurfaceCapabilitiesKHR { min_image_count: 1, current_extent, ..Default::default() } };
+        vk::Result::SUCCESS
+    })
+}
+
+/// One format.
+pub unsafe extern "system" fn surface_formats(
+    _: vk::PhysicalDevice,
+    _: u64,
+    count: *mut u32,
+    all: *mut vk::SurfaceFormatKHR,
+) -> vk::Result {
+    call("vkGetPhysicalDeviceSurfaceFormatsKHR", || {
+        let color_space = vk::ColorSpaceKHR::SRGB_NONLINEAR;
+        // SAFETY: room for the number, and for one format where there is an array.
+        unsafe {
+            *count = 1;
+            if !all.is_null() {
+                all.write(vk::SurfaceFormatKHR { format: vk::Format::B8G8R8A8_SRGB, color_space });
+            }
+        }
+        vk::Result::SUCCESS
+    })
+}
+
 /// The driver's extensions, and the one that tells the budget.
 pub unsafe extern "system" fn extensions(
     physical: vk::PhysicalDevice,

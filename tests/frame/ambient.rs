@@ -3,7 +3,7 @@
 use crate::layers::in_glass;
 use crate::shapes;
 use crate::shapes::solids::{block, folded};
-use crate::support::{assert_identical, assert_silent, perspective, watched_with};
+use crate::support::{assert_identical, assert_silent, perspective, watched_for, watched_with};
 use crate::watched::renderer;
 use glam::{DVec2, DVec3};
 use selvedge::csg::Op;
@@ -167,7 +167,7 @@ fn scenes_that_measure_thickness_lose_as_much_light() {
 fn it_exists_where_it_is_wanted() {
     let of_ambient = |ambient| {
         let model = shapes::cube();
-        let mut renderer = watched_with(&model, settings(ambient));
+        let mut renderer = watched_for(Outputs::default(), &model, settings(ambient));
         renderer.render(&perspective(&model, (64, 48)), &FrameSettings::default(), Outputs::default()).unwrap();
         let objects = renderer.objects();
         assert_silent(renderer);

@@ -52,11 +52,12 @@ pub fn coverage_errors(picture: &Picture, truth: &[f64]) -> Vec<f64> {
     (0..truth.len()).filter(|&i| truth[i] > 0.0 && truth[i] < 1.0).map(|i| shown(i) - truth[i]).collect()
 }
 
-/// Mean and range of linear colours in each pixel, of the same frame [`FINE`] times as large.
-pub fn blocks(renderer: &mut HeadlessRenderer, camera: &Camera) -> Vec<(DVec3, DVec3)> {
+/// Mean and range of linear colours in each pixel, of the same frame [`FINE`] times as large. `outputs` are those of
+/// the renderer's other pictures: for others it would upload the model anew.
+pub fn blocks(renderer: &mut HeadlessRenderer, camera: &Camera, outputs: Outputs) -> Vec<(DVec3, DVec3)> {
     let (width, height) = camera.size;
     let large = Camera { size: (FINE * width, FINE * height), ..*camera };
-    let picture = renderer.render(&large, &FrameSettings::default(), Outputs::default()).unwrap();
+    let picture = renderer.render(&large, &FrameSettings::default(), outputs).unwrap();
     (0..width * height)
         .map(|i| {
             let (x, y) = (i % width * FINE, i / width * FINE);

@@ -2,8 +2,8 @@
 //! time.
 
 use crate::shapes;
-use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, watched};
-use selvedge::picture::{FrameSettings, Outputs};
+use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, watched, watched_for};
+use selvedge::picture::{FrameSettings, Outputs, SceneSettings};
 
 fn check(name: &str) {
     let shape = shapes::all().into_iter().find(|s| s.name == name).expect("a shape of that name");
@@ -60,7 +60,7 @@ fn a_full_picture_is_silent() {
 #[test]
 fn a_larger_picture_than_one_row_of_workgroups_is_silent() {
     let model = shapes::plate();
-    let mut renderer = watched(&model);
+    let mut renderer = watched_for(Outputs::default(), &model, SceneSettings::default());
     let camera = perspective(&model, (2600, 1700));
     renderer.render(&camera, &FrameSettings::default(), Outputs::default()).unwrap();
     assert_silent(renderer);

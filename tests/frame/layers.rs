@@ -337,7 +337,7 @@ fn opacity_is_kept() {
     let mut renderer = watched(&m);
     for background in [[0.0; 4], [0.2, 0.4, 0.6, 0.5]] {
         let settings = FrameSettings { background: Some(background), ..FrameSettings::default() };
-        let picture = renderer.render(&camera, &settings, Outputs::default()).unwrap();
+        let picture = renderer.render(&camera, &settings, Outputs::ALL).unwrap();
         assert_colours(&m, &camera, &picture, background, "background");
     }
     assert_silent(renderer);

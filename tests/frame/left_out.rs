@@ -3,7 +3,7 @@
 use crate::hidden::crowd;
 use crate::layers::in_glass;
 use crate::shapes::solids::{block, folded};
-use crate::support::{assert_identical, assert_silent, perspective, watched_with};
+use crate::support::{assert_identical, assert_silent, perspective, watched_for, watched_with};
 use glam::DVec3;
 use selvedge::csg::Op;
 use selvedge::picture::{
@@ -137,8 +137,8 @@ fn without_lines_several_samples_draw_no_centres() {
     let camera = perspective(&model, SIZE);
     let plain = SceneSettings { trim: TrimWay::Exact, samples: Samples::Four, ..SceneSettings::default() };
     let edges = EdgeSettings { width: 9.0, thin_width: 9.0, ..EdgeSettings::default() };
-    let mut renderer = watched_with(&model, SceneSettings { edges: Some(edges), ..plain });
-    let mut fresh = watched_with(&model, plain);
+    let lines = SceneSettings { edges: Some(edges), ..plain };
+    let [mut renderer, mut fresh] = [lines, plain].map(|scene| watched_for(Outputs::default(), &model, scene));
     let without = Effects { lines: true, ..Effects::NONE };
     // twice, so that a view is reused both ways
     for (without, outputs, draws) in [

@@ -6,7 +6,7 @@ use crate::layers::{
 use crate::shapes::operands::part;
 use crate::shapes::solids::ball;
 use crate::shapes::sphere;
-use crate::support::{assert_silent, orthographic, perspective, render, watched, watched_with};
+use crate::support::{assert_silent, orthographic, perspective, render, watched, watched_for, watched_with};
 use glam::DVec2;
 use selvedge::model::{Model, Solid};
 use selvedge::picture::{FrameSettings, Highlight, Outputs, SceneSettings};
@@ -123,7 +123,7 @@ fn only_who_is_followed_has_what_that_needs() {
     let opaque = model(vec![gear()]);
     let camera = perspective(&opaque, SIZE);
     let names = |m: &Model, settings: SceneSettings, outputs: Outputs| {
-        let mut renderer = watched_with(m, settings);
+        let mut renderer = watched_for(outputs, m, settings);
         renderer.render(&camera, &FrameSettings::default(), outputs).unwrap();
         let mut names = renderer.objects();
         names.retain(|name| name.contains("layers") || name.contains("thickness"));

@@ -3,8 +3,7 @@
 
 use crate::hidden::crowd;
 use crate::shapes::{self, solids};
-use crate::support::{assert_identical, assert_silent, watched_with};
-use crate::watched::renderer;
+use crate::support::{assert_identical, assert_silent, watched_for};
 use glam::{DAffine3, DVec3};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Colour, Model, ModelError};
@@ -14,7 +13,7 @@ use selvedge::picture::{
 use selvedge::renderer::InstanceError;
 
 pub const SIZE: (u32, u32) = (160, 120);
-const ALL: Outputs = Outputs { edge: true, part: true, instance: true, ..Outputs::ALL };
+pub const ALL: Outputs = Outputs { edge: true, part: true, instance: true, ..Outputs::ALL };
 const RED: Colour = [0.8, 0.05, 0.05, 1.0];
 
 /// Rows of plates, cubes, cylinders, waves and ripples, with a mesh among them.
@@ -31,6 +30,13 @@ pub fn scene() -> Model {
 
 pub fn camera(model: &Model) -> Camera {
     Camera::around(model.control_bounds(), DVec3::new(0.3, -1.0, 0.4), DVec3::Z, 35f64.to_radians(), SIZE)
+}
+
+/// A watched renderer for pictures with all images.
+pub fn renderer() -> HeadlessRenderer {
+    let mut renderer = crate::watched::renderer();
+    renderer.expect(ALL);
+    renderer
 }
 
 pub fn draw(renderer: &mut HeadlessRenderer, camera: &Camera) -> Picture {
@@ -136,7 +142,7 @@ fn a_hidden_part_is_as_one_that_was_not_uploaded() {
 fn a_colour_changes_no_other_image_and_draws_nothing_else_anew() {
     let mut model = scene();
     let settings = SceneSettings::default();
-    let mut renderer = watched_with(&model, settings);
+    let mut renderer = watched_for(ALL, &model, settings);
     let camera = camera(&model);
     let plain = [0, 1, 2].map(|_| draw(&mut renderer, &camera))[2].clone();
     let plate = 3;
@@ -144,7 +150,7 @@ fn a_colour_changes_no_other_image_and_draws_nothing_else_anew() {
     let red = draw(&mut renderer, &camera);
     assert!(red.stats.reused, "what is seen stays");
     model.instances[plate].colour = Some(RED);
-    let mut fresh = watched_with(&model, settings);
+    let mut fresh = watched_for(ALL, &model, settings);
     assert_all_identical(&red, &draw(&mut fresh, &camera), "red");
     let changed = |a: &Picture, b: &Picture| -> Vec<u32> {
         let mut all: Vec<u32> =
@@ -176,7 +182,7 @@ fn a_colour_changes_no_other_image_and_draws_nothing_else_anew() {
 fn changes_stay_whatever_is_loaded() {
     let mut model = scene();
     let settings = SceneSettings::default();
-    let mut renderer = watched_with(&model, settings);
+    let mut renderer = watched_for(Outputs::default(), &model, settings);
     let (moved, gone) = (0, 7);
     renderer.set_transform(moved, step(0)).unwrap();
     renderer.set_visible(gone, false).unwrap();
@@ -191,7 +197,7 @@ fn changes_stay_whatever_is_loaded() {
     // a ten-thousandth of the scene, at a plate that moved; beside it what is hidden
     let target = model.instances[moved].transform.transform_point3(model.parts[0].control_bounds().min);
     let close = Camera { eye: target + DVec3::new(0.001, -0.003, 0.002), target, depth_range: (1e-4, 25.0), ..afar };
-    let mut fresh = watched_with(&without, settings);
+    let mut fresh = watched_for(ALL, &without, settings);
     let seen = draw(&mut renderer, &close);
     assert!(seen.instance.contains(&(moved as u32 + 1)), "it looks at the plate");
     assert_all_identical(&seen, &draw(&mut fresh, &close), "close up");
@@ -215,7 +221,7 @@ fn changes_stay_whatever_is_loaded() {
 #[test]
 fn what_cannot_change_says_so_and_stays() {
     let model = scene();
-    let mut renderer = watched_with(&model, SceneSettings::default());
+    let mut renderer = watched_for(ALL, &model, SceneSettings::default());
     let camera = camera(&model);
     let before = draw(&mut renderer, &camera);
     let none = model.instances.len();
@@ -261,8 +267,8 @@ fn parts_move_among_boolean_solids() {
     let mut model = shapes::cube();
     model.solids = solids::holes(3).solids;
     let settings = SceneSettings::default();
-    let mut renderer = watched_with(&model, settings);
-    let mut fresh = watched_with(&model, settings);
+    let mut renderer = watched_for(ALL, &model, settings);
+    let mut fresh = watched_for(ALL, &model, settings);
     let camera = camera(&model);
     draw(&mut renderer, &camera);
     for n in 0..3 {
@@ -281,8 +287,8 @@ fn parts_move_among_boolean_solids() {
 fn lines_are_whole_while_the_eye_moves() {
     let model = scene();
     let (_, settings) = ways()[2];
-    let mut renderer = watched_with(&model, settings);
-    let mut fresh = watched_with(&model, settings);
+    let mut renderer = watched_for(ALL, &model, settings);
+    let mut fresh = watched_for(ALL, &model, settings);
     let first = camera(&model);
     for n in 0..6 {
         let view = Camera { eye: first.eye + DVec3::new(0.3 * f64::from(n), 0.0, 0.0), ..first };

@@ -2,7 +2,7 @@
 
 use crate::layers::in_glass;
 use crate::shapes;
-use crate::support::{assert_silent, perspective, watched_with};
+use crate::support::{assert_silent, perspective, watched_for, watched_with};
 use glam::{DVec2, DVec3};
 use selvedge::glam::DAffine3;
 use selvedge::headless::HeadlessError;
@@ -211,7 +211,7 @@ fn what_is_drawn_on_nothing_can_be_laid_over_anything() {
     ];
     for (name, model, scene) in cases {
         let camera = perspective(&model, SIZE);
-        let mut renderer = watched_with(&model, scene);
+        let mut renderer = watched_for(Outputs::default(), &model, scene);
         let mut draw = |background| {
             let settings = FrameSettings { background: Some(background), ..FrameSettings::default() };
             renderer.render(&camera, &settings, Outputs::default()).unwrap()

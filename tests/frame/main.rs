@@ -24,6 +24,7 @@ mod hard_solids;
 mod hard_trims;
 mod hard_views;
 mod hidden;
+mod hidden_lines;
 mod hidden_parts;
 mod in_sight;
 mod layer_lines;

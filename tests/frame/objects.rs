@@ -1,6 +1,6 @@
 //! A scene makes only the buffers, images and pipelines that it needs.
 
-use crate::support::{assert_silent, perspective, watched_with};
+use crate::support::{assert_silent, perspective, watched_for, watched_with};
 use crate::{cages, shapes};
 use glam::{DAffine3, DVec3};
 use selvedge::headless::HeadlessRenderer;
@@ -16,7 +16,7 @@ fn objects(model: &Model, outputs: Outputs) -> (HeadlessRenderer, Vec<String>) {
 }
 
 fn objects_with(model: &Model, settings: SceneSettings, outputs: Outputs) -> (HeadlessRenderer, Vec<String>) {
-    let mut renderer = watched_with(model, settings);
+    let mut renderer = watched_for(outputs, model, settings);
     renderer.render(&perspective(model, (64, 48)), &FrameSettings::default(), outputs).unwrap();
     let objects = renderer.objects();
     (renderer, objects)
@@ -66,7 +66,7 @@ fn has_what_it_needs(way: TrimWay, needed: &[&str], others: &[&str]) {
     let (trimmed, rest): (Vec<_>, Vec<_>) = shapes::all().into_iter().partition(|shape| shape.trimmed);
     // every other shape of either kind
     for shape in trimmed.iter().step_by(2).chain(rest.iter().step_by(2)) {
-        let (renderer, objects) = objects_with(&shape.model, settings, Outputs::default());
+        let (renderer, objects) = objects_with(&shape.model, settings, Outputs::ALL);
         let of_trimming: Vec<_> = objects.iter().filter(|name| is_of_trimming(name)).collect();
         if shape.trimmed {
             let has = |start: &str| objects.iter().any(|name| name.starts_with(start));
@@ -86,7 +86,7 @@ fn only_a_scene_with_meshes_has_what_they_need() {
     let needed = ["mesh", "meshes", "mesh instances", "mesh positions", "mesh triangles", "resolve (mesh)"];
     for shape in shapes::all() {
         let has = shape.model.parts.iter().any(|p| !p.meshes.is_empty());
-        let (renderer, objects) = objects(&shape.model, Outputs::default());
+        let (renderer, objects) = objects(&shape.model, Outputs::ALL);
         let any = has || shape.model.parts.iter().any(|p| !p.faces.is_empty());
         assert_eq!(objects.iter().any(|o| o == "seen squares"), any, "{}: {objects:?}", shape.name);
         for name in needed {
@@ -121,7 +121,7 @@ fn only_a_scene_of_many_parts_has_occlusion_culling_of_parts() {
     // a cube has six patches, a plate has one
     let cases = [(shapes::cube(), 127, false), (shapes::cube(), 128, true), (shapes::plate(), 300, false)];
     for (shape, count, is_asked) in cases {
-        let (renderer, objects) = objects(&copies(shape, count), Outputs::default());
+        let (renderer, objects) = objects(&copies(shape, count), Outputs::ALL);
         let found: Vec<_> = of_parts.iter().filter(|name| objects.iter().any(|object| object == *name)).collect();
         assert_eq!(found.len(), if is_asked { of_parts.len() } else { 0 }, "{count}: {found:?}");
         assert_silent(renderer);
@@ -154,14 +154,14 @@ fn only_a_scene_of_many_patches_has_occlusion_culling() {
 #[test]
 fn only_a_scene_of_many_patches_draws_some_by_their_corners() {
     let mut model = shapes::wave();
-    let (mut renderer, _) = objects(&model, Outputs::default());
-    let one = renderer.render(&perspective(&model, (16, 12)), &FrameSettings::default(), Outputs::default()).unwrap();
+    let (mut renderer, _) = objects(&model, Outputs::ALL);
+    let one = renderer.render(&perspective(&model, (16, 12)), &FrameSettings::default(), Outputs::ALL).unwrap();
     assert_silent(renderer);
     let most = (1 << 17) / one.stats.patches as usize;
     for (count, is_used) in [(most - 1, false), (most, true)] {
         let place = |i: usize| DAffine3::from_translation(DVec3::X * (10 * i) as f64);
         model.instances = (0..count).map(|i| shapes::placed(place(i), None)).collect();
-        let (renderer, objects) = objects(&model, Outputs::default());
+        let (renderer, objects) = objects(&model, Outputs::ALL);
         let has = objects.iter().any(|name| name == "visibility (plain, polynomial, by corners)");
         assert_eq!(has, is_used, "{count} patches: {objects:?}");
         assert_silent(renderer);
@@ -172,7 +172,7 @@ fn only_a_scene_of_many_patches_draws_some_by_their_corners() {
 #[test]
 fn only_closed_parts_without_trims_have_cones() {
     for shape in shapes::all() {
-        let (renderer, objects) = objects(&shape.model, Outputs::default());
+        let (renderer, objects) = objects(&shape.model, Outputs::ALL);
         let has = objects.iter().any(|o| o == "patch cones");
         let may = |p: &Part| p.closed && !p.faces.is_empty() && p.faces.iter().all(|f| f.loops.is_empty());
         assert_eq!(has, shape.model.parts.iter().any(may), "{}: {objects:?}", shape.name);
@@ -185,12 +185,12 @@ fn only_faces_that_share_sides_have_links() {
     let is_of_links = |o: &&String| o.contains("link") && !o.starts_with("staging");
     let of_links = |objects: &[String]| objects.iter().filter(is_of_links).cloned().collect::<Vec<_>>();
     for shape in shapes::all() {
-        let (renderer, objects) = objects(&shape.model, Outputs::default());
+        let (renderer, objects) = objects(&shape.model, Outputs::ALL);
         let may = shape.model.parts.iter().any(|p| p.faces.len() > 1);
         assert!(may || of_links(&objects).is_empty(), "{}: {objects:?}", shape.name);
         assert_silent(renderer);
     }
-    let (renderer, objects) = objects(&cages::a_box().model, Outputs::default());
+    let (renderer, objects) = objects(&cages::a_box().model, Outputs::ALL);
     let found = of_links(&objects);
     for name in ["patch links", "split (linked)", "visibility (plain, polynomial, linked)"] {
         assert!(found.iter().any(|o| o == name), "{name}: {found:?}");
@@ -205,11 +205,11 @@ fn only_faces_that_share_sides_have_links() {
 fn only_a_scene_with_solids_has_what_they_need() {
     let needed = ["solid rects", "solid fold", "solid leaves", "solid sides", "solid surfaces", "resolve (solid)"];
     for shape in shapes::all() {
-        let (renderer, objects) = objects(&shape.model, Outputs::default());
+        let (renderer, objects) = objects(&shape.model, Outputs::ALL);
         assert!(!objects.iter().any(|o| o.contains("solid") || o.contains("volume")), "{}: {objects:?}", shape.name);
         assert_silent(renderer);
     }
-    let (renderer, objects) = objects(&shapes::solids::holes(2), Outputs::default());
+    let (renderer, objects) = objects(&shapes::solids::holes(2), Outputs::ALL);
     for name in needed {
         assert!(objects.iter().any(|o| o.starts_with(name)), "{name}: {objects:?}");
     }
@@ -227,7 +227,7 @@ fn only_a_scene_with_solids_has_what_they_need() {
 fn a_way_to_draw_solids_has_its_own_passes() {
     let of = |way: SolidWay, model: &Model| {
         let settings = SceneSettings { solids: way, ..Default::default() };
-        let (renderer, objects) = objects_with(model, settings, Outputs::default());
+        let (renderer, objects) = objects_with(model, settings, Outputs::ALL);
         assert_silent(renderer);
         objects
     };
@@ -250,7 +250,7 @@ fn a_way_to_draw_solids_has_its_own_passes() {
 #[test]
 fn only_a_rational_scene_has_rational_pipelines() {
     for shape in shapes::all() {
-        let (renderer, objects) = objects(&shape.model, Outputs::default());
+        let (renderer, objects) = objects(&shape.model, Outputs::ALL);
         let rational = objects.iter().any(|name| name.contains("rational"));
         assert_eq!(rational, shape.rational, "{}: {objects:?}", shape.name);
         assert_silent(renderer);
@@ -264,7 +264,7 @@ fn a_kind_of_patch_that_no_face_has_gets_no_pipeline() {
     let mut plate = shapes::plate();
     plate.instances.push(shapes::placed(DAffine3::from_translation(1e4 * DVec3::X), None));
     for (model, has, lacks) in [(plate, "table", "plain"), (shapes::wave(), "plain", "table")] {
-        let (renderer, objects) = objects(&model, Outputs::default());
+        let (renderer, objects) = objects(&model, Outputs::ALL);
         let drawing = |kind: &str| objects.iter().any(|name| name.starts_with(&format!("visibility ({kind}")));
         assert!(drawing(has) && !drawing(lacks), "{objects:?}");
         assert_silent(renderer);
@@ -283,7 +283,7 @@ fn large_faces_are_cut() {
     let patches = |model: &Model| {
         let mut renderer = watched_with(model, SceneSettings::default());
         let camera = perspective(model, (64, 48));
-        let picture = renderer.render(&camera, &FrameSettings::default(), Outputs::default()).unwrap();
+        let picture = renderer.render(&camera, &FrameSettings::default(), Outputs::ALL).unwrap();
         assert_silent(renderer);
         picture.stats.patches
     };
@@ -332,7 +332,7 @@ fn a_replaced_model_leaves_nothing_behind() {
 fn a_scene_that_a_volume_trims_has_what_that_needs() {
     let mut model = shapes::beside();
     model.trim_by(&shapes::solids::solid("A", vec![shapes::solids::ball(1.0, 0.0)]).solids[0]).unwrap();
-    let (renderer, objects) = objects(&model, Outputs::default());
+    let (renderer, objects) = objects(&model, Outputs::ALL);
     let of_volume = |o: &&String| o.contains("volume");
     let buffers =
         ["volume leaves", "volume sides", "volume surfaces", "volume surface places", "mesh (within a volume)"];

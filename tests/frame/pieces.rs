@@ -3,7 +3,7 @@
 
 use crate::living::{SIZE, assert_all_identical, camera, draw, scene, step, ways};
 use crate::shapes::{self, solids};
-use crate::support::{assert_silent, watched, watched_with};
+use crate::support::{assert_silent, watched, watched_for, watched_with};
 use crate::watched::limited;
 use glam::{DAffine3, DVec3};
 use selvedge::gpu::LowerLimits;
@@ -82,6 +82,28 @@ fn a_watch_ends_a_picture_between_two_steps() {
         assert_all_identical(&draw(&mut renderer, &camera), &expected, "the next picture");
         assert_silent(renderer);
     }
+}
+
+/// An upload for the images of the next pictures prepares nothing for the first of them: the watch is called only between
+/// frames. Without `expect` it is also called between two faces that the picture prepares anew.
+#[test]
+fn expected_images_are_made_with_the_upload() {
+    let model = shapes::cube();
+    let camera = camera(&model);
+    let numbers = Outputs { edge: true, part: true, instance: true, ..Outputs::ALL };
+    let [anew, once] = [Outputs::ALL, numbers].map(|expected| {
+        let mut renderer = watched_for(expected, &model, SceneSettings::default());
+        let calls = Arc::new(AtomicUsize::new(0));
+        let counted = Arc::clone(&calls);
+        renderer.set_watch(Some(Arc::new(move || {
+            counted.fetch_add(1, Ordering::Relaxed);
+        })));
+        let picture = draw(&mut renderer, &camera);
+        assert_silent(renderer);
+        (calls.load(Ordering::Relaxed) - picture.stats.retries as usize, picture)
+    });
+    assert!(anew.0 > 0 && once.0 == 0, "{} and {} calls between faces", anew.0, once.0);
+    assert_all_identical(&once.1, &anew.1, "made once");
 }
 
 /// The same of a sequence, with frames in flight. What further flights had is freed, and the pixel to be read back

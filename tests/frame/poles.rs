@@ -39,7 +39,7 @@ fn towards(azimuth: f64, elevation: f64) -> DVec3 {
 /// Of pixels that rays see in part: place, opacity less the rays' share.
 fn errors(renderer: &mut HeadlessRenderer, camera: &Camera, truth: &[f64]) -> Vec<((usize, usize), f64)> {
     let clear = FrameSettings { background: Some([0.0; 4]), ..FrameSettings::default() };
-    let picture = renderer.render(camera, &clear, Outputs::default()).unwrap();
+    let picture = renderer.render(camera, &clear, Outputs::ALL).unwrap();
     let width = camera.size.0 as usize;
     let partly = (0..truth.len()).filter(|&i| truth[i] > 0.0 && truth[i] < 1.0);
     partly.map(|i| ((i % width, i / width), f64::from(picture.colour[i][3]) / 255.0 - truth[i])).collect()

@@ -4,7 +4,7 @@ use crate::hidden::crowd;
 use crate::hidden_parts::{before_the_block, behind_the_hall, hall};
 use crate::room::plates;
 use crate::shapes;
-use crate::support::{assert_identical, assert_silent, perspective, watched, watched_with};
+use crate::support::{assert_identical, assert_silent, perspective, watched, watched_for, watched_with};
 use crate::watched::limited;
 use glam::{DAffine3, DVec3};
 use selvedge::gpu::LowerLimits;
@@ -48,7 +48,7 @@ fn assert_same(in_flight: &Picture, alone: &Picture, what: &str) {
 /// Draws a sequence, and the same pictures one by one with another renderer; then one more picture with both.
 fn check(model: &Model, settings: SceneSettings, cameras: &[Camera], outputs: Outputs) -> Vec<Picture> {
     let frame = FrameSettings::default();
-    let (mut in_flight, mut one_by_one) = (watched_with(model, settings), watched_with(model, settings));
+    let [mut in_flight, mut one_by_one] = [(); 2].map(|()| watched_for(outputs, model, settings));
     let pictures = sequence(&mut in_flight, cameras, frame, outputs);
     assert_eq!(pictures.len(), cameras.len());
     for (nth, (camera, picture)) in cameras.iter().zip(&pictures).enumerate() {

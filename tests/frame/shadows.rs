@@ -470,7 +470,7 @@ fn a_sun_has_a_direction() {
     let camera = perspective(&m, SIZE);
     let mut renderer = watched_with(&m, sunny(SUN));
     let settings = FrameSettings::default();
-    let before = renderer.render(&camera, &settings, Outputs::default()).unwrap();
+    let before = renderer.render(&camera, &settings, Outputs::ALL).unwrap();
     for bad in [DVec3::ZERO, DVec3::NAN, DVec3::new(f64::INFINITY, 0.0, 0.0)] {
         let refused = renderer.upload_with(&m, sunny(bad));
         assert!(matches!(refused, Err(HeadlessError::Render(RenderError::Sun(_)))), "{bad}: {refused:?}");
@@ -478,7 +478,7 @@ fn a_sun_has_a_direction() {
     // so small or large that its square is not finite
     for scale in [1e-200, 1e200] {
         renderer.upload_with(&m, sunny(SUN * scale)).unwrap();
-        let after = renderer.render(&camera, &settings, Outputs::default()).unwrap();
+        let after = renderer.render(&camera, &settings, Outputs::ALL).unwrap();
         assert!(after.colour == before.colour, "a direction of length {scale}");
     }
     assert_silent(renderer);

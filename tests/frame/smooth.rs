@@ -7,7 +7,7 @@
 
 use crate::edges::{blocks, contrast_errors, coverage_errors, covered, root_mean_square};
 use crate::shapes::{self, solids};
-use crate::support::{assert_identical, assert_silent, perspective, watched_with};
+use crate::support::{assert_identical, assert_silent, perspective, watched_for};
 use glam::{DVec2, DVec3};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Model};
@@ -69,8 +69,8 @@ fn area(normal: DVec2, offset: f64) -> f64 {
     if offset < 0.0 { cut } else { 1.0 - cut }
 }
 
-fn renderer(model: &Model, samples: Samples) -> HeadlessRenderer {
-    watched_with(model, with(samples))
+fn renderer(model: &Model, samples: Samples, outputs: Outputs) -> HeadlessRenderer {
+    watched_for(outputs, model, with(samples))
 }
 
 fn with(samples: Samples) -> SceneSettings {
@@ -92,7 +92,7 @@ fn coverage_is_as_right_as_so_many_samples_can_be() {
     let truth = covered(&tracer, &camera);
     assert!(truth.iter().filter(|t| **t == 1.0).count() > 100);
     let errors = ALL.map(|samples| {
-        let mut renderer = renderer(&model, samples);
+        let mut renderer = renderer(&model, samples, Outputs::default());
         let picture = draw(&mut renderer, &camera, Outputs::default());
         assert_silent(renderer);
         let edges = coverage_errors(&picture, &truth);
@@ -113,8 +113,8 @@ fn as_the_frame_sixteen_times_as_large() {
     let models = [shapes::cube(), shapes::cylinder(), shapes::beside(), ball];
     for model in models {
         let camera = perspective(&model, SIZE);
-        let mut renderer = renderer(&model, Samples::One);
-        let blocks = blocks(&mut renderer, &camera);
+        let mut renderer = renderer(&model, Samples::One, Outputs::default());
+        let blocks = blocks(&mut renderer, &camera, Outputs::default());
         for samples in ALL {
             renderer.upload_with(&model, with(samples)).unwrap();
             let picture = draw(&mut renderer, &camera, Outputs::default());
@@ -134,7 +134,7 @@ fn other_images_are_the_centres() {
     let model = shapes::beside();
     let camera = perspective(&model, SIZE);
     let pictures = ALL.map(|samples| {
-        let mut renderer = renderer(&model, samples);
+        let mut renderer = renderer(&model, samples, Outputs::ALL);
         let picture = draw(&mut renderer, &camera, Outputs::ALL);
         let of_samples = renderer.objects().iter().filter(|name| name.contains("sample") || *name == "average").count();
         assert_eq!(of_samples > 0, samples != Samples::One, "{:?}", renderer.objects());

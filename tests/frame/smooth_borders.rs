@@ -6,11 +6,11 @@
 
 use crate::edges::{blocks, contrast_errors, coverage_errors, covered, root_mean_square};
 use crate::shapes;
-use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, render_next, watched_with};
+use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, render_next, watched_for};
 use crate::watched::{limited, renderer};
 use glam::DVec3;
 use selvedge::gpu::LowerLimits;
-use selvedge::model::Model;
+use selvedge::model::{Camera, Model, Projection};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, TrimWay};
 use selvedge_check::Tracer;
 
@@ -46,6 +46,13 @@ fn outlines_cover_what_exact_rays_say() {
     assert_silent(renderer);
 }
 
+/// The middle of the parallel view: half as wide and high, and as many pixels to a length.
+fn middle(model: &Model) -> Camera {
+    let height = 0.5 * model.control_bounds().diagonal();
+    let projection = Projection::Orthographic { height };
+    Camera { projection, ..perspective(model, (SIZE.0 / 2, SIZE.1 / 2)) }
+}
+
 /// Faces that meet, hide each other and themselves.
 #[test]
 fn borders_are_as_the_frame_sixteen_times_as_large() {
@@ -70,14 +77,14 @@ fn borders_are_as_the_frame_sixteen_times_as_large() {
     ];
     let mut renderer = renderer();
     for (model, bound) in models {
-        // the large picture is what this test costs: faces and a solid are drawn in both projections, meshes in one
-        let both = [perspective(&model, SIZE), orthographic(&model, SIZE)];
-        let views = if model.parts.iter().any(|part| !part.meshes.is_empty()) { &both[..1] } else { &both[..] };
-        for camera in views {
+        // the large picture is what this test costs: the parallel view of meshes is a quarter as large
+        let has_meshes = model.parts.iter().any(|part| !part.meshes.is_empty());
+        let parallel = if has_meshes { middle(&model) } else { orthographic(&model, SIZE) };
+        for camera in [perspective(&model, SIZE), parallel] {
             renderer.upload_with(&model, settings(Smooth::None, TrimWay::Auto)).unwrap();
-            let blocks = blocks(&mut renderer, camera);
-            let rough = contrast_errors(&render(&mut renderer, camera), &blocks);
-            let smooth = render_next(&mut renderer, &model, settings(Smooth::Borders, TrimWay::Auto), camera);
+            let blocks = blocks(&mut renderer, &camera, Outputs::ALL);
+            let rough = contrast_errors(&render(&mut renderer, &camera), &blocks);
+            let smooth = render_next(&mut renderer, &model, settings(Smooth::Borders, TrimWay::Auto), &camera);
             let smooth = contrast_errors(&smooth, &blocks);
             let pixels = rough.len();
             let (rough, smooth) = (root_mean_square(&rough), root_mean_square(&smooth));
@@ -132,7 +139,7 @@ fn nothing_else_changes() {
 #[test]
 fn only_smooth_borders_have_what_they_need() {
     let of_borders = |model: &Model, settings: SceneSettings| {
-        let mut renderer = watched_with(model, settings);
+        let mut renderer = watched_for(Outputs::default(), model, settings);
         renderer.render(&perspective(model, SIZE), &FrameSettings::default(), Outputs::default()).unwrap();
         let objects = renderer.objects();
         assert_silent(renderer);
@@ -177,13 +184,14 @@ fn bands_make_the_same_picture() {
     let solid = shapes::solids::holes(2);
     let mesh = shapes::whole_mesh("torus", shapes::torus_mesh(24));
     let mut unlimited = renderer();
-    // bytes that hold 40 rows, of which a band takes 32
-    for (model, bytes) in [
-        (shapes::plate(), 12 * 500 * 40),
-        (shapes::torus(), 12 * 500 * 40),
-        (shapes::beside(), 128 * 500 * 40),
-        (mesh, 128 * 500 * 40),
-        (solid, 128 * 500 * 40),
+    // bytes that hold 40 rows, of which a band takes 32; and how many pixels are mixed at least: the spline torus has
+    // outlines alone
+    for (model, bytes, least) in [
+        (shapes::plate(), 12 * 500 * 40, 200),
+        (shapes::torus(), 12 * 500 * 40, 100),
+        (shapes::beside(), 128 * 500 * 40, 200),
+        (mesh, 128 * 500 * 40, 200),
+        (solid, 128 * 500 * 40, 200),
     ] {
         let camera = perspective(&model, size);
         let smooth = settings(Smooth::Borders, TrimWay::Exact);
@@ -197,7 +205,7 @@ fn bands_make_the_same_picture() {
         assert_identical(&whole, &banded, &model.name);
         let rough = render_next(&mut unlimited, &model, settings(Smooth::None, TrimWay::Exact), &camera);
         let mixed = whole.colour.iter().zip(&rough.colour).filter(|(a, b)| a != b).count();
-        assert!(mixed > 100, "{}: {mixed} pixels are mixed", model.name);
+        assert!(mixed > least, "{}: {mixed} pixels are mixed", model.name);
     }
     assert_silent(unlimited);
 }

@@ -7,7 +7,7 @@
 use crate::edges::{blocks, contrast_errors, coverage_errors, covered, linear, root_mean_square};
 use crate::shapes;
 use crate::support::{
-    assert_identical, assert_silent, orthographic, perspective, plain, render, render_next, render_with, watched_with,
+    assert_identical, assert_silent, orthographic, perspective, plain, render, render_next, render_with, watched_for,
 };
 use crate::watched::renderer;
 use glam::{DVec2, DVec3};
@@ -83,7 +83,7 @@ fn solids_are_as_the_frame_sixteen_times_as_large() {
     for (model, bound) in [(cube, 0.1), (shapes::cylinder(), 0.8), (shapes::beside(), 0.95)] {
         for camera in [perspective(&model, SIZE), orthographic(&model, SIZE)] {
             renderer.upload_with(&model, PLAIN).unwrap();
-            let blocks = blocks(&mut renderer, &camera);
+            let blocks = blocks(&mut renderer, &camera, Outputs::ALL);
             let rough = contrast_errors(&render(&mut renderer, &camera), &blocks);
             let smooth = contrast_errors(&render_next(&mut renderer, &model, SMOOTH, &camera), &blocks);
             let worse = rough.iter().zip(&smooth).fold(0.0f64, |a, (r, s)| a.max(s - r));
@@ -166,7 +166,7 @@ fn only_smooth_trims_have_what_they_need() {
     for (model, settings, has) in
         [(shapes::plate(), SMOOTH, true), (shapes::plate(), PLAIN, false), (shapes::wave(), SMOOTH, false)]
     {
-        let mut renderer = watched_with(&model, settings);
+        let mut renderer = watched_for(Outputs::default(), &model, settings);
         renderer.render(&camera(&model), &FrameSettings::default(), Outputs::default()).unwrap();
         let objects = renderer.objects();
         let of_coverage: Vec<_> =
@@ -183,7 +183,7 @@ fn a_loop_that_is_edited_is_smooth_at_once() {
     let edited = holes(&[(DVec2::new(-0.6, 0.3), 1.2)]);
     let camera = perspective(&model, SIZE);
     let settings = SceneSettings { editable: true, ..SMOOTH };
-    let mut renderer = watched_with(&model, settings);
+    let mut renderer = watched_for(Outputs::default(), &model, settings);
     renderer.render(&camera, &FrameSettings::default(), Outputs::default()).unwrap();
     let at = LoopAt { part: 0, face: 0, trim_loop: 1 };
     renderer.edit_loop(at, &edited.parts[0].faces[0].loops[1]).unwrap();

@@ -19,6 +19,14 @@ pub fn watched_with(model: &Model, settings: SceneSettings) -> HeadlessRenderer 
     renderer
 }
 
+/// As [`watched_with`], for pictures with other images.
+pub fn watched_for(outputs: Outputs, model: &Model, settings: SceneSettings) -> HeadlessRenderer {
+    let mut renderer = renderer();
+    renderer.expect(outputs);
+    renderer.upload_with(model, settings).unwrap();
+    renderer
+}
+
 /// Settings of a scene without effects, with this way to trim.
 pub const fn plain(trim: TrimWay) -> SceneSettings {
     SceneSettings {

@@ -3,6 +3,7 @@
 use selvedge::gpu::LowerLimits;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::Model;
+use selvedge::picture::Outputs;
 use std::path::Path;
 
 /// A sample of the repository. The test fails if the file is missing.
@@ -13,7 +14,7 @@ pub fn sample(name: &str) -> Model {
     selvedge_io::import::open(&Path::new(&root).join("samples").join(name)).unwrap().model
 }
 
-/// A renderer without a model, under validation and synchronisation validation.
+/// A renderer without a model, under validation and synchronisation validation, for pictures with all images of points.
 pub fn renderer() -> HeadlessRenderer {
     limited(LowerLimits::NONE)
 }
@@ -21,7 +22,10 @@ pub fn renderer() -> HeadlessRenderer {
 /// The same on a device with lower limits.
 pub fn limited(lower: LowerLimits) -> HeadlessRenderer {
     let options = HeadlessOptions { validation: true, ..Default::default() };
-    HeadlessRenderer::limited(&options, lower).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"))
+    let renderer = HeadlessRenderer::limited(&options, lower);
+    let mut renderer = renderer.unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"));
+    renderer.expect(Outputs::ALL);
+    renderer
 }
 
 /// Ends the renderer; any message of the layers fails the test.

@@ -265,6 +265,9 @@ pub struct CheckArgs {
     /// lines farther than that from every visible edge
     #[arg(long)]
     pub edges: bool,
+    /// Draw and judge the outlines of curved faces, too, where they fold away from the eye
+    #[arg(long, requires = "edges")]
+    pub silhouettes: bool,
     /// Write the judgements as JSON
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,

@@ -50,8 +50,10 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     let outputs: Vec<_> = pictures.iter().map(|path| Target::new(path, PNG)).chain(json).collect();
     target::check(&inputs, &outputs)?;
     target::check_read(&import, &outputs)?;
-    let lines = args.edges.then(|| judged_lines(views.iter().map(|view| view.camera.size.1).min().unwrap_or(1)));
-    let mut renderer = ModelRenderer::with_lines(&args.frame, &import, lines)?;
+    let height = views.iter().map(|view| view.camera.size.1).min().unwrap_or(1);
+    let lines = args.edges.then(|| judged_lines(height, args.silhouettes));
+    let images = Outputs { edge: args.edges, ..Outputs::ALL };
+    let mut renderer = ModelRenderer::with_lines(&args.frame, &import, lines, images)?;
     let tracer = during("preparing the exact model", || Tracer::new(&import.model));
     let sun =
         model_renderer::sun(&args.frame, &import).map(|towards| SunTracer::new(&import.model, towards)).transpose()?;
@@ -59,7 +61,7 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     let mut verdicts = Vec::new();
     for (index, View { name, camera }) in views.iter().enumerate() {
         let times = args.zoom.get(index).copied().unwrap_or(1.0);
-        let picture = renderer.render(camera, Outputs { edge: args.edges, ..Outputs::ALL })?;
+        let picture = renderer.render(camera, images)?;
         let judgement = verdict::of(&tracer, camera, &picture, args.samples, tolerance_px, times, name);
         if let Some(path) = pictures.get(index) {
             output::png(path, picture.size, &judgement.paint())?;
@@ -102,14 +104,14 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     Ok(if complained || verdicts.iter().any(|v| !v.kept) { Outcome::Broken } else { Outcome::Good })
 }
 
-/// Lines along all edges, as wide in a picture of `height` pixels as they are at 1080: thinner ones cover too little of
-/// a pixel to be judged.
-fn judged_lines(height: u32) -> EdgeSettings {
+/// Lines along all edges, and outlines where they are wanted, as wide in a picture of `height` pixels as they are at
+/// 1080: thinner ones cover too little of a pixel to be judged.
+fn judged_lines(height: u32, silhouettes: bool) -> EdgeSettings {
     let usual = EdgeSettings::default();
     let larger = (EdgeSettings::HEIGHT / f64::from(height)).max(1.0);
     let [width, section_width] =
         [usual.width, usual.section_width].map(|width| (width * larger).min(EdgeSettings::MOST_WIDTH));
-    EdgeSettings { tangent: TangentEdges::Full, width, section_width, ..usual }
+    EdgeSettings { tangent: TangentEdges::Full, silhouettes, width, section_width, ..usual }
 }
 
 fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {

@@ -72,6 +72,9 @@ impl FromStr for Plane {
     }
 }
 
+/// Why a model that nothing cuts has no picture.
+pub const NO_BOX: &str = "no box holds its solids: they are unbounded, or empty";
+
 impl CutArgs {
     /// The files that are read: the model's, and the one that trims it.
     pub fn inputs<'p>(&'p self, model: &'p Path) -> Vec<&'p Path> {
@@ -99,6 +102,9 @@ impl CutArgs {
             *model = model.section(plane.normal, plane.offset)?;
         }
         if model.control_bounds().is_empty() {
+            if self.trim_by.is_none() && self.section.is_empty() && !model.solids.is_empty() {
+                bail!("{NO_BOX}");
+            }
             bail!("what cuts the model open leaves nothing of it");
         }
         Ok(())

@@ -72,10 +72,17 @@ pub fn device(args: &FrameArgs, most_memory: Option<u64>) -> Result<HeadlessRend
 }
 
 impl ModelRenderer {
-    /// Opens the device and uploads the model, with lines along edges if `lines` is set.
-    pub fn with_lines(args: &FrameArgs, import: &Import, lines: Option<EdgeSettings>) -> Result<Self> {
+    /// Opens the device and uploads the model for pictures with these images, with lines along edges if `lines` is set.
+    pub fn with_lines(
+        args: &FrameArgs,
+        import: &Import,
+        lines: Option<EdgeSettings>,
+        outputs: Outputs,
+    ) -> Result<Self> {
         let scene = SceneSettings { edges: lines, ..SceneSettings::default() };
-        Self::with(opened(args, None)?, args, import, scene, (Arc::new(import.model.clone()), &unlimited()))
+        let mut on = opened(args, None)?;
+        on.expect(outputs);
+        Self::with(on, args, import, scene, (Arc::new(import.model.clone()), &unlimited()))
     }
 
     /// The same with smooth edges, on a device that is open.

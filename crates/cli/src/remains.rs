@@ -3,6 +3,7 @@
 //! The exact tracer follows rays through a picture of the whole model, coarse to fine, until one meets a surface. A model
 //! with a surface costs a few rays, an empty one a picture of [`SIZE`].
 
+use crate::cut::NO_BOX;
 use crate::{camera, reading};
 use anyhow::{Result, bail};
 use glam::DVec2;
@@ -20,6 +21,9 @@ const STRIDES: [usize; 3] = [32, 8, 1];
 pub fn judge(path: &Path, model: &Model) -> Result<()> {
     if is_certain(model) || any(model) {
         return Ok(());
+    }
+    if camera::bounds(model).is_empty() {
+        bail!("{}: nothing of it can be drawn: {NO_BOX}", reading::named(path));
     }
     let (width, height) = SIZE;
     bail!(

@@ -91,12 +91,14 @@ fn pictures(
     let begun = Instant::now();
     let look = &args.look;
     let looks = (&args.edges, look, args.lines.settings(look.style)?);
-    let mut renderer = ModelRenderer::of_one(device()?, &args.frame, &import, (&model, &preparing), looks)?;
+    let images = task.shots.first().map_or(Outputs::default(), |shot| wanted(&shot.aovs));
+    let mut device = device()?;
+    device.expect(images);
+    let mut renderer = ModelRenderer::of_one(device, &args.frame, &import, (&model, &preparing), looks)?;
     let upload_s = begun.elapsed().as_secs_f64();
     let backdrop = look.backdrop(&import);
     let range = if look.style.is_curvature() { look.range(&model) } else { 1.0 };
     renderer.look(backdrop.colour(), look.style, range);
-    let images = task.shots.first().map_or(Outputs::default(), |shot| wanted(&shot.aovs));
     let cameras = &cameras;
     let mut pictures = Pictures { args, task, cameras, backdrop, range, sheet, upload_s, all: Vec::new(), record };
     let mut next = 0;

@@ -57,8 +57,8 @@ pub fn of_lines(
     picture: &Picture,
     drawn: &EdgeSettings,
 ) -> Result<LineJudgement> {
-    // lines along silhouettes are not drawn
-    let settings = DrawingSettings { silhouettes: false, hidden: drawn.hidden, ..DrawingSettings::default() };
+    let (silhouettes, hidden) = (drawn.silhouettes, drawn.hidden);
+    let settings = DrawingSettings { silhouettes, hidden, ..DrawingSettings::default() };
     let [width, section_width] =
         [drawn.width, drawn.section_width].map(|width| width * f64::from(camera.size.1) / EdgeSettings::HEIGHT);
     let image = LineImage { lines: &picture.edge, width, section_width };

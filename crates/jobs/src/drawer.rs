@@ -170,6 +170,7 @@ impl Drawer {
             stop.check();
             step.check();
         };
+        self.renderer.expect(job.outputs);
         self.renderer.upload_shared(Arc::clone(&job.model), scene, &between_faces)?;
         let seconds = begun.elapsed().as_secs_f64();
         self.loaded = Some(Uploaded { model: Arc::clone(&job.model), scene, seconds });

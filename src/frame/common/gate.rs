@@ -5,6 +5,7 @@
 //! ```
 //!
 //! Reads: `counters`. Writes: `counters`. Twin: `src/twin/gate.rs`.
+//! Parity: exact.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};

@@ -9,6 +9,7 @@
 //!
 //! Reads: `frame`. Writes: `draws`, `counters`.
 //! Twin: `src/twin/reset.rs`.
+//! Parity: exact.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};

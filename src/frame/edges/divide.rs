@@ -8,6 +8,7 @@
 //! the threads. Chords are within a tenth of a pixel of the curve, in the picture and around it by half a line's width.
 //!
 //! Reads: everything that `Bindings` names. Writes: `counts`, `chords`, `draw`, `counters`. Twin: `src/twin/edges.rs`.
+//! Parity: exact.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Resource, TexelBuffer};

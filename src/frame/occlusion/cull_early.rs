@@ -2,6 +2,7 @@
 //! [`cull_late`](super::cull_late) finds that they may be visible now.
 //!
 //! Reads: `frame`, `hidden`. Writes: `taus`, `counters`. Twin: `src/twin/occlusion.rs`.
+//! Parity: exact.
 
 use crate::frame::common::kernel::{Kernel, Threads};
 use crate::gpu::{Buffer, Commands, Device, GpuError};

@@ -1,6 +1,7 @@
 //! Pass `cull_parts`: finds the placed parts that are hidden as a whole behind the surfaces drawn so far.
 //!
 //! Reads: `frame`, `parts_in_sight`, `farthest`. Writes: `hidden_now`. Twin: `src/twin/parts.rs`.
+//! Parity: exact.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};

@@ -2,6 +2,7 @@
 //! tiles.
 //!
 //! Reads: `frame`, the depth image. Writes: `depth_pyramid`. Twin: `src/twin/occlusion.rs`.
+//! Parity: exact.
 
 use crate::abi::{BLOCK, TILE};
 use crate::frame::common::kernel::Kernel;

@@ -8,6 +8,7 @@
 //!
 //! Reads: `parts_in_sight`, `hidden_now`; `hidden_before`, for the second and third list. Writes: `counts`, `counters`;
 //! `hidden_before`, for the first list. Twin: `src/twin/parts.rs`.
+//! Parity: exact.
 
 use crate::abi::PartList;
 use crate::frame::common::kernel::Kernel;

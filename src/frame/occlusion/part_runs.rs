@@ -8,6 +8,7 @@
 //!
 //! Reads: `parts_in_sight`, `counts`, `starts`. Writes: `frame`, `runs`, `dispatches`, `counters`.
 //! Twin: `src/twin/parts.rs`.
+//! Parity: exact.
 
 use crate::abi::PartList;
 use crate::frame::common::kernel::Kernel;

@@ -1,6 +1,7 @@
 //! Pass `seen_squares`: the squares of tiles that show a patch or a mesh.
 //!
 //! Reads: `frame`, the visibility images. Writes: `seen_squares`. Twin: `src/twin/squares.rs`.
+//! Parity: exact.
 
 use crate::abi::{BLOCK, TILE};
 use crate::frame::common::kernel::Kernel;

@@ -6,6 +6,7 @@
 //!
 //! Reads: everything that `Bindings` names except its outputs. Writes: `counts`, `fragments`, `counters`.
 //! Twin: `src/twin/operand_sort.rs`.
+//! Parity: exact.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};

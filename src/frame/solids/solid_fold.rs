@@ -2,6 +2,7 @@
 //!
 //! Reads: `frame`, `leaves`, `tile_starts`. Writes: exits of `tile_leaves`, `tile_entries`, and the counter `clamps`:
 //! tiles whose loops a driver ended. Twin: `src/twin/solid_fold.rs`.
+//! Parity: exact.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};

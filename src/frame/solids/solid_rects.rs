@@ -1,6 +1,7 @@
 //! Pass `solid_rects`: the tiles that the box around each leaf may cover.
 //!
 //! Reads: `frame`, `leaves`, `centres`. Writes: `rects`. Twin: `src/twin/solid_rects.rs`.
+//! Parity: exact.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};

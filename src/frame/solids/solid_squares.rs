@@ -1,6 +1,7 @@
 //! Pass `solid_squares`: the squares of tiles that may show Boolean solids.
 //!
 //! Reads: `frame`, `tile_entries`. Writes: `tile_squares`. Twin: `src/twin/squares.rs`.
+//! Parity: exact.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};

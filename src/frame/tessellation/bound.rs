@@ -12,6 +12,7 @@
 //! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `patch_instances`, `cones`, `points`.
 //! Writes: `taus`, `counters`.
 //! Twin: `src/twin/bound.rs`.
+//! Parity: exact; on a GPU with other quotients and roots a factor may differ by one.
 
 use crate::bindings::Bounded;
 use crate::frame::common::kernel::{Kernel, Threads};

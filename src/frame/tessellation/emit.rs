@@ -8,6 +8,7 @@
 //! Reads: `frame`, `factors`, `sub_patch_starts`, `vertex_starts`, `runs`.
 //! Writes: `sub_patches`, `draws`, `counters`.
 //! Twin: `src/twin/emit.rs`.
+//! Parity: exact.
 
 use crate::frame::common::kernel::{Kernel, Threads};
 use crate::gpu::{Buffer, Commands, Device, GpuError};

@@ -13,6 +13,7 @@
 //! Reads: `frame`, `face_instances`, `faces`, `patches`, `patch_instances`, `taus`, `runs`, `links`.
 //! Writes: `factors`, `sub_patch_counts`, `vertex_counts`.
 //! Twin: `src/twin/split.rs`.
+//! Parity: exact.
 
 use crate::frame::common::kernel::{Kernel, Threads};
 use crate::gpu::{Buffer, Commands, Device, GpuError};

@@ -10,6 +10,7 @@
 //! `segment_starts`, `row_starts`, `dispatches`. Writes: `row_counts` (zero before
 //! counting and again after inserting),
 //! `intercepts`, `border_cells` and `row_windings` (zero before counting). Twin: `src/twin/cross.rs`.
+//! Parity: exact, rows as sets; on a GPU with other quotients within the bound in the twin's header.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, TexelBuffer};

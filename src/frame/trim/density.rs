@@ -8,6 +8,8 @@
 //! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `cells`, `cell_instances`. Writes: `strip_heights`,
 //! `face_speeds`, `seen_bins`. `frame` and `views` are those of the view for which the table is made: this view, or a
 //! wider one that serves all views of its cell (`src/scene/view_cell.rs`). Twin: `src/twin/density.rs`.
+//! Parity: exact; on a GPU with other quotients and roots within 24 units in the last place, three for each of eight
+//! operations.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};

@@ -3,6 +3,7 @@
 //!
 //! Reads: `frame`, `strip_starts`, `segment_starts`. Writes: `dispatches`, `strips`, `counters`.
 //! Twin: `src/twin/dispatch_arguments.rs`.
+//! Parity: exact.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};

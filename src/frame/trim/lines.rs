@@ -2,6 +2,7 @@
 //!
 //! Reads: `frame`, `strip_heights`. Writes: `strip_counts`, `counters`.
 //! Twin: `src/twin/lines.rs`.
+//! Parity: exact; on a GPU with other quotients and roots a count may differ by one.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};

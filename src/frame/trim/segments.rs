@@ -7,6 +7,7 @@
 //!
 //! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_instances`, `strip_starts`, `face_speeds`. Writes:
 //! `segment_counts`. Twin: `src/twin/segments.rs`.
+//! Parity: exact; on a GPU with other quotients and roots a count may differ by one.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, TexelBuffer};

@@ -8,6 +8,7 @@
 //! Reads: `frame`, `row_starts`, `row_total`, `row_windings`, `dispatches`. Writes: `rows` (for each row its first
 //! flip, and its number of flips twice, plus 1 if it starts inside), `intercepts`, `counters`. Twin:
 //! `src/twin/sort.rs`.
+//! Parity: exact.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, TexelBuffer};

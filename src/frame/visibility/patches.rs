@@ -55,7 +55,7 @@ pub(crate) struct Kinds<'a> {
 }
 
 impl Kinds<'_> {
-    /// The pipeline of trimmed patches, or of plain ones; `corners`: of those that are drawn by their corners.
+    /// The pipeline of trimmed patches, or of plain ones. With `corners`, it draws plain patches by their corners.
     fn pipeline(self, device: &Device, trimmed: Option<&TrimTest>, corners: bool) -> Result<Pipeline, GpuError> {
         let within = self.volume.is_some();
         let (fragment, kind) = match trimmed {

@@ -152,6 +152,25 @@ fn lines_along_edges_are_judged() {
     assert_eq!((count("missing"), count("stray"), count("unsure")), (0, 0, 0), "{lines}");
 }
 
+/// With the two outlines of a cylinder there are more points, and their lines are there.
+#[test]
+fn outlines_are_judged_where_that_is_wanted() {
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/../io/src/import/step/tests/good.step");
+    let folder = Folder::new("no.txt", "");
+    let judged = |more: &[&str]| {
+        let json = folder.path("lines.json");
+        let check = ["check", model, "--edges", "--size", "240x180", "--samples", "50", "--json", json.as_str()];
+        let output = selvedge(&[&check[..], more].concat());
+        assert!(output.status.code().is_some_and(|code| code < 2), "{}", text(&output.stderr));
+        let told: serde_json::Value = serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
+        ["visible", "line_pixels", "missing"].map(|what| told[0]["lines"][what].as_u64().unwrap())
+    };
+    let ([seen, pixels, missing], [more_seen, more_pixels, more_missing]) = (judged(&[]), judged(&["--silhouettes"]));
+    assert!(more_seen > seen + 100 && more_pixels > pixels + 100, "{seen}, {more_seen}; {pixels}, {more_pixels}");
+    assert_eq!((missing, more_missing), (0, 0));
+    refused(&["check", model, "--silhouettes"], "--edges");
+}
+
 /// A cube without one of its corners: lines of Boolean solids are judged, too.
 #[test]
 fn lines_of_solids_are_judged() {

@@ -75,9 +75,29 @@ fn wrong_arguments_are_usage_errors() {
     refused(&["bench", "m.step", "--edit", "--section", "1,0,0,0"], "cannot be used with");
     refused(&["sweep", "m.step", "--sizes", "400"], "WIDTHxHEIGHT");
     render(&["--camera", "front", "--fov", "30"], "cannot be used with");
+    render(&["--view", "sideways"], "no view is called `sideways`; wants iso, front, ");
+    render(&["--style", "plaid"], "no style is called `plaid`; there are: shaded, ");
+    render(&["--background", "whitish"], "`whitish` is no colour: ");
+    render(&["--edge-colour", "whitish"], "`whitish` is no colour: ");
+    render(&["--edges", "some"], "no choice of edges is called `some`; there are: all, sharp, none");
+    render(&["--smooth", "some"], "smooth are none, trims or borders, and not `some`");
+    render(&["--ao=-1"], "`-1` is no radius above 0");
     refused(&["bench"], "MODELS");
     refused(&["convert", "m.step"], "OUT.selvedge");
     refused(&["convert", "m.step", "m.xyz"], "m.xyz: what is written here is a .selvedge file");
+}
+
+/// No picture is written then.
+#[test]
+fn lines_without_a_width_are_refused() {
+    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/../io/src/import/step/tests/good.step");
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("a.png");
+    for width in ["--edge-width=-1", "--edge-width=inf", "--section-width=nan"] {
+        let arguments = ["render", source, "-o", picture.to_str().unwrap(), "--edges", "all", width];
+        refused(&arguments, "the width of edge lines must be from 0 to 64 pixels, not ");
+    }
+    assert!(!picture.exists());
 }
 
 #[test]

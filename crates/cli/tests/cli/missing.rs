@@ -64,6 +64,25 @@ fn a_file_without_anything_to_draw_is_refused() {
     draws_nothing(&folder, &empty, "empty.csg: nothing of it can be drawn");
 }
 
+/// The only part stands in another file: its name where it is not found, and two copies of its six faces below the
+/// folder that is searched.
+#[test]
+fn parts_of_other_files_are_named_or_found() {
+    let folder = TempDir::new().unwrap();
+    let model = file(&folder, "a.stp", include_str!("../../../io/src/import/external/tests/assembly.stp"));
+    draws_nothing(&folder, &model, "a.stp: nothing of it can be drawn; other files not read: t8_bolt.stp");
+    let away = folder.path().join("away");
+    fs::create_dir_all(away.join("deep")).unwrap();
+    fs::write(away.join("deep/t8_bolt.stp"), include_str!("../../../io/src/import/external/tests/bolt.stp")).unwrap();
+    // two levels down is not beside the file
+    assert_eq!(selvedge(&["info", &model]).status.code(), Some(2));
+    let found = selvedge(&["info", "--json", "--strict", "--search", away.to_str().unwrap(), &model]);
+    assert_eq!(found.status.code(), Some(0), "{}", text(&found.stderr));
+    let told: serde_json::Value = serde_json::from_slice(&found.stdout).unwrap();
+    assert_eq!(told["faces"], 6, "{told}");
+    assert_eq!(told["face_instances"], 12, "{told}");
+}
+
 #[test]
 fn omissions_are_reported_and_strict_refuses_them() {
     let folder = TempDir::new().unwrap();
@@ -125,6 +144,13 @@ fn pictures_of_nothing_are_no_success() {
     assert_eq!(info.status.code(), Some(2));
     assert!(text(&info.stderr).contains(why), "{}", text(&info.stderr));
     assert_eq!(written.each_ref().map(|path| fs::exists(path).unwrap()), [false; 2]);
+    // all below a plane
+    let open = "selvedge = 1\n[solid.a]\nshape = \"half-space\"\nnormal = [0, 0, 1]\noffset = 1\n";
+    let open = file(&folder, "open.toml", open);
+    let why = "no box holds its solids: they are unbounded, or empty";
+    refused(&["render", &open, "-o", &png], why);
+    let info = selvedge(&["info", &open]);
+    assert!(info.status.code() == Some(2) && text(&info.stderr).contains(why), "{}", text(&info.stderr));
     // a sliver that one ray in thousands meets is something
     let sliver =
         file(&folder, "sliver.csg", "difference() { sphere(r = 1); cube(size = [1.98, 9, 9], center = true); }");

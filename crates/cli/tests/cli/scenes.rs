@@ -103,6 +103,27 @@ fn the_sun_casts_shadows() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
+/// Squares in a row as long as `repeat` allows, seen at its last one; one more is refused.
+#[test]
+fn as_many_copies_as_a_scene_may_have_are_drawn() {
+    let folder = std::env::temp_dir().join(format!("selvedge-copies-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let scene = folder.join("row.toml").to_string_lossy().into_owned();
+    let row = |copies: u32| {
+        let square = "selvedge = 1\n[surface.a]\nshape = \"plane\"\nu = [0, 1]\nv = [0, 1]\n";
+        let text = format!("{square}[[instance]]\nof = \"a\"\nrepeat = {copies}\nstep = {{ at = [3, 0] }}\n");
+        std::fs::write(&scene, text).unwrap();
+    };
+    row(65_536);
+    let view = ["--size", "64x48", "--eye=196605.5,5,50", "--target=196605.5,0.5,0"];
+    let check = selvedge(&[&["check", &scene][..], &view].concat());
+    let told = text(&check.stdout) + &text(&check.stderr);
+    assert!(check.status.code() == Some(0) && told.contains("kept") && !told.contains("no pixel"), "{told}");
+    row(65_537);
+    refused(&["check", &scene], "`repeat`: 65537 is not between 1 and 65536");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
 #[test]
 fn a_scene_goes_through_every_command() {
     let folder = std::env::temp_dir().join(format!("selvedge-scenes-{}", std::process::id()));

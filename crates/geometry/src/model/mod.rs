@@ -211,26 +211,6 @@ impl Model {
         said.map_or(SurfaceTable::ROUNDED, |share| share.clamp(SurfaceTable::FINEST, SurfaceTable::COARSEST))
     }
 
-    /// Box of the placed boxes of all parts' [control points](Part::control_bounds) and of the solids, model
-    /// coordinates. It contains the model, and may be much larger than it: [`Model::bounds`] is tight.
-    pub fn control_bounds(&self) -> Bounds {
-        let parts: Vec<Bounds> = self.parts.iter().map(Part::control_bounds).collect();
-        let placed =
-            |i: &Instance| parts.get(i.part).filter(|bounds| !bounds.is_empty()).map(|bounds| (*bounds, i.transform));
-        self.instances
-            .iter()
-            .filter_map(placed)
-            .flat_map(|(bounds, transform)| bounds.corners().map(|c| transform.transform_point3(c)))
-            .chain(
-                self.solids
-                    .iter()
-                    .map(Solid::bounds)
-                    .filter(|b| b.min.is_finite() && b.max.is_finite())
-                    .flat_map(Bounds::corners),
-            )
-            .fold(Bounds::EMPTY, Bounds::with)
-    }
-
     /// Instances with their parts. Instances of parts that do not exist are left out; [`Model::check`] names them.
     pub fn placed_parts(&self) -> impl Iterator<Item = (&Instance, &Part)> {
         self.instances.iter().filter_map(|instance| Some((instance, self.parts.get(instance.part)?)))

@@ -22,6 +22,7 @@
 //! | strands → loops without seams, oriented | `loops`; `rims`, `cut`; `nest`, `outline` |
 //! | the standard's `(u, v)` → a spline's | `law`, `carrier`, `fit` |
 //! | loops stated in a spline's own `(u, v)` | `given` |
+//! | lost faces that leave no gap | `sliver` |
 //!
 //! Before these steps, `sweep` makes the faces of swept solids, and `similarity` copies curves and surfaces.
 
@@ -50,6 +51,7 @@ mod preimage;
 mod rims;
 mod settle;
 mod similarity;
+mod sliver;
 mod spline;
 mod strand;
 mod support;
@@ -233,31 +235,4 @@ pub struct FaceGeometry {
     /// The neighbours contradict the directions of its loops. On a closed surface, where only directions say which side
     /// of the loops is the face, the smaller side is taken.
     pub ambiguous: bool,
-}
-
-impl FaceGeometry {
-    /// Whether straight edges bound it that lie along one line, within the tolerance and a hundredth of its length. A body
-    /// that lacks such a face has no gap wider than its tolerance.
-    pub fn is_sliver(&self, edges: &[Edge], tolerance: f64) -> bool {
-        let side = |&(index, forward): &(usize, bool)| {
-            let edge = edges.get(index).filter(|e| matches!(e.curve, CurveGeometry::Line { .. }))?;
-            Some(if forward { [edge.start, edge.end] } else { [edge.end, edge.start] })
-        };
-        let is_thin = |bound: &Boundary| {
-            let Boundary::Edges(list) = bound else { return false };
-            let Some(sides) = list.iter().map(side).collect::<Option<Vec<_>>>() else { return false };
-            let farthest = |from: DVec3| {
-                let ends = sides.iter().map(|side| side[0]);
-                ends.max_by(|a, b| a.distance(from).total_cmp(&b.distance(from))).unwrap_or(from)
-            };
-            let Some(first) = sides.first() else { return false };
-            let a = farthest(first[0]);
-            let along = farthest(a) - a;
-            let (tolerance, along) = (tolerance.min(1e-2 * along.length()), along.normalize_or_zero());
-            let is_near = |p: DVec3| (p - a).cross(along).length() <= tolerance;
-            let next = sides.iter().cycle().skip(1);
-            sides.iter().zip(next).all(|(side, next)| side[1].distance(next[0]) <= tolerance && is_near(side[0]))
-        };
-        !self.bounds.is_empty() && self.bounds.iter().all(is_thin)
-    }
 }

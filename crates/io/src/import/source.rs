@@ -23,7 +23,7 @@ pub(super) struct OtherFiles<'a> {
     name: &'a str,
     /// Its folder, if it has one.
     pub folder: Option<&'a Path>,
-    /// Finds those that do not lie there; none of a stream.
+    /// Searches other folders for files that are not in that one; `None` for a stream, which has no folder.
     finder: Option<&'a dyn Files>,
     /// Bytes of one of them, at most.
     most: u64,

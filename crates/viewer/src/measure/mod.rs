@@ -25,10 +25,16 @@ pub struct Measurement {
     pub dimensions: Vec<([DVec3; 2], String)>,
 }
 
+/// A number with its unit and the estimate of its error, where it has one.
+pub fn stated(value: &Value) -> String {
+    let number = format!("{} {}", describe::number(value.value), value.unit);
+    if value.error > 0.0 { format!("{number} ± {:.1e}", value.error) } else { number }
+}
+
 impl Measurement {
     /// As text, a line a number.
     pub fn text(&self) -> String {
-        let values = self.values.iter().map(|v| format!("{}: {} {}", v.what, describe::number(v.value), v.unit));
+        let values = self.values.iter().map(|v| format!("{}: {}", v.what, stated(v)));
         let points = self.points.iter().map(|(what, p)| format!("{what}: {}", describe::vector(*p)));
         std::iter::once(self.title.clone()).chain(values).chain(points).collect::<Vec<_>>().join("\n")
     }
@@ -134,13 +140,22 @@ mod tests {
     fn a_measurement_is_text_and_a_table() {
         let all = Measurement {
             title: "edge \"1\"".to_owned(),
-            values: vec![Value { what: "length", value: 1.0 / 3.0, error: 1e-16, unit: "mm" }],
+            values: vec![
+                Value { what: "length", value: 1.0 / 3.0, error: 1e-16, unit: "mm" },
+                Value { what: "radius", value: 2.5, error: 0.0, unit: "mm" },
+            ],
             points: vec![("centre", DVec3::new(1.0, 2.5, -3.0))],
             dimensions: Vec::new(),
         };
-        assert_eq!(all.text(), "edge \"1\"\nlength: 0.333333333333 mm\ncentre: 1, 2.5, -3");
+        assert_eq!(all.text(), "edge \"1\"\nlength: 0.333333333333 mm ± 1.0e-16\nradius: 2.5 mm\ncentre: 1, 2.5, -3");
         let title = "\"edge \"\"1\"\"\"";
-        let rows = ["length,0.3333333333333333,0.0000000000000001", "centre x,1,0", "centre y,2.5,0", "centre z,-3,0"];
+        let rows = [
+            "length,0.3333333333333333,0.0000000000000001",
+            "radius,2.5,0",
+            "centre x,1,0",
+            "centre y,2.5,0",
+            "centre z,-3,0",
+        ];
         assert_eq!(all.csv(), rows.map(|row| format!("{title},{row},mm\n")).concat());
     }
 }

@@ -261,6 +261,7 @@ mod tests {
     #[test]
     fn a_tap_ends_with_the_middle_button() {
         assert_eq!(Preset::Catia.action(held("MLlmM")), Some(Action::Pan));
+        assert_eq!(Preset::Catia.action(held("MRr")), Some(Action::Zoom), "the right button taps, too");
         assert!(!held("MLlm").any());
     }
 }

@@ -3,7 +3,7 @@
 use super::Ui;
 use crate::commands::Command;
 use crate::describe;
-use crate::measure::{CSV_HEADER, Measurement};
+use crate::measure::{CSV_HEADER, Measurement, stated};
 use crate::pick::PickFilter;
 use crate::session::Session;
 
@@ -86,7 +86,7 @@ fn measured(area: &mut egui::Ui, ui: &mut Ui) {
 }
 
 fn values(list: &mut egui::Ui, ui: &mut Ui, nth: usize, measurement: &Measurement) {
-    let numbers = measurement.values.iter().map(|v| (v.what, format!("{} {}", describe::number(v.value), v.unit)));
+    let numbers = measurement.values.iter().map(|v| (v.what, stated(v)));
     let points = measurement.points.iter().map(|(what, p)| (*what, describe::vector(*p)));
     table(list, ui, nth, &numbers.chain(points).collect());
 }

@@ -1,6 +1,7 @@
 //! Panels without a window: their texts, and the effects of clicks.
 
 mod by_keys;
+mod trust;
 
 use super::*;
 use crate::pick::Hit;
@@ -36,6 +37,12 @@ struct Bench {
     heard: Option<egui::WidgetInfo>,
     /// The time until the panels want another frame.
     delay: std::time::Duration,
+    /// Of the last picture.
+    stats: Option<FrameStats>,
+    /// What the engine says of the model.
+    notice: Option<&'static str>,
+    /// Red dots of the last frame.
+    dots: Vec<egui::Pos2>,
 }
 
 impl Bench {
@@ -61,6 +68,9 @@ impl Bench {
             modifiers: egui::Modifiers::NONE,
             heard: None,
             delay: std::time::Duration::ZERO,
+            stats: None,
+            notice: None,
+            dots: Vec::new(),
         }
     }
 
@@ -70,8 +80,8 @@ impl Bench {
             egui::RawInput { screen_rect: Some(screen), events, modifiers: self.modifiers, ..Default::default() };
         let facts = Facts {
             loading: vec![(Path::new("x/big.step"), "faces", Some(0.5))],
-            stats: None,
-            notice: None,
+            stats: self.stats.as_ref(),
+            notice: self.notice,
             busy: false,
             picture: None,
             view: &self.view,
@@ -85,6 +95,11 @@ impl Bench {
             egui::output::OutputEvent::FocusGained(info) => Some(info.clone()),
             _ => None,
         });
+        let dots = output.shapes.iter().filter_map(|clipped| match &clipped.shape {
+            egui::Shape::Circle(circle) if circle.fill == egui::Color32::RED => Some(circle.center),
+            _ => None,
+        });
+        self.dots = dots.collect();
         texts(&output)
     }
 
@@ -369,6 +384,28 @@ fn a_section_follows_its_handle_and_is_undone_as_one() {
     // perspective: the arrow is nearer at its tip
     assert!((moved - 10.0).abs() < 1.5, "{moved}");
     assert!(bench.session.scene.undo() && bench.session.scene.now().sections[0] == section);
+}
+
+/// The side of the gusset, four millimetres from the middle.
+#[test]
+fn a_dragged_plane_stops_just_below_a_face_unless_ctrl_is_held() {
+    let mut bench = Bench::of("bracket.step");
+    let bounds = bench.session.world.bounds;
+    let (face, below) = (4.0, crate::session::Section::BELOW * bounds.diagonal());
+    let section = crate::session::Section { normal: DVec3::Y, offset: face + 4.0, on: true };
+    bench.session.scene.change(|state| state.sections.push(section));
+    let foot = |offset: f64| DVec3::new(bounds.centre().x, offset, bounds.centre().z);
+    let (from, to) = (bench.place(foot(section.offset)), bench.place(foot(face)));
+    for (modifiers, stops) in [(egui::Modifiers::NONE, true), (egui::Modifiers::COMMAND, false)] {
+        bench.modifiers = modifiers;
+        bench.drag(from, to - from);
+        let offset = bench.session.scene.now().sections[0].offset;
+        // the hand is there but for perspective, which is no tenth of the way
+        assert!((offset - face).abs() < 0.4, "{offset}");
+        // a thousandth of the distance below the face
+        assert_eq!((offset + below - face).abs() < 1e-3 * below, stops, "{offset}");
+        assert!(bench.session.scene.undo() && bench.session.scene.now().sections[0] == section);
+    }
 }
 
 #[test]

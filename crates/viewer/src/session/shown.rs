@@ -63,11 +63,21 @@ impl SceneState {
 
     /// A model with the trim loops that were changed.
     pub fn edit(&self, model: &mut Model) {
+        self.edit_with(model, |_, changed| changed.clone());
+    }
+
+    /// The same for a file. A moved curve is no edge of the source any more: a writer would take it for the edge of the
+    /// face beside it, whatever the distance, and write one curve for both.
+    pub fn edit_for_file(&self, model: &mut Model) {
+        self.edit_with(model, apart);
+    }
+
+    fn edit_with(&self, model: &mut Model, edited: impl Fn(&TrimLoop, &TrimLoop) -> TrimLoop) {
         for (&(part, face, trim_loop), changed) in &self.edits {
             let faces = model.parts.get_mut(part).map(|part| &mut part.faces);
             let loops = faces.and_then(|faces| faces.get_mut(face)).map(|face| &mut face.loops);
             if let Some(found) = loops.and_then(|loops| loops.get_mut(trim_loop)) {
-                found.clone_from(changed);
+                *found = edited(found, changed);
             }
         }
     }
@@ -184,6 +194,16 @@ impl SceneState {
         let centre = placed.transform.transform_point3(bounds.centre());
         DAffine3::from_translation((centre - world.bounds.centre()) * self.explosion)
     }
+}
+
+/// A changed loop without references to the edges of the source of which it moves a curve.
+fn apart(original: &TrimLoop, changed: &TrimLoop) -> TrimLoop {
+    let curves = original.curves().zip(changed.curves()).zip(changed.edges());
+    let moved: BTreeSet<u32> =
+        curves.filter(|((a, b), _)| a != b).filter_map(|(_, edge)| Some((*edge)?.edge)).collect();
+    let edges = changed.edges().iter().map(|edge| edge.filter(|edge| !moved.contains(&edge.edge)));
+    // as many as before
+    changed.clone().with_edges(edges.collect()).unwrap_or_else(|_| changed.clone().without_edges())
 }
 
 #[cfg(test)]
@@ -307,6 +327,11 @@ mod tests {
         state.edits.insert((part, face, 999), after.clone());
         assert_eq!(state.show(&world).model.parts[part].faces[face].loops[0], after);
         assert_eq!(SceneState::default().show(&world).model.parts[part].faces[face].loops[0], before);
+        let mut saved = world.model.clone();
+        state.edit_for_file(&mut saved);
+        let saved = &saved.parts[part].faces[face].loops[0];
+        let named = |trim_loop: &TrimLoop| trim_loop.edges().iter().flatten().count();
+        assert!(saved.curves().eq(after.curves()) && named(saved) < named(&after), "the moved curve names its edge");
     }
 
     #[test]

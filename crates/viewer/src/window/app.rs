@@ -142,7 +142,8 @@ pub struct App {
 }
 
 impl App {
-    pub fn new(mut options: ViewOptions, proxy: EventLoopProxy<Event>) -> Self {
+    /// `begun` is the time of the call of [`run`](super::run).
+    pub fn new(mut options: ViewOptions, proxy: EventLoopProxy<Event>, begun: Instant) -> Self {
         let mut ui = Ui::default();
         let read = options.settings.as_deref().map(Settings::read);
         let settings = match read {
@@ -199,7 +200,7 @@ impl App {
             explosion: 0.0,
             devices: 0,
             measuring: 0,
-            begun: Instant::now(),
+            begun,
         }
     }
 

@@ -4,6 +4,7 @@
 
 use super::ViewError;
 use super::context::Context;
+use super::made::Made;
 use super::targets::{Targets, buffer, free_buffer};
 use crate::pick::Mark;
 use ash::vk;
@@ -49,6 +50,7 @@ pub struct Composite {
 }
 
 impl Composite {
+    /// For a window of this format. If that fails, nothing is left of it.
     pub fn new(context: &Context, format: vk::Format) -> Result<Self, ViewError> {
         let device = &context.device;
         let binding = |i: u32, kind| {
@@ -82,21 +84,25 @@ impl Composite {
             unsafe { device.create_sampler(&create, None) }
         };
         let bytes = (MOST_MARKS * size_of::<Mark>()) as u64;
-        // SAFETY: the device is alive; what is made of what outlives the call.
+        let mut made = Made::default();
+        // SAFETY: the device is alive; what is made of what outlives the call, and is destroyed after it.
         unsafe {
             let set = device.create_descriptor_set_layout(&create, None)?;
+            made.push(device, move |device| device.destroy_descriptor_set_layout(set, None));
             let sets = [set];
             let create = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets).push_constant_ranges(&push);
             let layout = device.create_pipeline_layout(&create, None)?;
-            Ok(Self {
-                set,
-                layout,
-                pipeline: pipeline(device, layout, format)?,
-                samplers: [sampler(vk::Filter::LINEAR)?, sampler(vk::Filter::NEAREST)?],
-                marks: buffer(context, "marks", bytes, vk::BufferUsageFlags::STORAGE_BUFFER, MemoryLocation::CpuToGpu)?,
-                count: 0,
-                hovered: false,
-            })
+            made.push(device, move |device| device.destroy_pipeline_layout(layout, None));
+            let pipeline = pipeline(device, layout, format)?;
+            made.push(device, move |device| device.destroy_pipeline(pipeline, None));
+            let linear = sampler(vk::Filter::LINEAR)?;
+            made.push(device, move |device| device.destroy_sampler(linear, None));
+            let nearest = sampler(vk::Filter::NEAREST)?;
+            made.push(device, move |device| device.destroy_sampler(nearest, None));
+            let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+            let marks = buffer(context, "marks", bytes, usage, MemoryLocation::CpuToGpu)?;
+            made.keep();
+            Ok(Self { set, layout, pipeline, samplers: [linear, nearest], marks, count: 0, hovered: false })
         }
     }
 
@@ -185,13 +191,15 @@ unsafe fn pipeline(
         // SAFETY: valid SPIR-V, as `tools/shaders` checks.
         unsafe { device.create_shader_module(&vk::ShaderModuleCreateInfo::default().code(&words), None) }
     };
-    let modules = [module(VERTEX)?, module(FRAGMENT)?];
-    let kinds = [vk::ShaderStageFlags::VERTEX, vk::ShaderStageFlags::FRAGMENT];
-    let stages: Vec<_> = kinds
-        .into_iter()
-        .zip(modules)
-        .map(|(kind, module)| vk::PipelineShaderStageCreateInfo::default().stage(kind).module(module).name(c"main"))
-        .collect();
+    // destroyed in any case: the pipeline does not need them once it is made
+    let mut modules = Made::default();
+    let mut stages = Vec::new();
+    for (kind, spirv) in [(vk::ShaderStageFlags::VERTEX, VERTEX), (vk::ShaderStageFlags::FRAGMENT, FRAGMENT)] {
+        let module = module(spirv)?;
+        // SAFETY: the device outlives this function, at whose end no call uses the module.
+        modules.push(device, move |device| unsafe { device.destroy_shader_module(module, None) });
+        stages.push(vk::PipelineShaderStageCreateInfo::default().stage(kind).module(module).name(c"main"));
+    }
     let vertex = vk::PipelineVertexInputStateCreateInfo::default();
     let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(vk::PrimitiveTopology::TRIANGLE_LIST);
     let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
@@ -217,7 +225,6 @@ unsafe fn pipeline(
     // SAFETY: layout and modules belong to this device and outlive the call.
     unsafe {
         let made = device.create_graphics_pipelines(vk::PipelineCache::null(), &[create], None);
-        modules.iter().for_each(|module| device.destroy_shader_module(*module, None));
         Ok(made.map_err(|(_, error)| error)?[0])
     }
 }

@@ -4,6 +4,7 @@
 //! flight; the next is recorded when its fence is signalled.
 
 use super::ViewError;
+use super::made::Made;
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use selvedge::ash;
@@ -47,30 +48,6 @@ pub struct DeviceOptions {
     pub device: Option<String>,
     /// The validation layer is on, and its messages are collected.
     pub validation: bool,
-}
-
-/// Destroys what was made so far, the last first, unless all was made.
-#[derive(Default)]
-struct Made(Vec<Box<dyn FnOnce()>>);
-
-impl Made {
-    /// `destroy` gets a copy of `owner`.
-    fn push<T: Clone + 'static>(&mut self, owner: &T, destroy: impl FnOnce(&T) + 'static) {
-        let owner = owner.clone();
-        self.0.push(Box::new(move || destroy(&owner)));
-    }
-
-    fn keep(mut self) {
-        self.0.clear();
-    }
-}
-
-impl Drop for Made {
-    fn drop(&mut self) {
-        while let Some(destroy) = self.0.pop() {
-            destroy();
-        }
-    }
 }
 
 impl Context {
@@ -202,7 +179,8 @@ impl Context {
     pub fn renew_surface(&mut self, window: &Window) -> Result<(), ViewError> {
         // SAFETY: nothing uses the old surface any more; the window is alive.
         unsafe {
-            self.surfaces.destroy_surface(self.surface, None);
+            // where no new one can be made there is none: it is not destroyed twice
+            self.surfaces.destroy_surface(std::mem::take(&mut self.surface), None);
             self.surface = surface(&self.entry, &self.instance, window)?;
         }
         Ok(())

@@ -14,6 +14,7 @@ mod engine;
 mod events;
 mod living;
 mod look;
+mod made;
 mod opening;
 mod photograph;
 mod screen;
@@ -31,6 +32,7 @@ use selvedge::renderer::RenderError;
 use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Instant;
 use winit::event_loop::EventLoop;
 
 /// How to open the window.
@@ -147,6 +149,7 @@ impl ViewError {
 /// # Errors
 /// [`ViewError`] where no window or device can be opened, or the device fails for good.
 pub fn run(options: ViewOptions) -> Result<Closed, ViewError> {
+    let begun = Instant::now();
     let mut builder = EventLoop::with_user_event();
     #[cfg(target_os = "linux")]
     {
@@ -155,7 +158,7 @@ pub fn run(options: ViewOptions) -> Result<Closed, ViewError> {
         EventLoopBuilderExtWayland::with_any_thread(&mut builder, true);
     }
     let events = builder.build()?;
-    let mut app = app::App::new(options, events.create_proxy());
+    let mut app = app::App::new(options, events.create_proxy(), begun);
     events.run_app(&mut app)?;
     app.close()
 }

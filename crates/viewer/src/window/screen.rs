@@ -132,8 +132,15 @@ impl Screen {
                     }
                     return Ok(None);
                 }
-                self.swapchain = Swapchain::new(&self.context, (size.width, size.height), old)?;
-                self.outdated = false;
+                match Swapchain::new(&self.context, (size.width, size.height), old) {
+                    Ok(made) => (self.swapchain, self.outdated) = (made, false),
+                    // the surface may be lost at any of these calls, too
+                    Err(ViewError::Vulkan(error)) => {
+                        self.lost(window, Presented::of(Err(error))?)?;
+                        continue;
+                    }
+                    Err(error) => return Err(error),
+                }
             }
             let Some(swapchain) = &self.swapchain else {
                 self.outdated = true;

@@ -48,8 +48,31 @@ pub fn format(context: &Context) -> Result<vk::SurfaceFormatKHR, ViewError> {
 }
 
 impl Swapchain {
-    /// Images of the window's size; `None` while it has none. The device is idle, and `old` is not used any more.
+    /// Images of the window's size; `None` while it has none. The device is idle. `old` is used no more, and destroyed;
+    /// if a step fails, nothing is left of either.
     pub fn new(context: &Context, size: (u32, u32), old: Option<Self>) -> Result<Option<Self>, ViewError> {
+        let made = Self::in_place_of(context, size, old.as_ref());
+        if let Some(old) = old {
+            old.destroy(context);
+        }
+        let Some((handle, extent, format)) = made? else { return Ok(None) };
+        let size = (extent.width, extent.height);
+        let mut chain = Self { handle, size, images: Vec::new(), drawn: Vec::new() };
+        match chain.fill(context, format) {
+            Ok(()) => Ok(Some(chain)),
+            Err(error) => {
+                chain.destroy(context);
+                Err(error.into())
+            }
+        }
+    }
+
+    /// The handle, the size and the format of a new one; `None` while the window has no size.
+    fn in_place_of(
+        context: &Context,
+        size: (u32, u32),
+        old: Option<&Self>,
+    ) -> Result<Option<(vk::SwapchainKHR, vk::Extent2D, vk::Format)>, ViewError> {
         let (surfaces, physical, surface) = (&context.surfaces, context.physical, context.surface);
         // SAFETY: device and surface are alive; nothing uses the old swapchain.
         unsafe {
@@ -62,9 +85,6 @@ impl Swapchain {
                 extent => extent,
             };
             if extent.width == 0 || extent.height == 0 {
-                if let Some(old) = old {
-                    old.destroy(context);
-                }
                 return Ok(None);
             }
             let format = format(context)?;
@@ -81,14 +101,17 @@ impl Swapchain {
                 .composite_alpha(vk::CompositeAlphaFlagsKHR::OPAQUE)
                 .present_mode(vk::PresentModeKHR::FIFO)
                 .clipped(true)
-                .old_swapchain(old.as_ref().map_or(vk::SwapchainKHR::null(), |old| old.handle));
-            let made = context.swapchains.create_swapchain(&create, None);
-            if let Some(old) = old {
-                old.destroy(context);
-            }
-            let handle = made?;
-            let images = context.swapchains.get_swapchain_images(handle)?;
-            let view = |image| {
+                .old_swapchain(old.map_or(vk::SwapchainKHR::null(), |old| old.handle));
+            let handle = context.swapchains.create_swapchain(&create, None)?;
+            Ok(Some((handle, extent, format.format)))
+        }
+    }
+
+    /// Adds views of its images, and semaphores.
+    fn fill(&mut self, context: &Context, format: vk::Format) -> Result<(), vk::Result> {
+        // SAFETY: device and swapchain are alive.
+        unsafe {
+            for image in context.swapchains.get_swapchain_images(self.handle)? {
                 let range = vk::ImageSubresourceRange::default()
                     .aspect_mask(vk::ImageAspectFlags::COLOR)
                     .level_count(1)
@@ -96,15 +119,13 @@ impl Swapchain {
                 let create = vk::ImageViewCreateInfo::default()
                     .image(image)
                     .view_type(vk::ImageViewType::TYPE_2D)
-                    .format(format.format)
+                    .format(format)
                     .subresource_range(range);
-                context.device.create_image_view(&create, None).map(|view| (image, view))
-            };
-            let images = images.into_iter().map(view).collect::<Result<Vec<_>, _>>()?;
-            let semaphore = |_| context.device.create_semaphore(&vk::SemaphoreCreateInfo::default(), None);
-            let drawn = images.iter().map(semaphore).collect::<Result<Vec<_>, _>>()?;
-            Ok(Some(Self { handle, size: (extent.width, extent.height), images, drawn }))
+                self.images.push((image, context.device.create_image_view(&create, None)?));
+                self.drawn.push(context.device.create_semaphore(&vk::SemaphoreCreateInfo::default(), None)?);
+            }
         }
+        Ok(())
     }
 
     /// Frees it. The device is idle.

@@ -69,7 +69,7 @@ const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
 };
 
 impl Targets {
-    /// Images of this size without contents.
+    /// Images of this size without contents. If one of them fails, none is left.
     pub fn new(context: &Context, size: (u32, u32)) -> Result<Self, ViewError> {
         let mut made = Vec::with_capacity(COUNT);
         for (name, format) in NAMES.into_iter().zip(formats()) {
@@ -285,13 +285,19 @@ fn image(
         let requirements = context.device.get_image_memory_requirements(image);
         let memory = allocate(context, name, requirements, MemoryLocation::GpuOnly)
             .inspect_err(|_| context.device.destroy_image(image, None))?;
-        context.device.bind_image_memory(image, memory.memory(), memory.offset())?;
         let view = vk::ImageViewCreateInfo::default()
             .image(image)
             .view_type(vk::ImageViewType::TYPE_2D)
             .format(format)
             .subresource_range(WHOLE);
-        Ok((image, context.device.create_image_view(&view, None)?, memory))
+        let bound = context.device.bind_image_memory(image, memory.memory(), memory.offset());
+        match bound.and_then(|()| context.device.create_image_view(&view, None)) {
+            Ok(view) => Ok((image, view, memory)),
+            Err(error) => {
+                free(context, (image, vk::ImageView::null(), memory));
+                Err(error.into())
+            }
+        }
     }
 }
 
@@ -311,7 +317,7 @@ fn release(context: &Context, memory: Allocation) {
     }
 }
 
-/// A buffer with memory that the CPU reads or writes.
+/// A buffer with memory that the CPU reads or writes. If a step fails, nothing is left of it.
 pub fn buffer(
     context: &Context,
     name: &str,
@@ -326,8 +332,13 @@ pub fn buffer(
         let requirements = context.device.get_buffer_memory_requirements(buffer);
         let memory = allocate(context, name, requirements, location)
             .inspect_err(|_| context.device.destroy_buffer(buffer, None))?;
-        context.device.bind_buffer_memory(buffer, memory.memory(), memory.offset())?;
-        Ok((buffer, memory))
+        match context.device.bind_buffer_memory(buffer, memory.memory(), memory.offset()) {
+            Ok(()) => Ok((buffer, memory)),
+            Err(error) => {
+                free_buffer(context, (buffer, memory));
+                Err(error.into())
+            }
+        }
     }
 }
 

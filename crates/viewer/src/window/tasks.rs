@@ -93,7 +93,7 @@ impl App {
             return;
         }
         let mut model = self.session.world.model.clone();
-        self.session.scene.now().edit(&mut model);
+        self.session.scene.now().edit_for_file(&mut model);
         let open = self.session.world.files.iter().map(|file| file.path.as_path());
         let told = match save(&path, &model, open) {
             Ok(warnings) if warnings.is_empty() => format!("{} is saved.", path.display()),
@@ -192,6 +192,8 @@ fn write(path: &Path, photograph: &Photograph) -> Result<(), Box<dyn Error>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::session::SceneState;
+    use selvedge::model::{Face, SurfaceKind};
 
     /// A model that someone else wrote, a picture that is none, a folder that is not there.
     #[test]
@@ -216,6 +218,42 @@ mod tests {
         assert!(write(&picture, &Photograph { size: (2, 1), ..photograph }).is_err());
         assert!(fs::read(&picture).unwrap() == old && old.starts_with(b"\x89PNG"));
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 3);
+        fs::remove_dir_all(&folder).unwrap();
+    }
+
+    /// A hole of a plate, and the wall below it, which stays as it was.
+    #[test]
+    fn a_changed_loop_is_saved_in_both_forms() {
+        let read = |path: &Path| selvedge_io::import::open(path).unwrap().model;
+        let original = read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/bracket.step"));
+        let is_plate = |face: &Face| face.kind == SurfaceKind::Plane && face.loops.len() > 1;
+        let face = original.parts[0].faces.iter().position(is_plate).unwrap();
+        let hole = &original.parts[0].faces[face].loops[1];
+        let ((low, high), point) = (hole.bounds(), hole.curves().next().unwrap().point(0.0));
+        let moved = hole.with_point(0, 0, point + 0.2 * (point - 0.5 * (low + high))).unwrap();
+        let mut state = SceneState::default();
+        state.edits.insert((0, face, 1), moved);
+        let mut edited = original.clone();
+        state.edit_for_file(&mut edited);
+        let areas = |model: &Model| {
+            let mut all: Vec<f64> = model.parts[0].faces.iter().map(|face| face.area()).collect();
+            all.sort_by(f64::total_cmp);
+            all
+        };
+        let (before, wanted) = (areas(&original), areas(&edited));
+        let change = (before.iter().sum::<f64>() - wanted.iter().sum::<f64>()).abs();
+        // the hole has a radius of millimetres
+        assert!(change > 0.01, "{change}");
+        let folder = std::env::temp_dir().join(format!("selvedge-edit-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        for name in ["edited.selvedge", "edited.step"] {
+            let path = folder.join(name);
+            save(&path, &edited, std::iter::empty()).unwrap();
+            let found = areas(&read(&path));
+            assert_eq!(found.len(), wanted.len(), "{name}");
+            let off = found.iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 0.01 * change, "{name}: a face is off by {off} mm² of {change}");
+        }
         fs::remove_dir_all(&folder).unwrap();
     }
 

@@ -118,6 +118,12 @@ impl Pixels {
         all.iter().map(|part| i32::from(*part)).sum::<i32>() / 3
     }
 
+    /// The share of places that have the same colour in another picture of the screen.
+    pub fn same(&self, other: &Self) -> f64 {
+        let same = self.all.iter().zip(&other.all).filter(|(a, b)| a == b).count();
+        same as f64 / self.all.len() as f64
+    }
+
     /// Writes it as a picture of docs/viewer.md, where the environment names a folder for them.
     pub fn keep(&self, name: &str) {
         let Some(folder) = std::env::var_os("SELVEDGE_WINDOW_PICTURES") else { return };
@@ -197,6 +203,13 @@ impl Program {
             }
         }
         panic!("it never said `{what}`; it said\n{}", self.all.join("\n"));
+    }
+
+    /// Waits until it has said `what`, before or from now on.
+    pub fn said(&mut self, what: &str) {
+        if !self.all.iter().any(|line| line.contains(what)) {
+            self.wait(what);
+        }
     }
 
     /// Waits until the program is silent; it may be reading.

@@ -1,10 +1,11 @@
 //! Parts that are hidden and shown, cut, and trims that are dragged.
 
 use super::hand::{Display, Program, numbers};
-use super::{Screen, opened};
+use super::{Screen, opened, sample};
 use glam::DVec2;
 use selvedge::model::{Face, SurfaceKind};
 use selvedge_check::Hit;
+use selvedge_io::import;
 use selvedge_viewer::measure::cut;
 use selvedge_viewer::pick::nearest_loop;
 use selvedge_viewer::session::{Picked, Session};
@@ -63,7 +64,7 @@ fn parts_are_hidden_and_shown_without_an_upload() {
 fn a_section_at_a_face_follows_its_handle() {
     let Some(screen) = Screen::open((900, 560)) else { return };
     let display = &screen.display;
-    let (_folder, mut program, scene) = opened(display, "assembly.step");
+    let (folder, mut program, scene) = opened(display, "assembly.step");
     let (bounds, forward) = (scene.world.bounds, scene.camera.axes().2);
     // its arrow is long enough to be gripped
     let is_slanted = |normal: glam::DVec3| normal.dot(forward).abs() < 0.8;
@@ -98,6 +99,20 @@ fn a_section_at_a_face_follows_its_handle() {
     upload(&mut program, display, "ctrl+z");
     let undone = offset(&program.command(display));
     assert!((undone - section.offset).abs() < 1e-9 * bounds.diagonal());
+
+    // the file is written and read again: the view, the section and what is hidden stay, and so does what is undone
+    upload(&mut program, display, "h");
+    program.after(|| display.key("minus"));
+    let view = |program: &mut Program| program.command(display).split("copied: ").nth(1).map(str::to_owned);
+    let (picture, from) = (program.picture(display), view(&mut program));
+    std::fs::copy(sample("assembly.step"), folder.path().join("assembly.step")).expect("copied");
+    program.wait("has changed");
+    program.wait("uploaded");
+    program.rest();
+    assert_eq!(view(&mut program), from);
+    assert!(program.picture(display) == picture, "as it was, pixel by pixel");
+    upload(&mut program, display, "ctrl+z");
+    assert!(program.picture(display) != picture, "the part is shown again");
     program.close(display);
 }
 
@@ -105,7 +120,7 @@ fn a_section_at_a_face_follows_its_handle() {
 fn a_trim_follows_the_hand_without_an_upload() {
     let Some(screen) = Screen::open((900, 560)) else { return };
     let display = &screen.display;
-    let (_folder, mut program, scene) = opened(display, "bracket.step");
+    let (folder, mut program, scene) = opened(display, "bracket.step");
     // beside a hole, whose loop is then the one to drag
     let beside = |hit: &Hit, face: &Face| -> Option<usize> {
         let nearest = |uv: DVec2| nearest_loop(&face.surface, &face.loops, uv);
@@ -131,6 +146,22 @@ fn a_trim_follows_the_hand_without_an_upload() {
     let grip = places.find(|place| scene.is_in_view(*place)).expect("a point of a hole is seen");
     let said = program.after(|| display.drag(1, grip, DVec2::new(6.0, 4.0)));
     assert!(is_in_place(&said), "{}", said.join("\n"));
+
+    // undone, done again, and saved by the dialog
+    let dragged = program.picture(display);
     assert!(is_in_place(&program.after(|| display.key("ctrl+z"))));
+    assert!(program.picture(display) != dragged, "the hole is where it was");
+    assert!(is_in_place(&program.after(|| display.key("ctrl+shift+z"))));
+    assert!(program.picture(display) == dragged, "pixel by pixel");
+    display.key("ctrl+e");
+    program.settle();
+    display.key("Return");
+    program.said("edited.selvedge is saved");
+    program.rest();
+    let saved = import::open(&folder.path().join("edited.selvedge")).expect("it is read").model;
+    let all = |faces: &[Face]| faces.iter().flat_map(|face| face.loops.clone()).collect::<Vec<_>>();
+    let (before, after) = (all(scene.faces()), all(&saved.parts[0].faces));
+    let moved = before.iter().zip(&after).filter(|(a, b)| !a.curves().eq(b.curves())).count();
+    assert_eq!((after.len(), moved), (before.len(), 1), "loops, and those of them that are others now");
     program.close(display);
 }

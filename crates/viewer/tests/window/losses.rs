@@ -93,7 +93,7 @@ fn without_memory_for_a_picture_the_one_before_is_picked_from() {
 }
 
 #[test]
-fn panels_and_picture_have_the_scale_and_the_colours_of_the_desktop() {
+fn panels_and_picture_have_the_scale_of_display_and_settings_and_the_desktop_s_colours() {
     let Some(screen) = Screen::open((1400, 900)) else { return };
     let display = &screen.display;
     // GSettings say nothing of colours then
@@ -101,8 +101,10 @@ fn panels_and_picture_have_the_scale_and_the_colours_of_the_desktop() {
     let twice = [("WINIT_X11_SCALE_FACTOR", "2"), (SIZE, "700 450"), unset];
     let (_folder, mut program, scene) = opened_in(display, "bracket.step", &twice, |folder| {
         std::fs::write(folder.join("kdeglobals"), "[General]\nColorScheme=BreezeLight\n").expect("written");
+        std::fs::write(folder.join("settings.json"), r#"{"text": 0.75}"#).expect("written");
     });
-    assert!((scene.corner.x - 2.0 * TREE).abs() < 2.0, "the picture begins at {}", scene.corner);
+    // twice for the display, three quarters of that for the settings
+    assert!((scene.corner.x - 1.5 * TREE).abs() < 2.0, "the picture begins at {}", scene.corner);
     program.last("the desktop is light");
     assert!(display.screen().brightness(scene.corner + 4.0) > LIGHT);
     let (at, face) = scene.cylinder();

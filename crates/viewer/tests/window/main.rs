@@ -207,9 +207,14 @@ fn script(display: &Display) {
     display.xdotool(&format!("windowsize {id} 700 480"));
     program.wait("picture of ");
     program.rest();
-    display.xdotool(&format!("windowunmap {id}"));
+    let shown = display.screen();
+    display.xdotool(&format!("windowunmap --sync {id}"));
+    let hidden = display.screen().same(&shown);
     display.xdotool(&format!("windowmap {id}"));
     program.rest();
+    // the window has two thirds of the screen; focus and cursor may be elsewhere now
+    let again = display.screen().same(&shown);
+    assert!(hidden < 0.5 && again > 0.9, "{hidden} of the screen without the window, {again} with it");
 
     // a file that changes is read again
     std::fs::copy(sample("bracket.step"), &file).expect("copied");

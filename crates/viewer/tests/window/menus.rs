@@ -125,9 +125,7 @@ fn keys_alone_write_a_picture_without_background() {
         display.key(key);
         program.settle();
     }
-    if !program.all.iter().any(|line| line.contains("is written")) {
-        program.wait("is written");
-    }
+    program.said("is written");
     program.rest();
     let (size, pixels) = read_png(&folder.path().join("view.png"));
     assert_eq!(size, PICTURE);
@@ -156,9 +154,7 @@ fn less_motion_is_heard_of_and_both_forms_are_saved() {
         panels.obey(Command::SaveAs);
         panels.write(display, &mut program, "edited.selvedge", name);
         panels.click(display, &mut program, "Save", 0);
-        if !program.all.iter().any(|line| line.contains(&format!("{name} is saved"))) {
-            program.wait(&format!("{name} is saved"));
-        }
+        program.said(&format!("{name} is saved"));
         panels.ui.save = None;
         let read = import::open(&folder.path().join(name)).expect("it is read").model;
         assert_eq!(read.face_count(), model.face_count(), "{name}");

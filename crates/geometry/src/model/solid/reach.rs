@@ -40,8 +40,8 @@ impl Boxes {
     }
 }
 
-/// The boxes of each node of the tree, from the boxes of the primitives and those that are `known` of some nodes, in
-/// their order.
+/// The boxes of each node of the tree. `primitive` says those of a leaf. `known` has tighter boxes of some nodes, each
+/// with the node's number, the least number first.
 pub(super) fn boxes(solid: &Solid, primitive: impl Fn(&Primitive) -> Boxes, known: &[(usize, Bounds)]) -> Vec<Boxes> {
     let mut boxes: Vec<Boxes> = Vec::with_capacity(solid.tree.nodes().len());
     let mut known = known.iter().peekable();

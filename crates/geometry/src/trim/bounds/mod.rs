@@ -39,10 +39,11 @@ mod carried;
 mod convex;
 mod framing;
 mod height;
+mod polyhedron;
 mod search;
 mod solid;
 
-use crate::model::{Bounds, Face, Instance, Model, Part, meet};
+use crate::model::{Bounds, Face, Instance, Model, Part, Solid, meet};
 use glam::{DAffine3, DVec3};
 use search::{Body, Search, Tolerance};
 use std::ops::Range;
@@ -101,9 +102,28 @@ impl Model {
         let faces = of(bodies, placements);
         let faces = self.trim.as_ref().map_or(faces, |volume| meet(faces, solid::bounds(volume)));
         let solids = self.solids[solids].iter().map(solid::bounds);
-        let finite = solids.filter(|b| b.min.is_finite() && b.max.is_finite());
-        finite.fold(faces, Bounds::union)
+        solids.filter(is_finite).fold(faces, Bounds::union)
     }
+
+    /// Box of the placed boxes of all parts' [control points](Part::control_bounds) and of the solids, model
+    /// coordinates. It contains the model, and may be much larger than it: [`Model::bounds`] is tight.
+    pub fn control_bounds(&self) -> Bounds {
+        let parts: Vec<Bounds> = self.parts.iter().map(Part::control_bounds).collect();
+        let placed =
+            |i: &Instance| parts.get(i.part).filter(|bounds| !bounds.is_empty()).map(|bounds| (*bounds, i.transform));
+        let instances = self.instances.iter().filter_map(placed);
+        let of_instances =
+            instances.flat_map(|(bounds, transform)| bounds.corners().map(|c| transform.transform_point3(c)));
+        // boxes of primitives cost little, but half-spaces have none
+        let of_solid = |solid: &Solid| Some(solid.bounds()).filter(is_finite).unwrap_or_else(|| solid::bounds(solid));
+        let solids = self.solids.iter().map(of_solid).filter(is_finite);
+        of_instances.chain(solids.flat_map(Bounds::corners)).fold(Bounds::EMPTY, Bounds::with)
+    }
+}
+
+/// Whether a box is neither empty nor open.
+fn is_finite(bounds: &Bounds) -> bool {
+    bounds.min.is_finite() && bounds.max.is_finite()
 }
 
 /// Parts that are placed, each once, and the number and transform of each instance.

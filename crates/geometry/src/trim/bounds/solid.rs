@@ -7,19 +7,25 @@
 //!   A - B   box of A, less where a block B goes right through it and takes one of its ends
 //! ```
 //!
-//! *Certainty.* The box contains the solid. It is tight for one primitive, for a block that half-spaces cut (see
-//! [`convex`]), and for unions of these, to rounding. It is also tight where blocks along the axes, half-spaces across
-//! them and tight boxes meet in a box. Otherwise it may be larger: where boxes meet and solids do not, and where a
-//! difference removes the farthest points.
+//! *Certainty.* The box contains the solid. It is tight for one primitive, for a block that half-spaces cut and for
+//! half-spaces that enclose something (see [`convex`]), and for unions of these, to rounding. It is also tight where
+//! blocks along the axes, half-spaces across them and tight boxes meet in a box. Otherwise it may be larger: where
+//! boxes meet and solids do not, and where a difference removes the farthest points.
+//!
+//! *Unbounded primitives.* A plane bounds the direction across it, and an elliptic cylinder all directions across its
+//! axis. Where that leaves a box infinite, boxes turned to such planes and axes are tried, and the box is around their
+//! corners.
 
 use super::convex;
-use crate::model::{Bounds, Boxes, Primitive, Quadric, Shape, Solid};
+use crate::model::{Bounds, Boxes, Primitive, Quadric, Shape, Solid, meet};
 use glam::{BVec3, DAffine3, DMat3, DVec3};
 
-/// Directions that differ by less are one: rounding of a placement.
-const PARALLEL: f64 = 8.0 * f64::EPSILON;
+/// Directions that differ by less are one: rounding of a placement, and of a turn.
+const PARALLEL: f64 = 64.0 * f64::EPSILON;
 /// Ellipsoids that are longer beside their width count as unbounded.
 const LONGEST: f64 = 1e5;
+/// Turned boxes that are tried, at most.
+const MOST_TURNS: usize = 16;
 
 pub(super) fn bounds(solid: &Solid) -> Bounds {
     Extent::new(solid).bounds()
@@ -29,25 +35,63 @@ pub(super) fn bounds(solid: &Solid) -> Bounds {
 pub(super) struct Extent<'a> {
     solid: &'a Solid,
     convex: Vec<convex::Part>,
+    /// A box along the axes.
+    around: Bounds,
 }
 
 impl<'a> Extent<'a> {
     pub fn new(solid: &'a Solid) -> Self {
-        Self { solid, convex: convex::parts(solid) }
+        let mut this = Self { solid, convex: convex::parts(solid), around: Bounds::ALL };
+        let along_axes = solid.bounds_over(boxes, &this.known(|p| p));
+        this.around = if is_open(along_axes) { this.turned_back(along_axes) } else { along_axes };
+        this
     }
 
     /// A box along the axes.
     pub fn bounds(&self) -> Bounds {
-        self.solid.bounds_over(boxes, &self.known(|p| p))
+        self.around
     }
 
     /// A height along `direction`, of any length but 0, that no point of the solid exceeds: that of a box with a side
-    /// across it. Infinite where the solid may be unbounded there.
+    /// across it, or of a corner of the box along the axes. Infinite where the solid may be unbounded there.
     pub fn reach(&self, direction: DVec3) -> f64 {
         let (u, v) = direction.normalize().any_orthonormal_pair();
-        let turn = DAffine3::from_mat3(DMat3::from_cols(direction, u, v).transpose());
+        let far = self.boxed(DMat3::from_cols(direction, u, v).transpose()).max.x;
+        if far < f64::INFINITY || is_open(self.around) {
+            return far;
+        }
+        self.around.corners().into_iter().map(|p| direction.dot(p)).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// A box of the turned solid along the axes.
+    fn boxed(&self, turn: DMat3) -> Bounds {
+        let turn = DAffine3::from_mat3(turn);
         let turned = |p: &Primitive| boxes(&Primitive { transform: turn * p.transform, ..p.clone() });
-        self.solid.bounds_over(turned, &self.known(|p| turn.transform_point3(p))).max.x
+        self.solid.bounds_over(turned, &self.known(|p| turn.transform_point3(p)))
+    }
+
+    /// A box within `all`, of boxes that are turned to planes and axes.
+    fn turned_back(&self, mut all: Bounds) -> Bounds {
+        let directions = self.solid.primitives().iter().filter_map(|p| {
+            let to_own = p.to_own()?;
+            match &p.shape {
+                Shape::HalfSpace { normal, .. } => Some(to_own.matrix3.transpose() * *normal),
+                Shape::Quadric(quadric) => Some(p.transform.matrix3 * tube(quadric)?),
+                _ => None,
+            }
+        });
+        for direction in directions.filter_map(DVec3::try_normalize).take(MOST_TURNS) {
+            let (u, v) = direction.any_orthonormal_pair();
+            let back = DMat3::from_cols(direction, u, v);
+            let turned = self.boxed(back.transpose());
+            if turned.is_empty() {
+                return Bounds::EMPTY;
+            }
+            if !is_open(turned) {
+                all = meet(all, turned.corners().into_iter().map(|p| back * p).fold(Bounds::EMPTY, Bounds::with));
+            }
+        }
+        all
     }
 
     /// The nodes of the convex parts, and the boxes of their corners where `turned` moves them to.
@@ -57,6 +101,11 @@ impl<'a> Extent<'a> {
         };
         self.convex.iter().map(of).collect()
     }
+}
+
+/// Whether a box is unbounded; an empty one is not.
+fn is_open(of: Bounds) -> bool {
+    !of.is_empty() && !(of.min.is_finite() && of.max.is_finite())
 }
 
 fn boxes(primitive: &Primitive) -> Boxes {
@@ -128,16 +177,43 @@ fn support(shape: &Shape, d: DVec3) -> f64 {
     }
 }
 
-/// With the matrix `A` of the squares and products, centre `c` and value `-r` there: `c · d + √(r d A⁻¹ d)`.
-fn ellipsoid(q: &Quadric, d: DVec3) -> f64 {
+/// Squares and products as a symmetric matrix.
+fn matrix(q: &Quadric) -> DMat3 {
     let (s, m) = (q.squares, 0.5 * q.products);
-    let a = DMat3::from_cols(DVec3::new(s.x, m.x, m.z), DVec3::new(m.x, s.y, m.y), DVec3::new(m.z, m.y, s.z));
+    DMat3::from_cols(DVec3::new(s.x, m.x, m.z), DVec3::new(m.x, s.y, m.y), DVec3::new(m.z, m.y, s.z))
+}
+
+/// The axis of an elliptic cylinder, of length 1; `None` of other quadrics.
+fn tube(q: &Quadric) -> Option<DVec3> {
+    let a = matrix(q);
+    let trace = q.squares.element_sum();
+    // two eigenvalues are above 0 where the matrix takes one direction to nothing
+    let [x, y, z] = [a.y_axis.cross(a.z_axis), a.z_axis.cross(a.x_axis), a.x_axis.cross(a.y_axis)];
+    let is_round = trace > 0.0 && (x.x + y.y + z.z) * LONGEST * LONGEST > trace * trace;
+    let longest = [x, y, z].into_iter().max_by(|a, b| a.length().total_cmp(&b.length()))?;
+    let axis = longest.try_normalize()?;
+    let is_straight = (a * axis).length() <= PARALLEL * trace;
+    let is_even = q.linear.dot(axis).abs() <= PARALLEL * q.linear.length();
+    (is_round && is_straight && is_even).then_some(axis)
+}
+
+/// With the matrix `A` of the squares and products, centre `c` and value `-r` there: `c · d + √(r d A⁻¹ d)`. A
+/// cylinder's height across its axis is that of an ellipsoid which it touches all around.
+fn ellipsoid(q: &Quadric, d: DVec3) -> f64 {
+    let (s, m, a) = (q.squares, 0.5 * q.products, matrix(q));
     let minors = [s.x, s.x * s.y - m.x * m.x, a.determinant()];
     // the smallest eigenvalue is at least the determinant over the square of the largest one
-    let is_closed = minors.iter().all(|x| *x > 0.0) && minors[2] * LONGEST * LONGEST > (s.x + s.y + s.z).powi(3);
-    if !is_closed {
-        return f64::INFINITY;
-    }
+    let is_closed = minors.iter().all(|x| *x > 0.0) && minors[2] * LONGEST * LONGEST > s.element_sum().powi(3);
+    let a = if is_closed {
+        a
+    } else {
+        match tube(q) {
+            Some(n) if d.dot(n).abs() <= PARALLEL * d.length() => {
+                a + s.element_sum() * DMat3::from_cols(n * n.x, n * n.y, n * n.z)
+            }
+            _ => return f64::INFINITY,
+        }
+    };
     let inverse = a.inverse();
     let centre = inverse * (-0.5 * q.linear);
     let rest = -q.value(centre);

@@ -137,6 +137,75 @@ fn blocks_that_half_spaces_cut_are_tight() {
     assert_box(both.bounds(), of([0.15, 0.15, -half], [2.6, 2.6, half]), 1e-11);
 }
 
+/// A tetrahedron of four half-spaces, without a block; with one of them away it is open.
+#[test]
+fn half_spaces_that_enclose_something_are_tight() {
+    let planes = [([-1.0, 0.0, 0.0], -1.0), ([0.0, -1.0, 0.0], -1.0), ([0.0, 0.0, -1.0], -1.0), ([1.0; 3], 6.0)];
+    let corners = [[1.0, 1.0, 1.0], [4.0, 1.0, 1.0], [1.0, 4.0, 1.0], [1.0, 1.0, 4.0]].map(DVec3::from);
+    let ball = || primitive(Shape::Sphere { radius: 2.0 }, DAffine3::IDENTITY);
+    for transform in turns() {
+        let half = |(normal, offset): &([f64; 3], f64)| {
+            primitive(Shape::HalfSpace { normal: (*normal).into(), offset: *offset }, transform)
+        };
+        let part = |planes: &[([f64; 3], f64)]| {
+            let solids: Vec<Solid> = planes.iter().map(|plane| Solid::of(half(plane)).unwrap()).collect();
+            solids[1..].iter().fold(solids[0].clone(), |all, solid| all.intersection(solid).unwrap())
+        };
+        let expected = corners.map(|p| transform.transform_point3(p)).into_iter().fold(Bounds::EMPTY, Bounds::with);
+        assert_box(model(part(&planes)).bounds(), expected, 1e-10);
+        assert_eq!(model(part(&planes[1..])).bounds(), Bounds::EMPTY);
+        // nothing is left: no box either
+        let empty = [&planes[..], &[([1.0; 3], 2.5)]].concat();
+        assert_eq!(model(part(&empty)).bounds(), Bounds::EMPTY);
+        // an open part without a plane across an axis takes nothing from the box of what it is cut with
+        if transform != DAffine3::IDENTITY {
+            let cut = part(&planes[1..]).intersection(&Solid::of(ball()).unwrap()).unwrap();
+            assert_box(model(cut).bounds(), of([-2.0; 3], [2.0; 3]), 1e-12);
+        }
+    }
+}
+
+/// A quadric that is a cylinder without ends, between two planes across it: tight along the axes, and elsewhere the box
+/// of a turned box, which a camera sees. With a plane away it is open.
+#[test]
+fn cylinders_between_planes_have_boxes() {
+    let squares = DVec3::new(1.0, 4.0, 0.0);
+    // (x - 1)² + 4 y² <= 4
+    let quadric = Quadric { squares, linear: DVec3::X * -2.0, constant: -3.0, ..Quadric::default() };
+    let own = of([-1.0, -1.0, 0.0], [3.0, 1.0, 5.0]);
+    let ends = [([0.0, 0.0, -1.0], 0.0), ([0.0, 0.0, 2.0], 10.0)];
+    for transform in turns() {
+        let solid = |ends: &[([f64; 3], f64)]| {
+            let half =
+                |(normal, offset): &([f64; 3], f64)| Shape::HalfSpace { normal: (*normal).into(), offset: *offset };
+            let shapes = std::iter::once(Shape::Quadric(quadric)).chain(ends.iter().map(half));
+            let solids: Vec<Solid> = shapes.map(|shape| Solid::of(primitive(shape, transform)).unwrap()).collect();
+            model(solids[1..].iter().fold(solids[0].clone(), |all, solid| all.intersection(solid).unwrap()))
+        };
+        let found = solid(&ends).bounds();
+        let around = own.corners().map(|p| transform.transform_point3(p)).into_iter().fold(Bounds::EMPTY, Bounds::with);
+        if transform == DAffine3::IDENTITY {
+            assert_box(found, own, 1e-12);
+            let camera = |model: &Model| Camera::framing(model, DVec3::new(1.0, 0.7, 0.4), DVec3::Z, 0.5, (640, 480));
+            let boxed = camera(&model(Solid::of(block(own.min.into(), own.max.into())).unwrap()));
+            let off = camera(&solid(&ends)).eye.distance(boxed.eye);
+            assert!(off < 0.02 * own.diagonal(), "{off} from {boxed:?}");
+        }
+        // the rim: points of both ends
+        for k in 0..720 {
+            let (sin, cos) = f64::from(k).to_radians().sin_cos();
+            let p = transform.transform_point3(DVec3::new(1.0 + 2.0 * cos, sin, if k < 360 { 0.0 } else { 5.0 }));
+            let holds = p.cmpge(found.min - 1e-9) & p.cmple(found.max + 1e-9);
+            assert!(holds.all(), "{p} is outside {found:?}");
+        }
+        assert!(found.diagonal() < 3.0 * around.diagonal(), "{found:?} for {around:?}");
+        // frames have no other box of it
+        assert_eq!(solid(&ends).control_bounds(), found);
+        let open = solid(&ends[1..]);
+        assert_eq!([open.bounds(), open.control_bounds()], [Bounds::EMPTY; 2]);
+    }
+}
+
 /// A camera sees the corners, not the block.
 #[test]
 fn framing_follows_the_corners() {

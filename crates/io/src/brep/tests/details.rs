@@ -111,34 +111,3 @@ fn depths_of_many_holes_within_a_long_border() {
     let depths = super::super::nest::depths(&polygons);
     assert!(depths[0] == 0 && depths[1..].iter().all(|depth| *depth == 1));
 }
-
-/// Only what is thinner than the tolerance along one line counts, and only where straight edges close it.
-#[test]
-fn slivers_are_no_wider_than_the_tolerance() {
-    let mut edges = Vec::new();
-    let mut quad = |width: f64, shift: f64| {
-        let corners = [[0.0, 0.0], [10.0, 0.0], [10.0, width], [0.0, width], [0.0, shift]];
-        let points = corners.map(|[x, y]| DVec3::new(x, y, 3.0));
-        let list = Edge::chain(1, &points, &mut edges).into_iter().map(|i| (i, true)).collect();
-        Boundary::Edges(list)
-    };
-    let (thin, wide, open) = (quad(1e-6, 0.0), quad(0.05, 0.0), quad(0.05, 0.03));
-    let triangle = Boundary::Edges(
-        Edge::chain(1, &[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ZERO], &mut edges)
-            .into_iter()
-            .map(|i| (i, true))
-            .collect(),
-    );
-    let frame = Frame { origin: DVec3::Z * 3.0, ..Frame::WORLD };
-    let surface = SurfaceGeometry::Plane { frame };
-    let is_sliver = |bounds: Vec<Boundary>, tolerance: f64| {
-        let face = FaceGeometry { id: 1, surface: surface.clone(), bounds, same_sense: true, ambiguous: false };
-        face.is_sliver(&edges, tolerance)
-    };
-    assert!(is_sliver(vec![thin.clone()], 1e-5) && !is_sliver(vec![thin.clone()], 1e-7));
-    assert!(!is_sliver(vec![wide.clone()], 1e-2) && is_sliver(vec![wide.clone()], 0.2));
-    // a tolerance of the face's own size says nothing
-    assert!(!is_sliver(vec![triangle.clone()], 10.0));
-    assert!(!is_sliver(vec![thin, wide], 1e-2) && !is_sliver(Vec::new(), 1.0) && !is_sliver(vec![triangle], 1e-2));
-    assert!(!is_sliver(vec![open], 0.02) && !is_sliver(vec![Boundary::Natural], 1.0));
-}

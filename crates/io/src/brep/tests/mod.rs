@@ -11,6 +11,7 @@ mod flat;
 mod given;
 mod poles;
 mod settle;
+mod slivers;
 mod splines;
 
 use super::*;

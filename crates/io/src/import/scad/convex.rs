@@ -18,7 +18,7 @@ use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// Faces of a convex polyhedron times its corners: beyond, it stays a mesh.
+/// Faces of a convex polyhedron times its vertices: beyond, it stays a mesh.
 const MOST_TESTS: usize = 10_000_000;
 /// Faces that are drawn as half-spaces.
 const MOST_FACES: usize = 1000;
@@ -113,8 +113,15 @@ pub(super) fn closed(faces: &[Vec<u32>]) -> Result<(), &'static str> {
 
 /// The planes of a convex polyhedron; `None` for others, and for those with very many faces.
 pub(in crate::import) fn planes(points: &[DVec3], faces: &[Vec<u32>]) -> Option<Vec<Plane>> {
-    let corners: Vec<DVec3> = faces.iter().flatten().map(|i| points[*i as usize]).collect();
-    if faces.len() > MOST_FACES || faces.len() * corners.len() > MOST_TESTS {
+    if faces.len() > MOST_FACES {
+        return None;
+    }
+    // a vertex of many faces is one
+    let mut used: Vec<u32> = faces.iter().flatten().copied().collect();
+    used.sort_unstable();
+    used.dedup();
+    let corners: Vec<DVec3> = used.into_iter().map(|i| points[i as usize]).collect();
+    if faces.len() * corners.len() > MOST_TESTS {
         return None;
     }
     let size = corners.iter().copied().fold(Bounds::EMPTY, Bounds::with).diagonal();

@@ -227,7 +227,7 @@ fn damaged_gltf() {
     let whole = binary(&text(""), &data());
     assert!(refusal(&whole[..whole.len() - 9], "glb").starts_with("t.x: "));
     assert!(refusal(&whole[..10], "glb").starts_with("t.x: "));
-    // boxes of positions are not used, and may be missing; what else is wrong is told
+    // accessors without `min` and `max` are read; an index out of range is an error that names its place
     let bare = with_data(&data()).replace(",\"min\":[0,0,0],\"max\":[1,1,1]", "");
     assert!((volume(&import(bare.as_bytes(), "gltf").model) - 27e9 / 6.0).abs() < 1e-3);
     assert!(refusal(bare.replace("\"mesh\":0", "\"mesh\":7").as_bytes(), "gltf").contains("nodes[1].mesh"));

@@ -1,9 +1,10 @@
 //! Nodes that depend on facets, against closed forms.
 
 use super::{block, import, polygon, same};
-use crate::import::Options;
+use crate::import::{Facets, Options, scad};
 use crate::model::Shape;
 use glam::DVec3;
+use std::f64::consts::PI;
 
 fn moved(x: f64, y: f64, z: f64, node: &str) -> String {
     format!("multmatrix([[1, 0, 0, {x}], [0, 1, 0, {y}], [0, 0, 1, {z}], [0, 0, 0, 1]]) {{ {node} }}")
@@ -25,6 +26,17 @@ fn hulls() {
     let flat = "linear_extrude(height = 1) { hull() { square(size = 1); multmatrix([[1, 0, 0, 2], [0, 1, 0, 2], [0, 0, 1, 0], [0, 0, 0, 1]]) { square(size = 1); } } }";
     let six = [[0.0, 0.0], [1.0, 0.0], [3.0, 2.0], [3.0, 3.0], [2.0, 3.0], [0.0, 1.0]];
     same(flat, 3.5, |p| polygon(p.x, p.y, &six).max(-p.z).max(p.z - 1.0));
+}
+
+/// 4,900 half-spaces: rings of 100 corners at heights `r cos((i + ½) π / 50)`, the widest of radius `r cos(π / 100)`.
+#[test]
+fn a_ball_of_many_facets_has_the_box_of_its_corners() {
+    let text = b"sphere($fn = 100, r = 10);";
+    let ball = scad(text, "t.csg", Facets::AsWritten).unwrap().model;
+    assert_eq!(ball.solids[0].primitives().len(), 1 + 49 * 100);
+    let (found, far) = (ball.bounds(), 10.0 * (PI / 100.0).cos());
+    let off = (found.max - far).abs().max((found.min + far).abs()).max_element();
+    assert!(off < 1e-9, "{found:?}");
 }
 
 /// Half-spaces stand for facets, in a block that is wider; the box is that of the corners.
