@@ -105,7 +105,8 @@ impl<'a> Extent<'a> {
 
 /// Whether a box is unbounded; an empty one is not.
 fn is_open(of: Bounds) -> bool {
-    !of.is_empty() && !(of.min.is_finite() && of.max.is_finite())
+    let is_finite = of.min.is_finite() && of.max.is_finite();
+    !is_finite && !of.is_empty()
 }
 
 fn boxes(primitive: &Primitive) -> Boxes {
