@@ -104,9 +104,18 @@ impl Camera {
         if !(self.eye.is_finite() && self.target.is_finite() && self.up.is_finite()) {
             return Err(CameraError::NotFinite);
         }
+        let place = self.eye.abs().max(self.target.abs()).max_element();
+        if place > *LENGTHS.end() {
+            return Err(CameraError::Scale);
+        }
         let axis = self.target - self.eye;
-        if axis.length() <= 0.0 {
+        if axis == DVec3::ZERO {
             return Err(CameraError::NoDirection);
+        }
+        // what has no square has no direction below
+        let longest = [axis, self.up].map(|v| v.abs().max_element());
+        if longest.into_iter().any(|length| length > 0.0 && !LENGTHS.contains(&length)) {
+            return Err(CameraError::Scale);
         }
         if axis.normalize().cross(self.up.normalize_or_zero()).length() < 1e-9 {
             return Err(CameraError::UpAlongAxis);
@@ -133,7 +142,6 @@ impl Camera {
         if !(near > 0.0 && far > near && far.is_finite()) {
             return Err(CameraError::DepthRange);
         }
-        let place = self.eye.abs().max(self.target.abs()).max_element();
         match self.projection {
             Projection::Perspective { fov_y } if fov_y < LEAST_STEP => return Err(CameraError::Narrow),
             Projection::Orthographic { height } if !LENGTHS.contains(&height) => return Err(CameraError::Scale),
@@ -146,7 +154,7 @@ impl Camera {
             }
             _ => {}
         }
-        if !(LENGTHS.contains(&near) && LENGTHS.contains(&far) && place <= *LENGTHS.end()) {
+        if !(LENGTHS.contains(&near) && LENGTHS.contains(&far)) {
             return Err(CameraError::Scale);
         }
         if self.size.0 == 0 || self.size.1 == 0 || self.size.0.max(self.size.1) > 16384 {
