@@ -15,7 +15,7 @@ SECONDS = {
     "zoom": (80, 270),
     "trims": (75, 430),
     "solids": (80, 560),
-    "scale": (20, 480),
+    "scale": (20, 470),
     "stability": (37, 170),
     "least": (4, 5),
     "first_use": (4, 780),
