@@ -22,7 +22,7 @@ fn far_edges(camera: &Camera) -> [Vec<usize>; 3] {
     })
 }
 
-/// Hidden lines are drawn when they are asked for, lighter than others and in dashes.
+/// `hidden_lines` adds lines behind faces: dashed, and lighter than the others.
 #[test]
 fn hidden_lines_are_lighter_and_dashed() {
     let model = shapes::cube();

@@ -196,7 +196,7 @@ impl SceneState {
     }
 }
 
-/// A changed loop without references to the edges of the source of which it moves a curve.
+/// A changed loop. Curves of an edge of the source do not name it any more if one of them is moved.
 fn apart(original: &TrimLoop, changed: &TrimLoop) -> TrimLoop {
     let curves = original.curves().zip(changed.curves()).zip(changed.edges());
     let moved: BTreeSet<u32> =

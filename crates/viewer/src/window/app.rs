@@ -161,11 +161,14 @@ impl App {
         let joined = proxy.clone();
         let joiner = Joiner::new(move |event| drop(joined.send_event(Event::Joiner(event))));
         let loads = Loads::new(options.finder.clone());
+        let context = crate::panels::context();
+        // the first layout frames the model: `set_zoom_factor` would change the text after it
+        context.options_mut(|all| all.zoom_factor = settings.text);
         Self {
             options,
             proxy,
             opened: None,
-            context: crate::panels::context(),
+            context,
             session: Session::default(),
             view: View::default(),
             ui,

@@ -15,8 +15,8 @@
 //! that rounding takes no polygon away. Corners are right to as much over the sine of the smallest angle of a corner.
 //!
 //! *Cost.* Near linear: some 340 heights a plane for a ball of a thousand facets, 25 more for each doubling. A polygon
-//! of `k` sides costs `k²`. Planes of which no group is passed over cost the square of their number, within
-//! [`MOST_HEIGHTS`].
+//! of `k` sides costs `k²`. Where each plane meets each group, the cost is the square of their number. [`MOST_HEIGHTS`]
+//! ends the search then.
 //!
 //! Source: I. E. Sutherland, G. W. Hodgman, *Reentrant Polygon Clipping*, 1974, for the clipping.
 
