@@ -73,6 +73,10 @@ struct Inner {
     rewriting: OnceLock<Rewriting>,
 }
 
+/// A Vulkan pipeline of the device.
+#[cfg(feature = "headless")]
+pub(crate) type SharedPipeline = Arc<dyn std::any::Any + Send + Sync>;
+
 /// One SPIR-V module to another.
 #[cfg(test)]
 pub(crate) type Rewriting = fn(&[u32]) -> Vec<u32>;
@@ -339,10 +343,10 @@ impl Device {
     }
 
     /// The Vulkan pipelines that exist. Whoever holds them lets later passes of equal descriptions share them.
-    #[cfg(test)]
-    pub(crate) fn made_pipelines(&self) -> Vec<Arc<dyn std::any::Any + Send + Sync>> {
+    #[cfg(feature = "headless")]
+    pub(crate) fn made_pipelines(&self) -> Vec<SharedPipeline> {
         let made = lock(&self.0.pipelines).values().filter_map(Weak::upgrade).collect::<Vec<_>>();
-        made.into_iter().map(|made| made as Arc<dyn std::any::Any + Send + Sync>).collect()
+        made.into_iter().map(|made| made as SharedPipeline).collect()
     }
 
     /// Lists a named object of so many bytes until the returned entry is dropped.

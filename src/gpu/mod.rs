@@ -73,5 +73,7 @@ pub use {
 };
 
 #[cfg(feature = "headless")]
-pub(crate) use device::text;
+pub(crate) use device::{SharedPipeline, text};
 pub(crate) use error::Named;
+#[cfg(feature = "headless")]
+pub(crate) use memory::lock;

@@ -27,6 +27,7 @@ pub use messages::{Message, Severity};
 pub use renderer::{HeadlessRenderer, Watch};
 
 use crate::gpu::{BlockAllocator, Commands, Device, GpuError, HostDevice, LowerLimits, Named, Requirements};
+use crate::gpu::{SharedPipeline, lock};
 use ash::vk;
 use instance::Instance;
 use messages::Messages;
@@ -35,7 +36,7 @@ use queue::{Queue, Submission};
 use std::io;
 use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 /// Which device, and how closely it is watched.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -107,6 +108,8 @@ impl HeadlessError {
 
 /// A device of our own, without a window.
 pub struct HeadlessDevice {
+    /// Of [`keep_pipelines`](Self::keep_pipelines); they go before the device.
+    kept: Mutex<Vec<SharedPipeline>>,
     parts: ManuallyDrop<Parts>,
     messages: Messages,
 }
@@ -192,7 +195,7 @@ impl HeadlessDevice {
         // SAFETY: the device was made with one queue of this family.
         let queue = unsafe { Queue::new(&raw, queue_family) };
         let parts = Parts { queue, device, cache, _owned: owned, _instance: instance };
-        Ok(Self { parts: ManuallyDrop::new(parts), messages })
+        Ok(Self { kept: Mutex::default(), parts: ManuallyDrop::new(parts), messages })
     }
 
     /// The device, for the engine.
@@ -244,6 +247,11 @@ impl HeadlessDevice {
         self.parts.cache.as_mut().map_or(Ok(()), Cache::save)
     }
 
+    /// Holds the pipelines that exist for as long as the device lives: what needs equal ones later is made sooner.
+    pub fn keep_pipelines(&self) {
+        *lock(&self.kept) = self.device().made_pipelines();
+    }
+
     /// What the validation layers have said so far, oldest first.
     pub fn messages(&self) -> Vec<Message> {
         self.messages.all()
@@ -264,6 +272,7 @@ impl HeadlessDevice {
 
 impl Drop for HeadlessDevice {
     fn drop(&mut self) {
+        lock(&self.kept).clear();
         if !self.parts.device.is_lost() {
             let _ = self.save_pipelines(); // on an error the next run compiles them again
         }

@@ -310,7 +310,12 @@ impl HeadlessRenderer {
     }
 
     /// Frees everything and returns all validation messages, those about leaks included.
-    pub fn shutdown(mut self) -> Vec<String> {
+    pub fn shutdown(self) -> Vec<String> {
+        self.into_device().shutdown().iter().map(ToString::to_string).collect()
+    }
+
+    /// Frees everything but the device, for another renderer [`on`](Self::on) it.
+    pub fn into_device(mut self) -> HeadlessDevice {
         // SAFETY: each is taken once, and `self` is forgotten; flights wait for their frames.
         let device = unsafe {
             ManuallyDrop::drop(&mut self.flights);
@@ -319,7 +324,12 @@ impl HeadlessRenderer {
         };
         self.watch = None;
         std::mem::forget(self);
-        device.shutdown().iter().map(ToString::to_string).collect()
+        device
+    }
+
+    /// The device, with what the validation layers said of it.
+    pub fn device(&self) -> &HeadlessDevice {
+        &self.device
     }
 
     /// Makes a renderer that writes these images. No frame is in flight then.

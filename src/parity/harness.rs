@@ -12,16 +12,10 @@ use crate::headless::{HeadlessDevice, HeadlessOptions};
 use crate::scene::ExactData;
 use ash::vk;
 use bytemuck::Pod;
-use std::any::Any;
-use std::cell::RefCell;
 use std::fmt::Debug;
-use std::sync::Arc;
 
 /// A device under validation and synchronisation validation.
 pub(super) struct Gpu {
-    /// The pipelines of the last run. A pass that is made anew for each case has them again: under validation a pipeline
-    /// takes longer than a case. They go before the device.
-    made: RefCell<Vec<Arc<dyn Any + Send + Sync>>>,
     watched: HeadlessDevice,
     /// Quotients and roots are rounded correctly.
     is_exact: bool,
@@ -49,7 +43,7 @@ impl Gpu {
         let options = HeadlessOptions { validation: true, ..Default::default() };
         let watched = HeadlessDevice::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"));
         let is_exact = watched.device().driver().contains("llvmpipe");
-        Self { watched, is_exact, made: RefCell::default() }
+        Self { watched, is_exact }
     }
 
     /// The device; if its arithmetic is exact, also imitations of other GPUs on it.
@@ -154,7 +148,8 @@ impl Gpu {
     /// Records, submits, waits.
     pub(super) fn run(&self, record: impl FnOnce(&Commands<'_>)) {
         self.watched.submit(record).unwrap();
-        *self.made.borrow_mut() = self.device().made_pipelines();
+        // a pass is made anew for each case, and under validation a pipeline takes longer than a case
+        self.watched.keep_pipelines();
     }
 
     /// The first `count` values of a buffer written by a pass.
@@ -170,7 +165,6 @@ impl Gpu {
 
     /// Fails the test if the validation layers reported anything.
     pub(super) fn finish(self) {
-        drop(self.made);
         let messages: Vec<_> = self.watched.shutdown().iter().map(ToString::to_string).collect();
         assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
     }
