@@ -1,5 +1,6 @@
 //! A scene makes only the buffers, images and pipelines that it needs.
 
+use crate::shapes::Shape;
 use crate::support::{assert_silent, perspective, watched_for, watched_with};
 use crate::{cages, shapes};
 use glam::{DAffine3, DVec3};
@@ -79,23 +80,59 @@ fn has_what_it_needs(way: TrimWay, needed: &[&str], others: &[&str]) {
     }
 }
 
-/// Pipelines, buffers and the image of meshes exist only with meshes; the separate image only if faces are trimmed as
-/// well.
+/// Of every shape, one scene, and one rule after the other for its objects.
 #[test]
-fn only_a_scene_with_meshes_has_what_they_need() {
-    let needed = ["mesh", "meshes", "mesh instances", "mesh positions", "mesh triangles", "resolve (mesh)"];
+fn a_scene_has_only_what_its_parts_need() {
     for shape in shapes::all() {
-        let has = shape.model.parts.iter().any(|p| !p.meshes.is_empty());
         let (renderer, objects) = objects(&shape.model, Outputs::ALL);
-        let any = has || shape.model.parts.iter().any(|p| !p.faces.is_empty());
-        assert_eq!(objects.iter().any(|o| o == "seen squares"), any, "{}: {objects:?}", shape.name);
-        for name in needed {
-            assert_eq!(objects.iter().any(|o| o == name), has, "{name} in {}: {objects:?}", shape.name);
-        }
-        assert_eq!(objects.iter().any(|o| o == "visibility without patches"), has && shape.trimmed, "{}", shape.name);
-        assert_eq!(objects.iter().any(|o| o.contains("mesh")), has, "{}: {objects:?}", shape.name);
+        only_meshes_have_what_they_need(&shape, &objects);
+        only_closed_parts_without_trims_have_cones(&shape, &objects);
+        only_faces_that_share_sides_have_links(&shape, &objects);
+        only_solids_have_what_they_need(&shape, &objects);
+        only_a_rational_scene_has_rational_pipelines(&shape, &objects);
         assert_silent(renderer);
     }
+}
+
+/// Pipelines, buffers and the image of meshes exist only with meshes; the separate image only if faces are trimmed as
+/// well.
+fn only_meshes_have_what_they_need(shape: &Shape, objects: &[String]) {
+    let needed = ["mesh", "meshes", "mesh instances", "mesh positions", "mesh triangles", "resolve (mesh)"];
+    let has = shape.model.parts.iter().any(|p| !p.meshes.is_empty());
+    let any = has || shape.model.parts.iter().any(|p| !p.faces.is_empty());
+    assert_eq!(objects.iter().any(|o| o == "seen squares"), any, "{}: {objects:?}", shape.name);
+    for name in needed {
+        assert_eq!(objects.iter().any(|o| o == name), has, "{name} in {}: {objects:?}", shape.name);
+    }
+    assert_eq!(objects.iter().any(|o| o == "visibility without patches"), has && shape.trimmed, "{}", shape.name);
+    assert_eq!(objects.iter().any(|o| o.contains("mesh")), has, "{}: {objects:?}", shape.name);
+}
+
+/// Cones of normals exist if a part is closed, none of its faces is trimmed, and all of their sides are linked.
+fn only_closed_parts_without_trims_have_cones(shape: &Shape, objects: &[String]) {
+    let has = objects.iter().any(|o| o == "patch cones");
+    let may = |p: &Part| p.closed && !p.faces.is_empty() && p.faces.iter().all(|f| f.loops.is_empty());
+    assert_eq!(has, shape.model.parts.iter().any(may), "{}: {objects:?}", shape.name);
+}
+
+/// Objects of sides that faces share.
+fn of_links(objects: &[String]) -> Vec<&str> {
+    objects.iter().map(String::as_str).filter(|o| o.contains("link") && !o.starts_with("staging")).collect()
+}
+
+fn only_faces_that_share_sides_have_links(shape: &Shape, objects: &[String]) {
+    let may = shape.model.parts.iter().any(|p| p.faces.len() > 1);
+    assert!(may || of_links(objects).is_empty(), "{}: {objects:?}", shape.name);
+}
+
+/// No shape has solids.
+fn only_solids_have_what_they_need(shape: &Shape, objects: &[String]) {
+    assert!(!objects.iter().any(|o| o.contains("solid") || o.contains("volume")), "{}: {objects:?}", shape.name);
+}
+
+fn only_a_rational_scene_has_rational_pipelines(shape: &Shape, objects: &[String]) {
+    let rational = objects.iter().any(|name| name.contains("rational"));
+    assert_eq!(rational, shape.rational, "{}: {objects:?}", shape.name);
 }
 
 /// Occlusion culling of whole parts exists only in scenes of many placed parts that have several patches each.
@@ -168,47 +205,21 @@ fn only_a_scene_of_many_patches_draws_some_by_their_corners() {
     }
 }
 
-/// Cones of normals exist if a part is closed, none of its faces is trimmed, and all of their sides are linked.
 #[test]
-fn only_closed_parts_without_trims_have_cones() {
-    for shape in shapes::all() {
-        let (renderer, objects) = objects(&shape.model, Outputs::ALL);
-        let has = objects.iter().any(|o| o == "patch cones");
-        let may = |p: &Part| p.closed && !p.faces.is_empty() && p.faces.iter().all(|f| f.loops.is_empty());
-        assert_eq!(has, shape.model.parts.iter().any(may), "{}: {objects:?}", shape.name);
-        assert_silent(renderer);
-    }
-}
-
-#[test]
-fn only_faces_that_share_sides_have_links() {
-    let is_of_links = |o: &&String| o.contains("link") && !o.starts_with("staging");
-    let of_links = |objects: &[String]| objects.iter().filter(is_of_links).cloned().collect::<Vec<_>>();
-    for shape in shapes::all() {
-        let (renderer, objects) = objects(&shape.model, Outputs::ALL);
-        let may = shape.model.parts.iter().any(|p| p.faces.len() > 1);
-        assert!(may || of_links(&objects).is_empty(), "{}: {objects:?}", shape.name);
-        assert_silent(renderer);
-    }
+fn faces_that_share_sides_have_links() {
     let (renderer, objects) = objects(&cages::a_box().model, Outputs::ALL);
     let found = of_links(&objects);
     for name in ["patch links", "split (linked)", "visibility (plain, polynomial, linked)"] {
-        assert!(found.iter().any(|o| o == name), "{name}: {found:?}");
+        assert!(found.contains(&name), "{name}: {found:?}");
     }
     assert_eq!(found.len(), 3, "{found:?}");
     assert_silent(renderer);
 }
 
-/// Pipelines and buffers of Boolean solids exist only with solids; a scene of solids alone has none of patches, trims
-/// or meshes.
+/// A scene of solids alone has what they need, and nothing of patches, trims or meshes.
 #[test]
-fn only_a_scene_with_solids_has_what_they_need() {
+fn a_scene_with_solids_has_what_they_need() {
     let needed = ["solid rects", "solid fold", "solid leaves", "solid sides", "solid surfaces", "resolve (solid)"];
-    for shape in shapes::all() {
-        let (renderer, objects) = objects(&shape.model, Outputs::ALL);
-        assert!(!objects.iter().any(|o| o.contains("solid") || o.contains("volume")), "{}: {objects:?}", shape.name);
-        assert_silent(renderer);
-    }
     let (renderer, objects) = objects(&shapes::solids::holes(2), Outputs::ALL);
     for name in needed {
         assert!(objects.iter().any(|o| o.starts_with(name)), "{name}: {objects:?}");
@@ -245,16 +256,6 @@ fn a_way_to_draw_solids_has_its_own_passes() {
     assert!(lacks("solid tile") && lacks("operand fragment") && lacks("operand sort"), "{peeled:?}");
     assert!(!lacks("blister peel (meshes)"), "{peeled:?}");
     assert!(!of(SolidWay::Events, &mesh).iter().any(|o| o.starts_with("blister")));
-}
-
-#[test]
-fn only_a_rational_scene_has_rational_pipelines() {
-    for shape in shapes::all() {
-        let (renderer, objects) = objects(&shape.model, Outputs::ALL);
-        let rational = objects.iter().any(|name| name.contains("rational"));
-        assert_eq!(rational, shape.rational, "{}: {objects:?}", shape.name);
-        assert_silent(renderer);
-    }
 }
 
 /// If a trim curve crosses every patch of a scene, there is no pipeline for untrimmed patches, and vice versa.
