@@ -37,11 +37,6 @@ pub fn with(edges: EdgeSettings) -> SceneSettings {
     SceneSettings { edges: Some(edges), ..SceneSettings::default() }
 }
 
-/// The picture that [`faults`] judges.
-pub fn draw_lines(model: &Model, camera: &Camera) -> Picture {
-    draw(model, with(lines()), camera)
-}
-
 pub fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
     let mut renderer = crate::watched::renderer();
     let picture = draw_next(&mut renderer, (model, settings), camera);
@@ -49,8 +44,13 @@ pub fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture 
     picture
 }
 
-/// The picture of a scene that replaces the renderer's.
-fn draw_next(renderer: &mut HeadlessRenderer, (model, settings): (&Model, SceneSettings), camera: &Camera) -> Picture {
+/// The picture of a scene that replaces the renderer's, and shares its pipelines: the driver takes longer to make those
+/// of lines than to draw.
+pub fn draw_next(
+    renderer: &mut HeadlessRenderer,
+    (model, settings): (&Model, SceneSettings),
+    camera: &Camera,
+) -> Picture {
     renderer.expect(ALL);
     renderer.upload_with(model, settings).unwrap();
     renderer.render(camera, &FrameSettings::default(), ALL).unwrap()
@@ -139,9 +139,9 @@ fn an_edge_close_behind_a_grazing_face_is_hidden() {
 
 /// The outline of a ball is a circle in space, and the lines lie on it: at the exact fold, all around. `model` has the
 /// ball of [`shapes::sphere`] at the origin, and nothing else that folds.
-fn assert_the_balls_outline(model: &Model, camera: &Camera) {
+fn assert_the_balls_outline(renderer: &mut HeadlessRenderer, model: &Model, camera: &Camera) {
     let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
-    let picture = draw(model, with(settings), camera);
+    let picture = draw_next(renderer, (model, with(settings)), camera);
     let ball = shapes::sphere().control_bounds();
     let radius = 0.5 * (ball.max.z - ball.min.z);
     let away = camera.eye.length();
@@ -163,10 +163,12 @@ fn assert_the_balls_outline(model: &Model, camera: &Camera) {
 fn a_balls_outline_is_where_it_folds() {
     let model = shapes::sphere();
     let camera = perspective(&model, SIZE);
-    assert_the_balls_outline(&model, &camera);
     // from the side, where both poles are on the outline
     let from = DVec3::new(0.8, -0.6, 0.0);
-    assert_the_balls_outline(&model, &Camera { eye: from * camera.eye.length(), target: DVec3::ZERO, ..camera });
+    let aside = Camera { eye: from * camera.eye.length(), target: DVec3::ZERO, ..camera };
+    let mut renderer = crate::watched::renderer();
+    [camera, aside].iter().for_each(|camera| assert_the_balls_outline(&mut renderer, &model, camera));
+    assert_silent(renderer);
 }
 
 /// A ring that is trimmed along its seams, in a view that shows neither them nor a patch that they cross: the trim
@@ -188,12 +190,14 @@ fn an_outline_away_from_all_trim_curves_is_a_line() {
         size: SIZE,
     };
     let outline: Vec<DVec2> = (0..8000).map(|k| camera.project(at(f64::from(k) * TAU / 8000.0)).unwrap().0).collect();
+    let mut renderer = crate::watched::renderer();
     for trim in [TrimWay::Table, TrimWay::Exact] {
         let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
-        let picture = draw(&model, SceneSettings { trim, ..with(settings) }, &camera);
+        let picture = draw_next(&mut renderer, (&model, SceneSettings { trim, ..with(settings) }), &camera);
         assert_eq!(faults_of_outline(&picture, &outline), (0, 0), "{trim:?}");
         assert!(centres(&picture).count() > 100, "{trim:?}");
     }
+    assert_silent(renderer);
 }
 
 /// A cylinder of which half a pixel beyond its seam is seen, between the centres of pixels: the seam is a trim curve,
@@ -237,7 +241,9 @@ fn an_outline_before_many_patches_is_whole() {
     let from = DVec3::new(0.8, -0.6, 0.08);
     let mut camera = Camera { eye: from * 6.0 * ball.max.z, target: DVec3::ZERO, ..perspective(&model, SIZE) };
     camera.fit_depth(model.control_bounds());
-    assert_the_balls_outline(&model, &camera);
+    let mut renderer = crate::watched::renderer();
+    assert_the_balls_outline(&mut renderer, &model, &camera);
+    assert_silent(renderer);
 }
 
 /// A block of which one edge is rounded.
@@ -263,12 +269,13 @@ fn a_fold_that_few_centres_see_is_a_line() {
     let from = DVec3::new(-steep.cos(), steep.sin(), 0.3);
     let far = Camera::around(model.control_bounds(), from, DVec3::Y, 0.6, SIZE);
     let height = model.control_bounds().diagonal();
+    let (mut renderer, tracer) = (crate::watched::renderer(), Tracer::new(&model));
     for camera in [far, Camera { projection: Projection::Orthographic { height }, ..far }] {
         let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
-        let picture = draw(&model, with(settings), &camera);
+        let picture = draw_next(&mut renderer, (&model, with(settings)), &camera);
         let asked = DrawingSettings { sharp: false, smooth: false, ..DrawingSettings::default() };
         let image = LineImage { lines: &picture.edge, width: WIDTH, section_width: WIDTH };
-        let found = judge_lines(&model, &Tracer::new(&model), &camera, &asked, image).unwrap();
+        let found = judge_lines(&model, &tracer, &camera, &asked, image).unwrap();
         let seen = picture.face.iter().filter(|face| **face == fillet).count() as f64;
         // points are half a pixel apart
         let length = found.visible as f64 * selvedge_check::drawing::SPACING;
@@ -276,6 +283,7 @@ fn a_fold_that_few_centres_see_is_a_line() {
         assert!(length > 30.0 && seen > 0.0 && seen < 0.6 * length, "{length} px, {seen} centres");
         assert_eq!((found.missing, found.stray), (0, 0), "{found:?}");
     }
+    assert_silent(renderer);
 }
 
 /// The fillet of [`rounded_block`] as a part of a cylinder that goes on by thirty degrees at both sides.
@@ -332,11 +340,12 @@ fn lines_hold_at_any_zoom() {
     let curved = edges.edges.iter().find(|e| e.curve[0].piece.degree() > 1).unwrap();
     let target = curved.curve[0].piece.point(0.3);
     let whole = perspective(&model, SIZE);
+    let mut renderer = crate::watched::renderer();
     for times in [1e2, 1e4, 1e6] {
         let eye = target + (whole.eye - whole.target) / times;
         let distance = (eye - target).length();
         let camera = Camera { eye, target, depth_range: (0.1 * distance, whole.depth_range.1), ..whole };
-        let picture = draw(&model, with(lines()), &camera);
+        let picture = draw_next(&mut renderer, (&model, with(lines())), &camera);
         let (seen, bare, stray) = faults(&model, &camera, &picture);
         println!("{times:e}: {seen} visible points, {bare} bare, {stray} stray");
         assert!(centres(&picture).count() > 100, "{times:e}");
@@ -355,6 +364,7 @@ fn lines_hold_at_any_zoom() {
             assert!(near <= HALF + 0.6, "{times:e}: {at} is {near} px from any edge");
         }
     }
+    assert_silent(renderer);
 }
 
 /// From a point to the stretch between two others.
@@ -454,9 +464,11 @@ fn only_the_colour_changes_and_only_where_lines_are() {
 fn lines_are_the_same_with_several_samples() {
     let model = shapes::cube();
     let camera = perspective(&model, SIZE);
-    let one = draw(&model, with(lines()), &camera);
-    let four = draw(&model, SceneSettings { samples: Samples::Four, ..with(lines()) }, &camera);
+    let mut renderer = crate::watched::renderer();
+    let [one, four] = [Samples::One, Samples::Four]
+        .map(|samples| draw_next(&mut renderer, (&model, SceneSettings { samples, ..with(lines()) }), &camera));
     assert!(one.edge == four.edge);
+    assert_silent(renderer);
 }
 
 #[test]

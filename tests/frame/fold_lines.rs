@@ -1,9 +1,10 @@
 //! Outlines where a face is narrow beside a smooth edge or a seam: no pixel's centre leads to the fold, and it counts
 //! only where the face's trims leave it.
 
-use crate::edge_lines::{centres, draw, faults_of_outline, lines, of_wider_cylinder, rounded_block, with};
+use crate::edge_lines::{centres, draw, draw_next, faults_of_outline, lines, of_wider_cylinder, rounded_block, with};
 use crate::shapes;
-use crate::support::orthographic;
+use crate::support::{assert_silent, orthographic};
+use crate::watched::renderer;
 use glam::{DVec2, DVec3};
 use selvedge::model::{Camera, Model, Projection};
 use selvedge::picture::{EdgeChoice, EdgeSettings, SceneSettings, TrimWay};
@@ -42,16 +43,19 @@ fn cut_fillet(radius: f64, degrees: f64) -> Model {
 fn a_fold_beyond_another_trim_is_no_line() {
     let radius = 0.12;
     let steep = 25f64.to_radians();
+    let mut renderer = renderer();
     for (model, is_line) in [(rounded_block(radius), true), (cut_fillet(radius, 8.0), false)] {
         let from = DVec3::new(-steep.cos(), steep.sin(), 0.3);
         let projection = orthographic(&model, SIZE).projection;
         let camera = Camera { projection, ..Camera::around(model.control_bounds(), from, DVec3::Y, 0.6, SIZE) };
         let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
-        let picture = draw(&model, SceneSettings { trim: TrimWay::Exact, ..with(settings) }, &camera);
+        let settings = SceneSettings { trim: TrimWay::Exact, ..with(settings) };
+        let picture = draw_next(&mut renderer, (&model, settings), &camera);
         let count = centres(&picture).count();
         assert_eq!(count > 30, is_line, "{count} pixels");
         assert!(is_line || count == 0, "{count} pixels");
     }
+    assert_silent(renderer);
 }
 
 /// A cylinder so near that windows are cut out of it, of which half a pixel beyond its seam is seen, between the

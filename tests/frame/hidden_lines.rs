@@ -1,8 +1,9 @@
 //! Hidden lines.
 
-use crate::edge_lines::{SIZE, draw, lines, with};
+use crate::edge_lines::{SIZE, draw_next, lines, with};
 use crate::shapes;
-use crate::support::perspective;
+use crate::support::{assert_silent, perspective};
+use crate::watched::renderer;
 use glam::DVec3;
 use selvedge::model::Camera;
 use selvedge::picture::{EdgeSettings, Picture};
@@ -27,8 +28,10 @@ fn far_edges(camera: &Camera) -> [Vec<usize>; 3] {
 fn hidden_lines_are_lighter_and_dashed() {
     let model = shapes::cube();
     let camera = perspective(&model, SIZE);
-    let plain = draw(&model, with(lines()), &camera);
-    let hidden = draw(&model, with(EdgeSettings { hidden: true, ..lines() }), &camera);
+    let mut renderer = renderer();
+    let [plain, hidden] = [false, true]
+        .map(|hidden| draw_next(&mut renderer, (&model, with(EdgeSettings { hidden, ..lines() })), &camera));
+    assert_silent(renderer);
     let more = |a: &Picture, b: &Picture| {
         let pairs = a.edge.iter().zip(&b.edge).zip(b.colour.iter());
         pairs.filter(|((a, b), _)| **a == 0 && **b != 0).map(|(_, c)| c[0]).collect::<Vec<_>>()

@@ -5,7 +5,8 @@ use crate::layers::{BLUE, glass, model, one, painted};
 use crate::shapes;
 use crate::shapes::solids::{ball, block, post, solid};
 use crate::solid_lines::{
-    HALF, JUNCTION, OFF, OFF_AT_JUNCTIONS, SIZE, SOLID, away, draw, draw_in_bands, judged_by_program, lines, with,
+    HALF, JUNCTION, OFF, OFF_AT_JUNCTIONS, SIZE, SOLID, away, draw, draw_in_bands, draw_next, judged_by_program, lines,
+    with,
 };
 use crate::support::{assert_silent, orthographic, perspective, render, watched_with};
 use crate::watched::renderer;
@@ -49,11 +50,12 @@ fn edges_of_block(camera: &Camera) -> Vec<DVec2> {
 fn all_edges_of_a_glass_block_have_lines() {
     let (block, part) = (glass_block(), glass_part());
     let [from_afar, parallel] = cameras(&block);
+    let mut renderer = renderer();
     for (model, (view, camera), is_part) in
         [(&block, from_afar, false), (&block, parallel, false), (&part, parallel, true)]
     {
         let settings = EdgeSettings { which: EdgeChoice::Sharp, ..lines() };
-        let picture = draw(model, with(settings), &camera);
+        let picture = draw_next(&mut renderer, (model, with(settings)), &camera);
         let edges = edges_of_block(&camera);
         let corners: Vec<DVec2> = edges.chunks(1001).flat_map(|edge| [edge[0], edge[1000]]).collect();
         let own = |edge: u32| if is_part { (1..SOLID).contains(&edge) } else { edge == SOLID };
@@ -68,6 +70,7 @@ fn all_edges_of_a_glass_block_have_lines() {
         assert!(marked.len() > 400, "{view}: {} pixels", marked.len());
         assert_eq!((bare, stray), (0, 0), "{view}: of {} points and {} pixels", edges.len(), marked.len());
     }
+    assert_silent(renderer);
 }
 
 /// As `selvedge check --edges` judges them.

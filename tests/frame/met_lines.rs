@@ -3,11 +3,12 @@
 use crate::edge_lines::centres;
 use crate::shapes::solids::{ball, block, solid};
 use crate::shapes::{SPHERE_RADIUS, block_mesh, one, placed, sphere, whole_mesh};
-use crate::solid_lines::{HALF, OFF, SIZE, SOLID, away, draw, lines, with};
-use crate::support::orthographic;
+use crate::solid_lines::{HALF, OFF, SIZE, SOLID, away, draw_next, lines, with};
+use crate::support::{assert_silent, orthographic};
+use crate::watched::renderer;
 use glam::{DAffine3, DVec2, DVec3, DVec4};
 use selvedge::model::{Camera, Face, Model, Projection, SurfaceKind};
-use selvedge::picture::{EdgeChoice, EdgeSettings};
+use selvedge::picture::{EdgeChoice, EdgeSettings, Picture};
 use selvedge::spline::Surface;
 use selvedge_check::Tracer;
 use selvedge_check::drawing::{DrawingSettings, LineImage, judge_lines};
@@ -70,39 +71,42 @@ fn circle(camera: &Camera) -> Vec<(DVec2, f64)> {
     (0..4000).map(point).map(|p| (camera.project(p).unwrap().0, p.dot(to_eye) / RADIUS)).collect()
 }
 
+/// Also `selvedge check --edges` asks for these lines, and sees it if they are not there.
 #[test]
 fn lines_are_where_solids_meet_faces() {
+    let mut renderer = renderer();
     for (name, model) in models() {
         let camera = camera_of(&model);
         let settings = EdgeSettings { which: EdgeChoice::Sharp, silhouettes: false, ..lines() };
-        let picture = draw(&model, with(settings), &camera);
-        let marked: Vec<DVec2> = centres(&picture).map(|(at, _)| at).collect();
-        assert!(picture.edge.iter().all(|edge| [0, SOLID].contains(edge)), "{name}: a line of another kind");
-        let circle = circle(&camera);
-        let of = |least: f64| circle.iter().filter(move |(_, turned)| *turned > least).map(|(p, _)| *p);
-        let (seen, may): (Vec<DVec2>, Vec<DVec2>) = (of(SEEN).collect(), of(HIDDEN).collect());
-        let bare = seen.iter().filter(|p| away(**p, &marked) > HALF + 0.5).count();
-        let stray = marked.iter().filter(|p| away(**p, &may) > HALF + 0.5 + OFF).count();
-        assert!(seen.len() > 1500 && marked.len() > 80, "{name}: {} points, {} pixels", seen.len(), marked.len());
-        assert_eq!((bare, stray), (0, 0), "{name}: of {} points and {} pixels", seen.len(), marked.len());
+        let picture = draw_next(&mut renderer, (&model, with(settings)), &camera);
+        assert_on_the_circle(name, &camera, &picture);
+        let picture = draw_next(&mut renderer, (&model, with(EdgeSettings { silhouettes: false, ..lines() })), &camera);
+        assert_the_judge_sees_them(name, &model, &camera, &picture);
     }
+    assert_silent(renderer);
 }
 
-/// `selvedge check --edges` asks for these lines, and sees it if they are not there.
-#[test]
-fn the_programs_judge_sees_them() {
-    for (name, model) in models() {
-        let camera = camera_of(&model);
-        let picture = draw(&model, with(EdgeSettings { silhouettes: false, ..lines() }), &camera);
-        let settings = DrawingSettings { silhouettes: false, ..DrawingSettings::default() };
-        let tracer = Tracer::new(&model);
-        let judged = |lines: &[u32]| {
-            let image = LineImage { lines, width: 2.0 * HALF, section_width: 4.0 * HALF };
-            judge_lines(&model, &tracer, &camera, &settings, image).unwrap()
-        };
-        let found = judged(&picture.edge);
-        assert!(found.visible > 50 && (found.missing, found.stray) == (0, 0), "{name}: {found:?}");
-        let without = judged(&vec![0; picture.edge.len()]);
-        assert!(without.missing > 50 && without.stray == 0, "{name}: {without:?}");
-    }
+fn assert_on_the_circle(name: &str, camera: &Camera, picture: &Picture) {
+    let marked: Vec<DVec2> = centres(picture).map(|(at, _)| at).collect();
+    assert!(picture.edge.iter().all(|edge| [0, SOLID].contains(edge)), "{name}: a line of another kind");
+    let circle = circle(camera);
+    let of = |least: f64| circle.iter().filter(move |(_, turned)| *turned > least).map(|(p, _)| *p);
+    let (seen, may): (Vec<DVec2>, Vec<DVec2>) = (of(SEEN).collect(), of(HIDDEN).collect());
+    let bare = seen.iter().filter(|p| away(**p, &marked) > HALF + 0.5).count();
+    let stray = marked.iter().filter(|p| away(**p, &may) > HALF + 0.5 + OFF).count();
+    assert!(seen.len() > 1500 && marked.len() > 80, "{name}: {} points, {} pixels", seen.len(), marked.len());
+    assert_eq!((bare, stray), (0, 0), "{name}: of {} points and {} pixels", seen.len(), marked.len());
+}
+
+fn assert_the_judge_sees_them(name: &str, model: &Model, camera: &Camera, picture: &Picture) {
+    let settings = DrawingSettings { silhouettes: false, ..DrawingSettings::default() };
+    let tracer = Tracer::new(model);
+    let judged = |lines: &[u32]| {
+        let image = LineImage { lines, width: 2.0 * HALF, section_width: 4.0 * HALF };
+        judge_lines(model, &tracer, camera, &settings, image).unwrap()
+    };
+    let found = judged(&picture.edge);
+    assert!(found.visible > 50 && (found.missing, found.stray) == (0, 0), "{name}: {found:?}");
+    let without = judged(&vec![0; picture.edge.len()]);
+    assert!(without.missing > 50 && without.stray == 0, "{name}: {without:?}");
 }

@@ -1,9 +1,10 @@
 //! Calibrated cameras with oblong pixels, and with a view axis in a corner of the picture or outside of it. Pixels and
 //! lines are judged by exact rays of the same camera: trimmed faces, silhouettes, edges and solids.
 
-use crate::edge_lines::{WIDTH, draw_lines};
+use crate::edge_lines::{WIDTH, draw_next, lines, with};
 use crate::shapes::{self, solids};
 use crate::support::{assert_identical, assert_silent, perspective, render, watched};
+use crate::watched::renderer;
 use glam::{DQuat, DVec2};
 use selvedge::model::{Camera, Model, Projection};
 use selvedge_check::drawing::{DrawingSettings, LineImage, judge_lines};
@@ -70,17 +71,19 @@ fn solids_are_cut_where_rays_say() {
 #[test]
 fn lines_are_where_rays_see_them() {
     let settings = DrawingSettings { silhouettes: false, ..DrawingSettings::default() };
+    let mut renderer = renderer();
     for (shape, model) in [shapes::cube(), shapes::plate(), shapes::cylinder()].into_iter().enumerate() {
+        let tracer = Tracer::new(&model);
         for (lens, number) in LENSES.into_iter().zip(0..) {
             let camera = whole(&model, lens);
-            let picture = draw_lines(&model, &camera);
-            let tracer = Tracer::new(&model);
+            let picture = draw_next(&mut renderer, (&model, with(lines())), &camera);
             let image = LineImage { lines: &picture.edge, width: WIDTH, section_width: 2.0 * WIDTH };
             let found = judge_lines(&model, &tracer, &camera, &settings, image).unwrap();
             assert!(found.visible > 100, "shape {shape}, lens {number}: {found:?}");
             assert_eq!((found.missing, found.stray), (0, 0), "shape {shape}, lens {number}: {found:?}");
         }
     }
+    assert_silent(renderer);
 }
 
 /// A calibrated camera with square pixels and its axis in the middle draws the same picture as the field of view.

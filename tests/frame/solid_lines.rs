@@ -44,8 +44,12 @@ pub fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture 
     picture
 }
 
-/// The picture of a scene that replaces the renderer's.
-fn draw_next(renderer: &mut HeadlessRenderer, (model, settings): (&Model, SceneSettings), camera: &Camera) -> Picture {
+/// The picture of a scene that replaces the renderer's, and shares its pipelines.
+pub fn draw_next(
+    renderer: &mut HeadlessRenderer,
+    (model, settings): (&Model, SceneSettings),
+    camera: &Camera,
+) -> Picture {
     let outputs = Outputs { edge: true, ..Outputs::ALL };
     renderer.expect(outputs);
     renderer.upload_with(model, settings).unwrap();
