@@ -46,6 +46,8 @@ struct State {
     fault: Option<Fault>,
     injected: u32,
     instances: i32,
+    /// With the null driver, all are this one of the system: making one takes half of the time of a short script.
+    instance: Option<u64>,
     surfaces_destroyed: u32,
     /// Width and height of each surface, with the null driver.
     window: (u32, u32),

@@ -8,15 +8,31 @@ use std::mem::transmute;
 pub unsafe extern "system" fn create_instance(info: *const c_void, none: Callbacks, made: *mut u64) -> vk::Result {
     type Create = unsafe extern "system" fn(*const c_void, Callbacks, *mut u64) -> vk::Result;
     let original = real("vkCreateInstance").expect("asked for before");
-    // SAFETY: as Vulkan's rules for the call promise.
-    let result = call("vkCreateInstance", || unsafe { transmute::<usize, Create>(original)(info, none, made) });
+    let result = call("vkCreateInstance", || {
+        if let Some(instance) = with(|state| state.instance) {
+            // SAFETY: room for the handle.
+            unsafe { *made = instance };
+            return vk::Result::SUCCESS;
+        }
+        // SAFETY: as Vulkan's rules for the call promise.
+        let result = unsafe { transmute::<usize, Create>(original)(info, none, made) };
+        if result == vk::Result::SUCCESS && with(|state| state.null) {
+            // SAFETY: the call wrote it.
+            let instance = unsafe { *made };
+            with(|state| state.instance = Some(instance));
+        }
+        result
+    });
     with(|state| state.instances += i32::from(result == vk::Result::SUCCESS));
     result
 }
 
 pub unsafe extern "system" fn destroy_instance(instance: vk::Instance, none: Callbacks) {
-    with(|state| state.instances -= 1);
-    if let Some(real) = real("vkDestroyInstance") {
+    let is_kept = with(|state| {
+        state.instances -= 1;
+        state.instance.is_some()
+    });
+    if let Some(real) = real("vkDestroyInstance").filter(|_| !is_kept) {
         // SAFETY: as Vulkan's rules for the call promise.
         unsafe { transmute::<usize, vk::PFN_vkDestroyInstance>(real)(instance, none.cast()) }
     }
