@@ -183,7 +183,8 @@ fn check_colour(colour: Option<Colour>, what: Coloured) -> Result<(), ModelError
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Mesh, SurfaceKind};
+    use crate::csg::parse;
+    use crate::model::{GREY, Mesh, Primitive, Shape, Solid, SurfaceKind};
     use crate::spline::{Bezier, Surface};
     use glam::{DAffine3, DMat3, DVec3, DVec4};
 
@@ -211,6 +212,13 @@ mod tests {
         Model { parts: vec![part], instances: vec![placed], ..Model::default() }
     }
 
+    /// Two balls as one solid, the second with a colour of its own.
+    fn balls(colour: Colour) -> Solid {
+        let ball =
+            |id, colour| Primitive { shape: Shape::Sphere { radius: 1.0 }, transform: DAffine3::IDENTITY, colour, id };
+        Solid::new(vec![ball(3, GREY), ball(4, colour)], parse("A+B").unwrap().tree).unwrap()
+    }
+
     /// Each fault, with the sentence that names it.
     #[test]
     fn each_fault_is_named_with_its_place() {
@@ -219,7 +227,7 @@ mod tests {
         let flat = DAffine3::from_mat3(DMat3::from_diagonal(DVec3::new(1.0, 1.0, 0.0)));
         let scale = "the transform of instance 0 makes lengths more than 1e30 times longer or shorter";
         type Change = Box<dyn Fn(&mut Model)>;
-        let faults: [(Change, &str); 15] = [
+        let faults: [(Change, &str); 17] = [
             (Box::new(|m| m.instances[0].part = 999), "instance 0 is of part 999, and there are 1"),
             (
                 Box::new(|m| m.instances[0].transform.translation.x = f64::NAN),
@@ -243,6 +251,15 @@ mod tests {
             (
                 Box::new(move |m| m.parts[0].meshes[0].colour = Some(nan)),
                 "the colour of mesh 0 of part 0 is not between 0 and 1",
+            ),
+            (
+                Box::new(move |m| m.solids = vec![balls(GREY), balls(nan)]),
+                "the colour of primitive 1 of solid 1 is not between 0 and 1",
+            ),
+            // a volume that trims is counted behind the solids
+            (
+                Box::new(|m| (m.solids, m.trim) = (vec![balls(GREY)], Some(balls([0.0, 0.0, -0.5, 1.0])))),
+                "the colour of primitive 1 of solid 1 is not between 0 and 1",
             ),
             (
                 Box::new(|m| m.parts[0].faces[0].loops.push(square(1.5, 1.75))),
