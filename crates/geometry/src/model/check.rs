@@ -63,6 +63,7 @@ pub enum ModelError {
 /// the primitives of a solid.
 #[allow(missing_docs)] // the fields are those indices
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Coloured {
     /// An instance.
     Instance(usize),
