@@ -83,6 +83,7 @@ impl Levels {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[non_exhaustive]
 pub enum TrimWay {
     /// [`Table`](Self::Table) for scenes that are expected to need few scan lines, [`Exact`](Self::Exact) for the
     /// others. [`renderer::trim_way`](crate::renderer::trim_way) returns the choice, and [`FrameStats::trim`] the way
@@ -170,6 +171,7 @@ pub struct UnknownTrimWay(String);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[non_exhaustive]
 pub enum SolidWay {
     /// One ray a pixel, followed from event to event until it enters the solid.
     #[default]

@@ -406,6 +406,54 @@ fn every_ignored_test_is_named_in_soak() {
     assert_eq!(of_sources, of_soak, "ignored tests, and those of tools/soak");
 }
 
+/// Types that break a rule of `docs/embedding.md`, "What may grow": an error has `#[non_exhaustive]`, settings do not,
+/// and those of the engine have defaults.
+fn grows_wrongly(path: &str, text: &str) -> Vec<String> {
+    let (mut attributes, mut wrong) = (String::new(), Vec::new());
+    for line in text.lines() {
+        if let Some(declared) = ["pub enum ", "pub struct "].iter().find_map(|kind| line.strip_prefix(kind)) {
+            let name = declared.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
+            let is_open = attributes.contains("#[non_exhaustive]");
+            let is_error = line.starts_with("pub enum") && attributes.contains("Error");
+            let is_settings = ["Settings", "Options"].iter().any(|end| name.ends_with(end));
+            let defaults = attributes.contains("Default") || text.contains(&format!("impl Default for {name} "));
+            if is_error && !is_open {
+                wrong.push(format!("{path}: the error {name} is not non_exhaustive"));
+            }
+            if is_settings && (is_open || path.starts_with("src/") && !defaults) {
+                wrong.push(format!("{path}: hosts cannot write {name} {{ .., ..Default::default() }}"));
+            }
+        }
+        match line {
+            attribute if attribute.starts_with("#[") => attributes += attribute,
+            comment if comment.starts_with("//") => {}
+            _ => attributes.clear(),
+        }
+    }
+    wrong
+}
+
+#[test]
+fn hosts_may_write_settings_and_errors_may_grow() {
+    // within the crate alone: the window's modules are private
+    let is_private = |path: &str| path.starts_with("crates/viewer/src/window/") && !path.ends_with("/mod.rs");
+    let sources = LIBRARIES.iter().flat_map(|folder| files(folder)).map(|path| (relative(&path), path));
+    let sources = sources.filter(|(path, _)| path.ends_with(".rs") && !is_private(path));
+    let wrong: Vec<_> =
+        sources.flat_map(|(path, file)| grows_wrongly(&path, &fs::read_to_string(file).unwrap())).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_type_that_grows_wrongly_is_seen() {
+    let wrong = |text: &str| grows_wrongly("src/a.rs", text).len();
+    assert_eq!(wrong("#[derive(Debug, thiserror::Error)]\n/// One.\npub enum NoRoom {\n"), 1);
+    assert_eq!(wrong("#[derive(Debug, thiserror::Error)]\n#[non_exhaustive]\npub enum NoRoom {\n"), 0);
+    assert_eq!(wrong("#[derive(Default)]\n#[non_exhaustive]\npub struct FrameSettings {\n"), 1);
+    assert_eq!(wrong("#[derive(Debug)]\npub struct FrameSettings {\n"), 1);
+    assert_eq!(wrong("#[derive(Default)]\npub struct FrameSettings {\n}\n#[derive(Debug)]\npub enum Way {\n"), 0);
+}
+
 #[test]
 fn an_ignored_test_is_found() {
     let text = "#[test]\n    #[ignore = \"minutes\"]\n    fn long() {}\n#[test]\nfn short() {}\n#[ignore]\n#[test]\nfn other() {}\n";

@@ -2,6 +2,10 @@
 
 #![allow(dead_code)] // their `main`
 
+use selvedge::glam::{DAffine3, DVec3};
+use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
+use selvedge::model::{Camera, Model};
+use selvedge::picture::{FrameSettings, Outputs};
 use std::path::{Path, PathBuf};
 
 #[path = "../examples/arrays.rs"]
@@ -66,10 +70,37 @@ fn both_views_follow_a_step() {
     assert_eq!((first[0].size, first[1].size), ((320, 240), (200, 200)));
 }
 
+/// The last of ten frames is nine steps up. Where the model is not, the engine's own blue is: linear 0.1, 0.2, 0.6.
 #[test]
 fn an_engine_draws_frames_in_flight() {
-    let whole = host_engine::run(&sample("assembly.step"), 6, (64, 48)).unwrap().whole;
-    assert!(whole >= 4, "{whole} of 6 frames were whole"); // the first two may lack room
+    let (file, size) = (sample("assembly.step"), (64, 48));
+    let host_engine::Run { whole, pixels, .. } = host_engine::run(&file, 10, size).unwrap();
+    assert!(whole >= 8, "{whole} of 10 frames were whole"); // the first two may lack room
+
+    let mut model = selvedge_io::import::open(&file).unwrap().model;
+    let camera = Camera::framing(&model, Camera::FROM, DVec3::Z, Camera::FOV_DEG.to_radians(), size);
+    let mut headless = HeadlessRenderer::new(&HeadlessOptions::default()).unwrap();
+    let blue = [0.1f64, 0.2, 0.6].map(|c| (255.0 * (1.055 * c.powf(1.0 / 2.4) - 0.055)).round() as u8);
+    // pixels that are not those of a model before the engine's blue, and pixels of the model
+    let mut compare = |model: &Model| {
+        headless.upload(model).unwrap();
+        let outputs = Outputs { face: true, ..Outputs::default() };
+        let wanted = headless.render(&camera, &FrameSettings::default(), outputs).unwrap();
+        let colours = wanted.colour.iter().zip(&wanted.face);
+        let colours = colours.map(|(c, face)| if *face == 0 { blue } else { [c[0], c[1], c[2]] });
+        // a device may round the code of a colour up or down
+        let differs = |(seen, wanted): (&[u8; 4], [u8; 3])| (0..3).any(|k| seen[k].abs_diff(wanted[k]) > 1);
+        let different = pixels.iter().zip(colours).filter(|(seen, wanted)| differs((*seen, *wanted))).count();
+        (different, wanted.face.iter().filter(|face| **face != 0).count())
+    };
+    let (before, _) = compare(&model);
+    model.instances[0].transform = DAffine3::from_translation(DVec3::Z * 9.0) * model.instances[0].transform;
+    let (different, of_model) = compare(&model);
+    assert_eq!(pixels.len(), 64 * 48);
+    assert!((400..2700).contains(&of_model), "{of_model} pixels of the model, and engine's blue");
+    // the engine may be on another device, whose outlines round otherwise
+    assert!(different <= 15, "{different} pixels are not those of the moved model");
+    assert!(before > 60, "{before} pixels show the step");
 }
 
 /// A file of an example is read at one go.

@@ -4,6 +4,7 @@
 //! `cargo run --release --features headless --example host_engine -- samples/assembly.step 1000`
 
 mod picture;
+mod pixels;
 mod vulkan;
 
 use picture::FORMAT;
@@ -20,24 +21,29 @@ use vulkan::{Engine, SLOTS};
 fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let [file, frames] = &args[..] else { return Err("usage: host_engine FILE FRAMES".into()) };
-    let Timing { changing, recording, whole } = run(file.as_ref(), frames.parse()?, (320, 240))?;
+    let Run { changing, recording, whole, .. } = run(file.as_ref(), frames.parse()?, (320, 240))?;
     println!("one step of one instance: {changing:.1} us to change it, {recording:.1} us to record the frame");
     println!("{whole} of {frames} frames were whole");
     Ok(())
 }
 
 /// Of all frames.
-pub struct Timing {
+pub struct Run {
     /// Microseconds a step takes to change the instance.
     pub changing: f64,
     /// And to record the frame.
     pub recording: f64,
     /// Frames that had room for all they wanted.
     pub whole: usize,
+    /// The picture of the last one, row 0 on top: sRGB and opacity.
+    pub pixels: Vec<[u8; 4]>,
 }
 
-/// Draws so many frames of a file.
-pub fn run(file: &Path, frames: usize, size: (u32, u32)) -> Result<Timing, Box<dyn Error>> {
+/// Draws so many frames of a file, at least one.
+pub fn run(file: &Path, frames: usize, size: (u32, u32)) -> Result<Run, Box<dyn Error>> {
+    if frames == 0 {
+        return Err("there is no picture of no frame".into());
+    }
     let model = selvedge_io::import::open(file)?.model;
     let engine = Engine::new(size)?;
     // SAFETY: the device meets the requirements, and outlives the renderer.
@@ -67,7 +73,8 @@ pub fn run(file: &Path, frames: usize, size: (u32, u32)) -> Result<Timing, Box<d
         engine.submit(slot)?;
     }
     let each = |all: Duration| all.as_secs_f64() * 1e6 / frames as f64;
-    Ok(Timing { changing: each(changing), recording: each(recording - changing), whole })
+    let pixels = pixels::pixels(&engine)?;
+    Ok(Run { changing: each(changing), recording: each(recording - changing), whole, pixels })
 }
 
 /// The engine's own pass: blue, where the model is not. The renderer draws after it.

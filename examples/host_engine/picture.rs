@@ -32,7 +32,7 @@ pub unsafe fn picture(
         .mip_levels(1)
         .array_layers(1)
         .samples(vk::SampleCountFlags::TYPE_1)
-        .usage(vk::ImageUsageFlags::COLOR_ATTACHMENT);
+        .usage(vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC);
     // SAFETY: the device is alive; the memory is bound before the view is made.
     unsafe {
         let image = device.create_image(&create, None)?;

@@ -18,7 +18,7 @@ pub struct Engine {
     family: u32,
     pub device: ash::Device,
     queue: vk::Queue,
-    allocator: Arc<Mutex<Allocator>>,
+    pub allocator: Arc<Mutex<Allocator>>,
     commands: Vec<vk::CommandBuffer>,
     fences: [vk::Fence; SLOTS],
     pub colour: Image,

@@ -35,7 +35,7 @@ fn is_depth(image: &Image) -> bool {
 }
 
 /// The access that draws into the image.
-fn drawn(image: &Image) -> Access {
+pub(crate) fn drawn(image: &Image) -> Access {
     if is_depth(image) { Access::DEPTH_WRITE } else { Access::COLOUR_WRITE }
 }
 

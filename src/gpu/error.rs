@@ -79,6 +79,7 @@ pub enum GpuError {
 
 /// The kind of memory that ran out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum MemoryOwner {
     /// The host's: `VK_ERROR_OUT_OF_HOST_MEMORY`.
     Host,
@@ -97,6 +98,7 @@ impl std::fmt::Display for MemoryOwner {
 
 /// The owner of a memory budget.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum BudgetOwner {
     /// [`HostDevice::memory_budget`](super::HostDevice::memory_budget).
     Host,

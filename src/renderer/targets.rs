@@ -195,3 +195,6 @@ impl<'a> Targets<'a> {
 fn spare(stages: &Stages, number: usize) -> &Image {
     stages.spare(number).expect("what the host does not want is drawn into an image of the stage")
 }
+
+#[cfg(test)]
+mod tests;

@@ -231,6 +231,8 @@ fn what_cannot_change_says_so_and_stays() {
     assert_eq!(renderer.set_transform(2, nan), Err(bad));
     let flat = DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0));
     assert_eq!(renderer.set_transform(2, flat), Err(InstanceError::Model(ModelError::Flat { instance: 2 })));
+    let huge = DAffine3::from_scale(DVec3::splat(1e103));
+    assert_eq!(renderer.set_transform(2, huge), Err(InstanceError::Model(ModelError::Scale { instance: 2 })));
     for colour in [[f32::NAN, 0.0, 0.0, 1.0], [2.0, 0.0, 0.0, 1.0]] {
         assert!(matches!(renderer.set_colour(2, Some(colour)), Err(InstanceError::Model(ModelError::Colour { .. }))));
         assert!(matches!(renderer.set_selected(2, Some(colour)), Err(InstanceError::Model(ModelError::Colour { .. }))));

@@ -421,7 +421,8 @@ enum SelvedgeStatus selvedge_host_report(const struct SelvedgeHost *host, uint32
 void selvedge_host_free(struct SelvedgeHost *host);
 
 // Moves an instance, counted from 0. `columns` takes part to model coordinates: the columns x, y, z and the
-// translation, millimetres. The next frame shows the new place; the model is not uploaded again.
+// translation, millimetres; finite, not flat, with factors of lengths from 1e-30 to 1e30. The next frame shows the new
+// place; the model is not uploaded again.
 //
 // # Safety
 // Pointers are null or point to what they say; `columns` to 12 numbers.

@@ -201,6 +201,8 @@ static int changes(const Device* d, const Images* images, const SelvedgeHost* ho
     WANT(ARGUMENT, selvedge_host_set_transform(host, 0, NULL), "transform is a null pointer");
     moved[9] = NAN;
     WANT(ARGUMENT, selvedge_host_set_transform(host, 0, moved), "is not finite");
+    const double huge[12] = { 1e103, 0, 0, 0, 1e103, 0, 0, 0, 1e103, 0, 0, 0 };
+    WANT(ARGUMENT, selvedge_host_set_transform(host, 0, huge), "1e30 times longer or shorter");
 
     WANT(OK, selvedge_host_set_visible(host, 0, 0), "");
     LOOK();
@@ -301,7 +303,8 @@ static int threads(const Device* d, const Images* images, const SelvedgeHost* ho
     int bad = 0;
     for (int frame = 0; frame < 4 && !bad; ++frame) {
         Seen seen;
-        bad = selvedge_host_set_visible(host, 9, 0) != ARGUMENT || strstr(selvedge_last_error(), "no instance 9") == NULL
+        bad = selvedge_host_set_visible(host, 9, 0) != ARGUMENT
+            || strstr(selvedge_last_error(), "no instance 9") == NULL
             || look(d, images, host, &seen) != 0
             || !(is_block(seen.left) ? seen.right == 0 : seen.left == 0 && is_block(seen.right));
     }

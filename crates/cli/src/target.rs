@@ -5,6 +5,7 @@
 //!   write ─▶ folder/.selvedge-XXXXXX ──whole──▶ renamed to folder/name             a failure leaves the old file
 //!        ├▶ a device, a pipe: written where it is
 //!        └▶ `-`: standard output, in one piece
+//!   begin ─▶ folder/.selvedge-XXXXXX ─replace──▶ renamed to folder/name            lines are added afterwards
 //! ```
 
 use anyhow::{Context, Result, bail};
@@ -167,6 +168,38 @@ fn beside(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
+/// A new file that waits beside its place; it is removed if it never goes there.
+pub struct Waiting {
+    temporary: tempfile::TempPath,
+    place: PathBuf,
+}
+
+impl Waiting {
+    /// Renames the file over the old one. Its handle writes on.
+    pub fn replace(self) -> Result<()> {
+        let Self { temporary, place } = self;
+        temporary.persist(&place).with_context(|| format!("cannot write {}", place.display()))
+    }
+}
+
+/// Begins a file beside its place, with the permissions of the old one. A device or a pipe has `None`: it is written
+/// where it is.
+pub fn begin(path: &Path) -> Result<(File, Option<Waiting>)> {
+    let begin = || -> io::Result<(File, Option<Waiting>)> {
+        let place = resolved(path)?;
+        let found = fs::metadata(&place).ok();
+        if found.as_ref().is_some_and(|found| !found.is_file()) {
+            return Ok((OpenOptions::new().write(true).open(&place)?, None));
+        }
+        let (file, temporary) = beside(place.parent().unwrap_or(Path::new(".")))?.into_parts();
+        if let Some(found) = found {
+            file.set_permissions(found.permissions())?;
+        }
+        Ok((file, Some(Waiting { temporary, place })))
+    };
+    begin().with_context(|| format!("cannot write {}", path.display()))
+}
+
 /// Lets `fill` write a file, which appears when it is complete; the error of either names the file.
 pub fn write(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
     if is_standard(path) {
@@ -174,21 +207,9 @@ pub fn write(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result<()>) -> Re
         fill(&mut bytes)?;
         return standard(&bytes);
     }
-    let write = || -> Result<()> {
-        let place = resolved(path)?;
-        let found = fs::metadata(&place).ok();
-        if found.as_ref().is_some_and(|found| !found.is_file()) {
-            return filled(OpenOptions::new().write(true).open(&place)?, fill).map(drop);
-        }
-        let (file, temporary) = beside(place.parent().unwrap_or(Path::new(".")))?.into_parts();
-        let file = filled(file, fill)?;
-        if let Some(found) = found {
-            file.set_permissions(found.permissions())?;
-        }
-        temporary.persist(&place)?;
-        Ok(())
-    };
-    write().with_context(|| format!("cannot write {}", path.display()))
+    let (file, waiting) = begin(path)?;
+    filled(file, fill).map(drop).with_context(|| format!("cannot write {}", path.display()))?;
+    waiting.map_or(Ok(()), Waiting::replace)
 }
 
 /// The file with what `fill` writes to it.

@@ -89,6 +89,101 @@ def test_what_is_there_is_left_alone(files, tmp_path, monkeypatch):
     assert {row["status"] for row in again} == {"skipped"}
 
 
+def facts(row):
+    """A row without its status, so that a picture that was drawn is compared with one that was skipped."""
+    return {name: cell for name, cell in row.items() if name != "status"}
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+def test_a_second_run_keeps_the_facts_of_the_first_one(renderer, files, tmp_path, ending):
+    table, output = tmp_path / f"all.{ending}", tmp_path / "{stem}_{view}.png"
+    if ending == "parquet":
+        pq = needs.package("pyarrow", "pyarrow.parquet")
+
+    def told():
+        if ending == "csv":
+            return list(csv.DictReader(table.open(newline="")))
+        return pq.read_table(table).to_pylist()
+
+    def run(files, **more):
+        more = {"manifest": table, "renderer": renderer, "size": SIZE, **more}
+        return selvedge.render_files(files, output, VIEWS, **more)
+
+    first, before = run(files), told()
+    assert [row["status"] for row in first] == ["drawn", "drawn", "failed", "failed", "drawn", "drawn"]
+    # what failed is tried again, and so is a file with a picture that is not there; rows keep the order of the files
+    (tmp_path / "c_iso.png").unlink()
+    second = run([files[1], files[2], files[0]], skip_existing=True)
+    assert [row["status"] for row in second] == ["failed", "failed", "drawn", "drawn", "skipped", "skipped"]
+    for k in (0, 1):
+        assert first[k]["sha256"] and first[k]["draw_s"] > 0 and first[k]["complete"] is True
+        assert facts(second[4 + k]) == facts(first[k])
+        assert [facts(row) for row in told() if row["status"] == "skipped"][k] == facts(before[k])
+    # facts of a row that was skipped are kept, too; one that failed has none, although its pictures are there
+    for word in WORDS:
+        (tmp_path / f"b_{word}.png").write_text("mine")
+    third = run(files, skip_existing=True)
+    assert {row["status"] for row in third} == {"skipped"}
+    assert [facts(row) for row in third[:2] + third[4:]] == [facts(row) for row in first[:2] + second[2:4]]
+    assert [(row["error"], row["sha256"], row["faces"]) for row in third[2:4]] == [("", "", None)] * 2
+    # a run that ends in the middle has the rows of all files that were skipped
+    for word in WORDS:
+        (tmp_path / f"b_{word}.png").unlink()
+    with pytest.raises(selvedge.ReadError, match="b.step"):
+        run(files[1:], skip_existing=True, fail_fast=True)
+    left = {(row["file"], row["status"]): row for row in told()}
+    assert left.keys() == {(str(files[1]), "failed"), (str(files[2]), "skipped")}
+    assert left[str(files[2]), "skipped"]["sha256"] == first[5]["sha256"]
+    # rows of other pictures are left out, and the call says so
+    with pytest.warns(RuntimeWarning, match="2 rows are of pictures that this call does not have"):
+        run(files[:1], skip_existing=True)
+    assert [row["file"] for row in told()] == [str(files[0])] * 2 and not list(tmp_path.glob(".part-*"))
+
+
+def test_a_torn_row_is_left_out_and_told(renderer, files, tmp_path):
+    table, output = tmp_path / "all.csv", tmp_path / "{stem}_{view}.png"
+    both = [files[0], files[2]]
+    first = selvedge.render_files(both, output, VIEWS, manifest=table, renderer=renderer, size=SIZE)
+    whole = table.read_bytes()
+    for torn, kept in [
+        (whole[:-2], 3),
+        (whole[:-1], 3),
+        (whole + b'x.step,,iso,x.png,failed,"one line\n', 4),
+        (whole[:10], 0),
+    ]:
+        table.write_bytes(torn)
+        with pytest.warns(RuntimeWarning, match="all.csv: the last row has no end"):
+            again = selvedge.render_files(both, output, VIEWS, manifest=table, skip_existing=True, size=SIZE)
+        assert [facts(row) for row in again[:kept]] == [facts(row) for row in first[:kept]]
+        assert all(row["sha256"] == "" and row["draw_s"] is None for row in again[kept:])
+        assert table.read_bytes().count(b"\n") == 1 + len(again)
+
+
+def test_a_run_that_cannot_begin_leaves_the_old_table(renderer, files, tmp_path, monkeypatch):
+    table, output = tmp_path / "all.csv", tmp_path / "{stem}.png"
+    selvedge.render_files([files[2]], output, manifest=table, renderer=renderer, size=SIZE)
+    before = table.read_bytes()
+
+    def refuses():
+        raise selvedge.DeviceError("no device")
+
+    with selvedge.Renderer() as closed:
+        pass
+    for skip in (False, True):
+        with pytest.raises(selvedge.ClosedError):
+            selvedge.render_files(files, output, manifest=table, renderer=closed, skip_existing=skip, size=SIZE)
+        with monkeypatch.context() as patched, pytest.raises(selvedge.DeviceError, match="no device"):
+            patched.setattr(selvedge, "Renderer", refuses)
+            selvedge.render_files(files, output, manifest=table, skip_existing=skip, size=SIZE)
+        assert table.read_bytes() == before and not list(tmp_path.glob(".part-*"))
+    # a table of other columns is refused, and so is a row with other cells
+    for other, told in [(b"name,size\nball,3\n", "columns"), (before.replace(b",true,", b",maybe,"), "row 1: .*maybe")]:
+        table.write_bytes(other)
+        with pytest.raises(ValueError, match=f"all.csv: .*{told}"):
+            selvedge.render_files(files, output, manifest=table, renderer=renderer, skip_existing=True, size=SIZE)
+        assert table.read_bytes() == other != before
+
+
 def test_the_first_failure_ends_it_where_that_is_wanted(renderer, files, tmp_path):
     table = tmp_path / "all.csv"
     with pytest.raises(selvedge.ReadError, match="b.step"):

@@ -88,6 +88,20 @@ def have_shapes(picture, names):
         assert array is picture.images[name] and array.flags.writeable and array.flags.c_contiguous
 
 
+def test_arrays_are_no_copies(renderer, bracket):
+    """NumPy has the picture's own memory: it belongs to a holder of Rust's, and each read gives the same."""
+    picture = renderer.render(bracket, "iso", SIZE, ["depth", "face", "uv", "normal", "part"])
+    for name in ("colour", "depth", "face", "uv", "normal", "part"):
+        array, again = getattr(picture, name), getattr(picture, name)
+        assert array.base is not None and not array.flags.owndata, name
+        assert not isinstance(array.base, np.ndarray), name
+        start, again_start = (a.__array_interface__["data"][0] for a in (array, again))
+        assert start == again_start and np.shares_memory(array, again), name
+        # what is written is there on the next read
+        array.flat[0] = 7
+        assert getattr(picture, name).flat[0] == 7, name
+
+
 def test_an_image_that_was_not_asked_for_says_so(renderer, block):
     picture = renderer.render(block, size=SIZE)
     with pytest.raises(AttributeError, match='outputs=."depth".'):

@@ -216,13 +216,23 @@ class Sized:
 class Packages(unittest.TestCase):
     def test_a_package_that_failed_has_its_reason(self):
         row = packages.row_of({"file": "part.step", "package": "f3d", "error": "no device"})
-        self.assertEqual((row[:3], len(row)), (["part.step", "f3d", Missing("no device")], 9))
+        self.assertEqual((row[:3], len(row)), (["part.step", "f3d", Missing("no device")], 11))
 
     def test_ours_has_the_verdict_of_the_judge(self):
         judge = {"judged": 2000, "wrong": 3, "depth_px": {"mean": 0.001, "worst": 0.02}}
         times = {"first_s": 0.5, "next_s": 4.0, "peak_mib": 300.0}
         row = packages.row_of({"file": "part.step", "package": "selvedge", "judge": judge} | times)
-        self.assertEqual(row[2:], [0.5, 4.0, 300.0, "3 wrong", "2,000 judged", 0.001, 0.02])
+        self.assertEqual(row[2:], [0.5, 4.0, 300.0, "3 wrong", "2,000 judged", 0.001, 0.02, "", ""])
+
+    def test_the_others_have_figures_in_their_columns(self):
+        row = {"file": "part.step", "package": "vtk", "first_s": 0.5, "next_s": 4.0, "peak_mib": 300.0}
+        row |= {"silhouette_px": 7, "seen_px": 900, "depth_px_mean": 0.3, "depth_px_worst": 9.0}
+        row = packages.row_of(row | {"depth_px_median": 0.1, "depth_px_99": 2.0})
+        self.assertEqual(row[5:], [7, 900, 0.3, 9.0, 0.1, 2.0])
+        section = Section(11, "", "")
+        packages.measure(mock.Mock(quick=True), section)
+        heads = [name.split(",")[0] for name in section.tables[0].head[7:]]
+        self.assertEqual(heads, ["depth: mean", "worst", "median", "99 %"])
 
     def test_a_comparison_that_is_ended_keeps_its_rows(self):
         """Of two files: one that is ended after its first package, and one before."""
@@ -273,7 +283,10 @@ class Packages(unittest.TestCase):
         row |= {"first_s": 0.5, "next_s": 4.0, "peak_mib": 300.0}
         report = {"rows": [row], "missing": {"vtk": ["OCP"]}, "size": 9, "views": 2, "machine": "", "date": ""}
         text = comparison().table(report)
-        self.assertIn("| 300 | 3 wrong | 0.001 | 0.020 |", text)
+        self.assertIn("| 300 | 3 wrong | 0.001 | 0.020 | - | - |", text)
+        head, rule, *rows = (line for line in text.splitlines() if line.startswith("|"))
+        self.assertEqual({line.count("|") for line in (head, rule, *rows)}, {head.count("|")})
+        self.assertTrue(head.endswith("| depth, px: mean | worst | median | 99 % |"))
         self.assertIn("vtk was not compared: OCP is not installed.", text)
 
 

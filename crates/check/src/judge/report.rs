@@ -7,6 +7,7 @@ const BINS: [f64; 9] = [0.0625, 0.125, 0.1875, 0.25, 0.375, 0.5, 1.0, 1.5, 2.0];
 
 /// The verdict on one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Class {
     /// Not examined.
     Unsampled,

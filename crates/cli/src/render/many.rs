@@ -28,14 +28,17 @@ use std::time::Instant;
 /// Draws all files.
 pub fn run(args: &RenderArgs, tasks: &[Task]) -> Result<Outcome> {
     let inputs: Vec<&Path> = tasks.iter().map(|task| task.model.as_path()).collect();
-    let mut manifest = args.many.manifest.as_ref().map(|path| Manifest::new(path, &inputs)).transpose()?;
     let (done, todo): (Vec<&Task>, Vec<&Task>) = tasks.iter().partition(|t| args.many.skip_existing && t.is_done());
+    let table = args.many.manifest.as_ref();
+    let mut manifest = table.map(|path| Manifest::new(path, &inputs, args.many.skip_existing)).transpose()?;
     for task in &done {
-        manifest.iter_mut().try_for_each(|manifest| manifest.others(task, &task.shots, None))?;
+        manifest.iter_mut().try_for_each(|manifest| manifest.skipped(task))?;
     }
-    let mut run = Run { args, manifest, device: None, failed: 0, complained: false };
+    let open = || model_renderer::opened(&args.frame, args.read.most_memory());
+    let device = (!todo.is_empty()).then(open).transpose()?;
+    manifest.iter_mut().try_for_each(|manifest| manifest.begin(&todo))?;
+    let mut run = Run { args, manifest, device, failed: 0, complained: false };
     if !todo.is_empty() {
-        run.device = Some(model_renderer::opened(&args.frame, args.read.most_memory())?);
         run.all(&todo)?;
     }
     let complained = run.device.take().is_some_and(model_renderer::close) | run.complained;
@@ -110,7 +113,7 @@ impl Run<'_> {
         let error = if explained(&error).contains(&name) { error } else { error.context(name) };
         let message = explained(&error);
         let left = &task.shots[count.min(task.shots.len())..];
-        self.manifest.iter_mut().try_for_each(|manifest| manifest.others(task, left, Some(&message)))?;
+        self.manifest.iter_mut().try_for_each(|manifest| manifest.failed(task, left, &message))?;
         if self.args.many.fail_fast || of_device(&error) {
             return Err(error);
         }

@@ -2,6 +2,7 @@
 
 mod devices;
 mod draw;
+mod manifest;
 mod many;
 mod measure;
 mod missing;

@@ -10,7 +10,7 @@ fn sample(name: &str) -> String {
 }
 
 /// A folder with a whole file, an invalid one, and another whole one, in this order.
-fn files() -> (tempfile::TempDir, Vec<String>) {
+pub(super) fn files() -> (tempfile::TempDir, Vec<String>) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).display().to_string();
     let names = ["a.step", "b.step", "c.csg"].map(path);
@@ -22,7 +22,7 @@ fn files() -> (tempfile::TempDir, Vec<String>) {
 
 const SMALL: [&str; 4] = ["--size", "48x32", "--views", "iso,front"];
 
-fn render(files: &[String], output: &Path, more: &[&str]) -> std::process::Output {
+pub(super) fn render(files: &[String], output: &Path, more: &[&str]) -> std::process::Output {
     let output = output.display().to_string();
     let files = files.iter().map(String::as_str);
     let all: Vec<&str> =
@@ -31,7 +31,7 @@ fn render(files: &[String], output: &Path, more: &[&str]) -> std::process::Outpu
 }
 
 /// Rows of a table, each by the names of its columns.
-fn rows(path: &Path) -> Vec<std::collections::HashMap<String, String>> {
+pub(super) fn rows(path: &Path) -> Vec<std::collections::HashMap<String, String>> {
     csv::Reader::from_path(path).expect("a table").deserialize().map(|row| row.expect("a row")).collect()
 }
 

@@ -18,6 +18,9 @@ const BEYOND: f64 = 1.0;
 /// Least volume of a transformed unit cube, as a share of the product of its sides' lengths: `1e-12` is near the
 /// rounding of a product of three `f64` matrices.
 const FLAT: f64 = 1e-12;
+/// Largest coordinates of a transform's axes, which are its factors of lengths: the engine has them in single precision,
+/// whose numbers with all digits end at 1e-38 and 3e38.
+const FACTORS: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
 /// Why a model cannot be drawn. Numbers are indices into the fields of [`Model`] and [`Part`].
 #[allow(missing_docs)] // the messages say what each field is
@@ -30,6 +33,9 @@ pub enum ModelError {
     /// A placement that is not finite.
     #[error("the transform of instance {instance} is not finite")]
     Transform { instance: usize },
+    /// A placement that makes bodies too large or too small for single precision.
+    #[error("the transform of instance {instance} makes lengths more than 1e30 times longer or shorter")]
+    Scale { instance: usize },
     /// A placement that makes a body a plane, a line or a point.
     #[error("the transform of instance {instance} makes everything flat")]
     Flat { instance: usize },
@@ -57,6 +63,7 @@ pub enum ModelError {
 /// the primitives of a solid.
 #[allow(missing_docs)] // the fields are those indices
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Coloured {
     /// An instance.
     Instance(usize),
@@ -107,7 +114,8 @@ impl Instance {
     /// Checks that it can be drawn as the instance of this number, in a model of so many parts.
     ///
     /// # Errors
-    /// [`ModelError::Part`], [`ModelError::Transform`], [`ModelError::Flat`], [`ModelError::Colour`].
+    /// [`ModelError::Part`], [`ModelError::Transform`], [`ModelError::Scale`], [`ModelError::Flat`],
+    /// [`ModelError::Colour`].
     pub fn check(&self, instance: usize, parts: usize) -> Result<(), ModelError> {
         if self.part >= parts {
             return Err(ModelError::Part { instance, part: self.part, parts });
@@ -116,6 +124,10 @@ impl Instance {
             return Err(ModelError::Transform { instance });
         }
         let m = self.transform.matrix3;
+        let factor = m.x_axis.abs().max(m.y_axis.abs()).max(m.z_axis.abs()).max_element();
+        if factor > 0.0 && !FACTORS.contains(&factor) {
+            return Err(ModelError::Scale { instance });
+        }
         let sides = m.x_axis.length() * m.y_axis.length() * m.z_axis.length();
         if m.determinant().abs() <= FLAT * sides {
             return Err(ModelError::Flat { instance });
@@ -172,7 +184,8 @@ fn check_colour(colour: Option<Colour>, what: Coloured) -> Result<(), ModelError
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Mesh, SurfaceKind};
+    use crate::csg::parse;
+    use crate::model::{GREY, Mesh, Primitive, Shape, Solid, SurfaceKind};
     use crate::spline::{Bezier, Surface};
     use glam::{DAffine3, DMat3, DVec3, DVec4};
 
@@ -200,20 +213,35 @@ mod tests {
         Model { parts: vec![part], instances: vec![placed], ..Model::default() }
     }
 
+    /// Two balls as one solid, the second with a colour of its own.
+    fn balls(colour: Colour) -> Solid {
+        let ball =
+            |id, colour| Primitive { shape: Shape::Sphere { radius: 1.0 }, transform: DAffine3::IDENTITY, colour, id };
+        Solid::new(vec![ball(3, GREY), ball(4, colour)], parse("A+B").unwrap().tree).unwrap()
+    }
+
     /// Each fault, with the sentence that names it.
     #[test]
     fn each_fault_is_named_with_its_place() {
         assert_eq!(plate().check(), Ok(()));
         let nan = [f32::NAN, 0.0, 0.0, 1.0];
         let flat = DAffine3::from_mat3(DMat3::from_diagonal(DVec3::new(1.0, 1.0, 0.0)));
+        let scale = "the transform of instance 0 makes lengths more than 1e30 times longer or shorter";
         type Change = Box<dyn Fn(&mut Model)>;
-        let faults: [(Change, &str); 12] = [
+        let faults: [(Change, &str); 17] = [
             (Box::new(|m| m.instances[0].part = 999), "instance 0 is of part 999, and there are 1"),
             (
                 Box::new(|m| m.instances[0].transform.translation.x = f64::NAN),
                 "the transform of instance 0 is not finite",
             ),
             (Box::new(move |m| m.instances[0].transform = flat), "the transform of instance 0 makes everything flat"),
+            (
+                Box::new(|m| m.instances[0].transform.matrix3 = DMat3::ZERO),
+                "the transform of instance 0 makes everything flat",
+            ),
+            // of which the volume of a cube is no number in double precision, or 0
+            (Box::new(|m| m.instances[0].transform = DAffine3::from_scale(DVec3::splat(1e103))), scale),
+            (Box::new(|m| m.instances[0].transform = DAffine3::from_scale(DVec3::splat(-1e-110))), scale),
             (Box::new(move |m| m.instances[0].colour = Some(nan)), "the colour of instance 0 is not between 0 and 1"),
             (Box::new(|m| m.parts[0].faces[0].id = 0), "face 0 of part 0 has number 0, which is the background's"),
             (Box::new(|m| m.parts[0].meshes[0].id = 0), "mesh 0 of part 0 has number 0, which is the background's"),
@@ -224,6 +252,15 @@ mod tests {
             (
                 Box::new(move |m| m.parts[0].meshes[0].colour = Some(nan)),
                 "the colour of mesh 0 of part 0 is not between 0 and 1",
+            ),
+            (
+                Box::new(move |m| m.solids = vec![balls(GREY), balls(nan)]),
+                "the colour of primitive 1 of solid 1 is not between 0 and 1",
+            ),
+            // a volume that trims is counted behind the solids
+            (
+                Box::new(|m| (m.solids, m.trim) = (vec![balls(GREY)], Some(balls([0.0, 0.0, -0.5, 1.0])))),
+                "the colour of primitive 1 of solid 1 is not between 0 and 1",
             ),
             (
                 Box::new(|m| m.parts[0].faces[0].loops.push(square(1.5, 1.75))),
@@ -250,12 +287,14 @@ mod tests {
         }
     }
 
-    /// Valid models from files: loops that end a little beyond the domain, mirrored and tiny placements.
+    /// Valid models from files: loops that end a little beyond the domain, mirrored, tiny and huge placements.
     #[test]
     fn what_files_hold_passes() {
         let mut model = plate();
         model.parts[0].faces[0].loops = vec![square(-1e-6, 1.0 + 1e-6)];
-        model.instances[0].transform = DAffine3::from_scale(DVec3::new(-1e-6, 1e-6, 1e-6));
-        assert_eq!(model.check(), Ok(()));
+        for scale in [1e-6, 1e-30, 1e30] {
+            model.instances[0].transform = DAffine3::from_scale(DVec3::new(-scale, scale, scale));
+            assert_eq!(model.check(), Ok(()), "{scale:e}");
+        }
     }
 }

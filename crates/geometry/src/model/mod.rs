@@ -132,7 +132,7 @@ pub struct Part {
 pub struct Instance {
     /// Index into [`Model::parts`].
     pub part: usize,
-    /// Part coordinates to model coordinates.
+    /// Part coordinates to model coordinates: finite, not flat, with factors of lengths from 1e-30 to 1e30.
     pub transform: DAffine3,
     /// Overrides the colours of the faces.
     pub colour: Option<Colour>,

@@ -10,6 +10,7 @@ use std::path::PathBuf;
 
 /// Where in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub enum Place {
     /// The file as a whole.
     File,

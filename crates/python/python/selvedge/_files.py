@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import io
 import json
 import os
+import shutil
 import time
+import warnings
 from collections import deque
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any, Union
@@ -66,8 +69,10 @@ def render_files(
     output: where the pictures go. {stem} stands for a file's name without folder and ending, {view} for the view's.
     arrays: images beside the colour by name, as in Renderer.render, and where their .npy files go: the same patterns.
     manifest: a .csv file, which has each row as soon as the picture is written, or a .parquet file, which is written at
-        the end and needs pyarrow.
-    skip_existing: files of which every output is there are left alone.
+        the end and needs pyarrow. It takes the place of an old one when the renderer is open.
+    skip_existing: files of which every output is there are left alone. The old manifest is read: their pictures keep
+        the facts of their rows there, but for rows that failed. Rows of other pictures are left out, and so is half a
+        last row of a run that was killed; a RuntimeWarning says so.
     fail_fast: the first failure is raised. Without it a file or picture that fails has a row that says why, and the
         others are drawn. A picture that shows nothing of its model has failed.
     strict, search, limit_mib: as in open.
@@ -80,11 +85,12 @@ def render_files(
 
     Returns the rows, each a dict: file, sha256, view, output, status ("drawn", "skipped" or "failed"), error, camera
     (JSON, as Picture.camera), faces, instances, warnings, complete, clamps, and the seconds read_s, upload_s and
-    draw_s. Numbers of pictures that are not drawn are None, and empty in the CSV file.
+    draw_s. Numbers of pictures that are not drawn are None, and empty in the CSV file, where no old manifest has them.
+    The CSV file has the rows of skipped files first.
 
-    Raises ValueError or TypeError for wrong arguments and for two outputs in one place, FileNotFoundError for a folder
-    that is not there, ImportError where pyarrow is missing, all before anything is drawn; ClosedError. After Ctrl-C the
-    manifest has the rows so far.
+    Raises ValueError or TypeError for wrong arguments, for two outputs in one place and for an old manifest of other
+    columns, FileNotFoundError for a folder that is not there, ImportError where pyarrow is missing, all before anything
+    is drawn; ClosedError. After Ctrl-C the manifest has the rows so far, and those of all skipped files.
     """
     if isinstance(files, (str, bytes, os.PathLike)) or isinstance(views, str):
         raise TypeError("files and views are lists, as in render_files([file], output, [view])")
@@ -101,7 +107,9 @@ def render_files(
         _native.validate({**asked, "view": view})
     tasks = _tasks([os.fspath(file) for file in files], output, views, arrays, manifest)
     todo = [not (skip_existing and all(shot.is_there() for shot in shots)) for shots in tasks.values()]
-    rows = _Rows(manifest)
+    every = [shot for shots in tasks.values() for shot in shots]
+    skipped = [shot for shots, wanted in zip(tasks.values(), todo) if not wanted for shot in shots]
+    rows = _Rows(manifest, skipped, _old(manifest, every) if skip_existing else {})
     waiting: deque[_Shot] = deque()
     own: selvedge.Renderer | None = None
 
@@ -114,6 +122,9 @@ def render_files(
     try:
         if renderer is None and any(todo):
             renderer = own = selvedge.Renderer()
+        elif renderer is not None and renderer.closed and any(todo):
+            raise ClosedError("the renderer was closed")
+        rows.begin()
         for (file, shots), wanted in zip(tasks.items(), todo):
             opened = _Opened(file, reading) if wanted else None
             for shot in shots:
@@ -211,25 +222,50 @@ class _Shot:
 
 
 class _Rows:
-    """The rows so far. A CSV file has each at once, a Parquet file all of them at the end."""
+    """The rows so far. A CSV file has each at once, a Parquet file all of them at the end; both begin with `begin`."""
 
-    def __init__(self, manifest: PathLike | None):
+    def __init__(self, manifest: PathLike | None, skipped: Iterable[_Shot], old: Mapping[_Key, dict[str, Any]]):
         self.all: list[dict[str, Any]] = []
+        # of skipped files, which the table has from the beginning
+        self._skipped = deque(shot.row for shot in skipped)
         self._file: IO[str] | None = None
         self._parquet: Any = None
+        self._path = "" if manifest is None else os.fspath(manifest)
+        self._begun = False
+        for row in self._skipped:
+            facts = old.get(_key(row), {})
+            row.update({name: cell for name, cell in facts.items() if name not in ("status", "error")})
         if manifest is None:
             return
-        ending = Path(manifest).suffix.lower()
-        if ending == ".parquet":
-            self._parquet = _pyarrow(), os.fspath(manifest)
-        elif ending == ".csv":
-            self._file = open(manifest, "w", encoding="utf-8", newline="")
-            self._line(COLUMNS)
+        if _is_parquet(self._path):
+            self._parquet = _pyarrow()
         else:
-            raise ValueError(f"{manifest}: a manifest is CSV or Parquet, so its name ends in .csv or .parquet")
+            self._path = os.path.realpath(self._path)  # a link leads where it led
+            self._file = open(_beside(self._path), "w", encoding="utf-8", newline="")
+            with suppress(FileNotFoundError):
+                shutil.copymode(self._path, _beside(self._path))
+            self._line(COLUMNS)
+            for row in self._skipped:
+                self._cells(row)
+
+    def begin(self) -> None:
+        """Puts a CSV file in the place of an old one; rows are added to it there."""
+        self._begun = True
+        if self._file is not None:
+            os.fsync(self._file.fileno())
+            # some systems rename no file that is open
+            self._file.close()
+            os.replace(_beside(self._path), self._path)
+            self._file = open(self._path, "a", encoding="utf-8", newline="")
 
     def add(self, row: dict[str, Any]) -> None:
         self.all.append(row)
+        if row["status"] == "skipped":
+            self._skipped.popleft()
+        else:
+            self._cells(row)
+
+    def _cells(self, row: dict[str, Any]) -> None:
         self._line({True: "true", False: "false"}[cell] if isinstance(cell, bool) else cell for cell in row.values())
 
     def _line(self, cells: Iterable[Any]) -> None:
@@ -240,18 +276,112 @@ class _Rows:
     def close(self) -> None:
         if self._file is not None:
             self._file.close()
-        if self._parquet is not None:
-            (pa, pq), path = self._parquet
+            if not self._begun:
+                with suppress(FileNotFoundError):
+                    os.unlink(_beside(self._path))
+        if self._parquet is not None and self._begun:
+            pa, pq = self._parquet
             schema = pa.schema([(name, pa.type_for_alias(kind)) for name, kind in COLUMNS.items()])
-            with _whole(path) as beside:
-                pq.write_table(pa.Table.from_pylist(self.all, schema=schema), beside)
+            with _whole(self._path) as beside:
+                pq.write_table(pa.Table.from_pylist([*self.all, *self._skipped], schema=schema), beside)
+
+
+# the picture of a row: its file, view and output
+_Key = tuple[str, str, str]
+
+
+def _key(row: Mapping[str, Any]) -> _Key:
+    return row["file"], row["view"], row["output"]
+
+
+def _is_parquet(manifest: PathLike) -> bool:
+    ending = Path(manifest).suffix.lower()
+    if ending not in (".parquet", ".csv"):
+        raise ValueError(f"{manifest}: a manifest is CSV or Parquet, so its name ends in .csv or .parquet")
+    return ending == ".parquet"
+
+
+def _old(manifest: PathLike | None, shots: Iterable[_Shot]) -> dict[_Key, dict[str, Any]]:
+    """The rows of an old manifest by their pictures, without those that failed."""
+    if manifest is None:
+        return {}
+    is_parquet, path = _is_parquet(manifest), os.fspath(manifest)
+    if not os.path.isfile(path):
+        return {}
+    rows = _old_parquet(path) if is_parquet else _old_csv(path)
+    old = {_key(row): row for row in rows if row["status"] != "failed"}
+    left = len(old.keys() - {_key(shot.row) for shot in shots})
+    if left:
+        text = f"{path}: {left} rows are of pictures that this call does not have: they are left out"
+        warnings.warn(text, RuntimeWarning, stacklevel=3)
+    return old
+
+
+def _old_parquet(path: str) -> list[dict[str, Any]]:
+    _, pq = _pyarrow()
+    table = pq.read_table(path)
+    _check_columns(path, table.column_names)
+    return table.to_pylist()
+
+
+def _old_csv(path: str) -> list[dict[str, Any]]:
+    with open(path, "rb") as source:
+        text = source.read()
+    whole = text.rfind(b"\n") + 1
+    try:
+        lines = list(csv.reader(io.StringIO(text[:whole].decode(), newline="")))
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise ValueError(f"{path}: {error}") from error
+    # lines of a quoted cell end before its row does
+    is_torn = len(lines) > 1 and len(lines[-1]) != len(COLUMNS)
+    if is_torn:
+        lines.pop()
+    if is_torn or whole < len(text):
+        told = f"{path}: the last row has no end, as if a run was killed: it is left out"
+        warnings.warn(told, RuntimeWarning, stacklevel=4)
+    if lines:
+        _check_columns(path, lines[0])
+    rows = []
+    for number, cells in enumerate(lines[1:], 1):
+        try:
+            if len(cells) != len(COLUMNS):
+                raise ValueError(f"{len(cells)} cells of {len(COLUMNS)}")
+            rows.append({name: READ[kind](cell) for (name, kind), cell in zip(COLUMNS.items(), cells)})
+        except ValueError as error:
+            raise ValueError(f"{path}: row {number}: {error}") from error
+    return rows
+
+
+def _truth(cell: str) -> bool:
+    if cell not in ("true", "false"):
+        raise ValueError(f"neither true nor false: {cell}")
+    return cell == "true"
+
+
+def _optional(read: Callable[[str], Any]) -> Callable[[str], Any]:
+    return lambda cell: read(cell) if cell else None
+
+
+# how a cell of a CSV file is read
+READ = {"string": str, "int64": _optional(int), "bool": _optional(_truth), "double": _optional(float)}
+
+
+def _check_columns(path: str, columns: Sequence[str]) -> None:
+    if list(columns) != list(COLUMNS):
+        text = "the columns are not those of a manifest of this version, and skip_existing would lose the rows"
+        raise ValueError(f"{path}: {text}: move the file away or name another")
+
+
+def _beside(path: str) -> str:
+    """A name beside the path, of a file that is not in its place yet."""
+    folder, name = os.path.split(path)
+    return os.path.join(folder, f".part-{name}")
 
 
 @contextmanager
 def _whole(path: str) -> Iterator[str]:
     """A name beside the path: its file takes the place of the path's once it is whole."""
-    folder, name = os.path.split(path)
-    beside = os.path.join(folder, f".part-{name}")
+    beside = _beside(path)
     try:
         yield beside
         os.replace(beside, path)

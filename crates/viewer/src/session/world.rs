@@ -165,9 +165,9 @@ impl World {
         let warning = |w: &selvedge_io::import::Warning| {
             let times = if w.count > 1 { format!(" ({} times)", w.count) } else { String::new() };
             match w.place {
-                selvedge_io::import::Place::File => format!("{}{times}", w.message),
                 selvedge_io::import::Place::Line(line) => format!("line {line}: {}{times}", w.message),
                 selvedge_io::import::Place::Entity { id, line } => format!("#{id}, line {line}: {}{times}", w.message),
+                _ => format!("{}{times}", w.message),
             }
         };
         self.files.push(FilePart {
