@@ -26,6 +26,23 @@ pub fn vector(p: DVec3) -> String {
     p.to_array().map(number).join(", ")
 }
 
+/// The names of a face's knots along u and v.
+pub const KNOTS: [&str; 2] = ["knots in u", "knots in v"];
+/// Distinct knots that are listed of one direction.
+const MOST_KNOTS: usize = 12;
+
+/// A knot vector: each value once, with its multiplicity where that is more than 1. Knots are
+/// compared exactly. After [`MOST_KNOTS`] values follows how many there are.
+fn knots(knots: &[f64]) -> String {
+    let values: Vec<&[f64]> = knots.chunk_by(|a, b| a == b).collect();
+    let listed = values.iter().take(MOST_KNOTS).map(|same| match same {
+        [one] => number(*one),
+        _ => format!("{} ×{}", number(same[0]), same.len()),
+    });
+    let more = (values.len() > MOST_KNOTS).then(|| format!("… ({} in all)", values.len()));
+    listed.chain(more).collect::<Vec<_>>().join(", ")
+}
+
 /// A face's kind in words.
 pub fn kind(kind: SurfaceKind) -> &'static str {
     match kind {
@@ -129,7 +146,7 @@ fn face_lines(face: &Face, lines: &mut Description) {
     lines.push(("degree", format!("{pu} x {pv}")));
     lines.push(("control points", format!("{nu} x {nv}")));
     let (u, v) = face.surface.knots();
-    lines.push(("knots", format!("{} x {}", u.len(), v.len())));
+    lines.extend([(KNOTS[0], knots(u)), (KNOTS[1], knots(v))]);
     lines.push(("rational", if face.surface.is_polynomial() { "no" } else { "yes" }.to_owned()));
     let curves: usize = face.loops.iter().map(|l| l.curves().count()).sum();
     lines.push(("trims", format!("{} loops, {curves} curves", face.loops.len())));
@@ -212,12 +229,38 @@ pub fn command(session: &Session, camera: &Camera, settings: &Settings, style: S
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec4;
+    use selvedge::spline::Surface;
 
     #[test]
     fn numbers_have_the_digits_that_they_need() {
         let all = [0.0, 5.0, -0.5, 12.7, 1.0 / 3.0, 1234567.0, 2.0e-7, 25.4 / 3.0, -1e-17];
         let text = all.map(number);
         assert_eq!(text, ["0", "5", "-0.5", "12.7", "0.333333333333", "1234567", "0.0000002", "8.46666666667", "0"]);
+    }
+
+    #[test]
+    fn knots_are_listed_once_with_their_multiplicities() {
+        assert_eq!(knots(&[0.0, 0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0, 1.0]), "0 ×4, 0.5, 1 ×4");
+        let ends: [f64; 2] = [1.0, 1.0 + f64::EPSILON];
+        assert_eq!(knots(&ends), "1, 1", "two values, whose first twelve digits are the same");
+        let of = |count: u32| knots(&(0..count).map(f64::from).collect::<Vec<_>>());
+        assert_eq!(of(12), "0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11");
+        assert_eq!(of(40), "0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, … (40 in all)");
+    }
+
+    /// Cubic of two spans along u, straight along v.
+    #[test]
+    fn a_face_has_its_degrees_and_knots() {
+        let (along, across) = (vec![0.0, 0.0, 0.0, 0.0, 0.25, 2.0, 2.0, 2.0, 2.0], vec![-1.0, -1.0, 3.0, 3.0]);
+        let point = |i: u32| DVec4::new(f64::from(i % 5), f64::from(i / 5), 0.0, 1.0);
+        let surface = Surface::new((3, 1), along, across, (0..10).map(point).collect()).expect("a surface");
+        let face = Face { id: 7, kind: SurfaceKind::BSpline, surface, loops: vec![], same_sense: true, colour: None };
+        let mut lines = Vec::new();
+        face_lines(&face, &mut lines);
+        let of = |name: &str| lines.iter().find(|(what, _)| *what == name).map(|(_, value)| value.as_str());
+        let told = ["degree", "control points", "knots in u", "knots in v"].map(of);
+        assert_eq!(told, [Some("3 x 1"), Some("5 x 2"), Some("0 ×4, 0.25, 2 ×4"), Some("-1 ×2, 3 ×2")]);
     }
 
     /// The program's own default is ambient occlusion, and a light that casts no shadows.
