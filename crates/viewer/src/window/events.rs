@@ -82,6 +82,7 @@ impl ApplicationHandler<Event> for App {
                     MouseScrollDelta::LineDelta(x, y) => Scroll::Lines(DVec2::new(f64::from(*x), f64::from(*y))),
                     MouseScrollDelta::PixelDelta(by) => Scroll::Pixels(DVec2::new(by.x, by.y)),
                 };
+                tracing::debug!("scrolled by {scroll:?}");
                 let scrolled = self.settings.preset.scroll(scroll, self.held);
                 let style = self.settings.orbit;
                 self.move_at_cursor(|view, at, now| view.scroll(at, scrolled, style, now));
