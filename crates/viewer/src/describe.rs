@@ -1,10 +1,10 @@
 //! Exact descriptions of selected items, and the command that draws the view.
 
+pub mod command;
+
 use crate::session::{Picked, PointKind, Session, World};
-use crate::settings::{Lines, SUN, Settings};
 use glam::{DVec2, DVec3};
-use selvedge::model::{Camera, EdgeKind, Face, Projection, SurfaceKind};
-use selvedge::picture::Style;
+use selvedge::model::{EdgeKind, Face, SurfaceKind};
 
 /// Lines of a description: name and value.
 pub type Description = Vec<(&'static str, String)>;
@@ -177,55 +177,6 @@ pub fn extent(session: &Session) -> Vec<DVec3> {
     points
 }
 
-/// A word of a command line, quoted for a shell where it must be.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
-}
-
-/// The line of `selvedge render` for this view. It draws one file: the first one, where several are open.
-pub fn command(session: &Session, camera: &Camera, settings: &Settings, style: Style) -> String {
-    let triple = |p: DVec3| p.to_array().map(|x| format!("{x}")).join(",");
-    let file = session.world.files.first().map_or("FILE".into(), |file| file.path.to_string_lossy());
-    let mut words = vec!["selvedge".to_owned(), "render".to_owned(), quoted(&file)];
-    let mut push = |name: &str, value: String| words.push(format!("{name}={}", quoted(&value)));
-    push("--output", "view.png".to_owned());
-    push("--size", format!("{}x{}", camera.size.0, camera.size.1));
-    push("--eye", triple(camera.eye));
-    push("--target", triple(camera.target));
-    push("--up", triple(camera.up));
-    match camera.projection {
-        Projection::Perspective { fov_y } => push("--fov", format!("{}", fov_y.to_degrees())),
-        Projection::Orthographic { height } => push("--ortho", format!("{height}")),
-        // no argument sets a calibrated camera, and the window never shows one
-        Projection::Pinhole { .. } => {}
-    }
-    push("--style", style.name().to_owned());
-    for section in session.scene.now().sections.iter().filter(|s| s.on) {
-        push("--section", format!("{},{}", triple(section.normal), section.offset));
-    }
-    let edges = match settings.lines {
-        Lines::All => "all",
-        Lines::Sharp => "sharp",
-        Lines::None => "none",
-    };
-    push("--edges", edges.to_owned());
-    push("--smooth", if settings.smooth { "borders" } else { "none" }.to_owned());
-    let ambient = settings.ambient_radius(session.world.bounds.diagonal());
-    push("--ao", ambient.map_or("none".to_owned(), |radius| format!("{radius}")));
-    if settings.shadows {
-        push("--sun", triple(SUN));
-    }
-    for (flag, on) in [("--silhouettes", settings.silhouettes), ("--hidden-lines", settings.hidden_lines)] {
-        words.extend(on.then(|| flag.to_owned()));
-    }
-    words.join(" ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -261,25 +212,5 @@ mod tests {
         let of = |name: &str| lines.iter().find(|(what, _)| *what == name).map(|(_, value)| value.as_str());
         let told = ["degree", "control points", "knots in u", "knots in v"].map(of);
         assert_eq!(told, [Some("3 x 1"), Some("5 x 2"), Some("0 ×4, 0.25, 2 ×4"), Some("-1 ×2, 3 ×2")]);
-    }
-
-    /// The program's own default is ambient occlusion, and a light that casts no shadows.
-    #[test]
-    fn the_command_names_the_light_of_the_window() {
-        let bounds = selvedge::model::Bounds { min: DVec3::ZERO, max: DVec3::new(3.0, 0.0, 4.0) };
-        let camera = Camera::around(bounds, DVec3::ONE, DVec3::Z, 0.6, (64, 48));
-        let mut world = World::default();
-        world.bounds = bounds;
-        let session = Session { world: std::sync::Arc::new(world), ..Session::default() };
-        let of = |settings: &Settings| command(&session, &camera, settings, Style::Shaded);
-        let plain = of(&Settings::default());
-        assert!(plain.contains(" --ao=none") && !plain.contains("--sun"), "{plain}");
-        let lit = of(&Settings { ambient: true, shadows: true, ..Settings::default() });
-        assert!(lit.contains(" --ao=0.2") && lit.contains(" --sun=0.5,-0.7,1"), "{lit}");
-    }
-
-    #[test]
-    fn words_of_a_shell_are_quoted() {
-        assert_eq!([quoted("a/b.step"), quoted("a b"), quoted("it's")], ["a/b.step", "'a b'", r"'it'\''s'"]);
     }
 }
