@@ -15,8 +15,8 @@ pub struct ShownArgs {
     /// instance image, and the file's solids come behind them; before any section
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
     pub hide: Vec<Numbers>,
-    /// Give an occurrence a CSS colour, by its number; through one with an opacity below 1 one sees. May be given
-    /// several times
+    /// Give an occurrence a CSS colour, by its number; an opacity below 1 makes it transparent. May be given several
+    /// times
     #[arg(long, value_name = "NUMBER=COLOUR")]
     pub paint: Vec<Paint>,
 }
