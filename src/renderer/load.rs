@@ -41,9 +41,10 @@ impl Renderer {
         self.upload_with_progress(model, settings, &|_| ())
     }
 
-    /// As [`upload_with`](Self::upload_with). `progress` is called by several threads, in no order, with the number of faces
-    /// of placed parts that have become ready since its last call; that is 0 before each part is put in place or searched
-    /// for edges, and before pipelines are made. It may unwind to end the upload: the model before stays.
+    /// As [`upload_with`](Self::upload_with). `progress` is called by several threads, in no order, with the number
+    /// of faces of placed parts that have become ready since its last call; that is 0 before each part is put in
+    /// place or searched for edges, and before pipelines are made. It may unwind to end the upload: the model before
+    /// stays.
     ///
     /// # Errors
     /// As [`upload`](Self::upload).

@@ -249,9 +249,9 @@ impl Program {
         self.seen(at, false);
     }
 
-    /// Drags with a button in a few steps, each of which a frame has seen: panels would take a press and a release within
-    /// one frame for a click, and a view turns about the point that a frame after the press has found. Returns what it
-    /// says until it rests.
+    /// Drags with a button in a few steps, each of which a frame has seen: panels would take a press and a release
+    /// within one frame for a click, and a view turns about the point that a frame after the press has found. Returns
+    /// what it says until it rests.
     pub fn drag(&mut self, display: &Display, button: u32, from: DVec2, by: DVec2) -> Vec<String> {
         let before = self.all.len();
         self.point(display, from);
