@@ -29,7 +29,7 @@ impl View {
         let silhouettes = model.parts.iter().any(|part| !part.meshes.is_empty());
         let settings = EdgeSettings { tangent: TangentEdges::Full, silhouettes, ..EdgeSettings::default() };
         let mut data = SceneData::new(model, crate::picture::SceneSettings::default()).unwrap();
-        data.find_edges(model, settings).unwrap();
+        data.find_edges(model, settings, &|_| ()).unwrap();
         let pixels = camera.pixel_matrix();
         let views = data.placements.iter().map(|&placement| view(pixels, placement)).collect();
         Self { data, views, frame: seen_by(&camera, abi::Frame::default()), camera }

@@ -41,8 +41,10 @@ impl Renderer {
         self.upload_with_progress(model, settings, &|_| ())
     }
 
-    /// As [`upload_with`](Self::upload_with). `progress` is called by several threads, in no order, with the number of faces
-    /// of placed parts that have become ready since its last call.
+    /// As [`upload_with`](Self::upload_with). `progress` is called by several threads, in no order, with the number
+    /// of faces of placed parts that have become ready since its last call; that is 0 before each part is put in
+    /// place or searched for edges, and before pipelines are made. It may unwind to end the upload: the model before
+    /// stays.
     ///
     /// # Errors
     /// As [`upload`](Self::upload).
@@ -175,11 +177,12 @@ impl Loaded {
         data.has_numbers = formats.outputs.has_numbers();
         if let Some(edges) = request.edges {
             match &cut {
-                None => data.find_edges(whole, edges)?,
+                None => data.find_edges(whole, edges, progress)?,
                 Some(cut) => data.find_edges_of_cut(whole, cut, edges)?,
             }
             data.find_edges_of_operands(whole)?;
         }
+        progress(0);
         let picking = match &cut {
             None => data.picking(whole, |_, face| face),
             Some(cut) => data.picking(&cut.model, |part, face| cut.face_of(part, face)),
@@ -188,6 +191,7 @@ impl Loaded {
         let joinable = if is_cut { None } else { Joinable::of(&data, whole, request) };
         let counts = Counts::of(&data);
         counts.check(Ranges::of(device).quads)?;
+        progress(0);
         let passes = Passes::new(device, &data, formats.of_passes())?;
         let may_be_exact = may_change && too_many.is_none();
         Ok(Self {

@@ -13,6 +13,7 @@
 use super::data::SceneData;
 use super::deep_zoom::KnownEdges;
 use super::fold_seeds::{PartFaces, seeds};
+use super::parts::Told;
 use crate::abi;
 use crate::model::{Edge, EdgeKind, EdgeLimits, Edges, Model, Part, SmoothSide};
 use crate::picture::{EdgeChoice, EdgeSettings, LineStyle};
@@ -51,8 +52,13 @@ pub(crate) struct Placing<'a> {
 
 impl SceneData {
     /// Finds the edges of the scene's model.
-    pub(crate) fn find_edges(&mut self, model: &Model, settings: EdgeSettings) -> Result<(), UndrawnEdges> {
-        let edges = KnownEdges::found(edges_of(model)?);
+    pub(crate) fn find_edges(
+        &mut self,
+        model: &Model,
+        settings: EdgeSettings,
+        told: Told<'_>,
+    ) -> Result<(), UndrawnEdges> {
+        let edges = KnownEdges::found(edges_of(model, told)?);
         let mut placed = vec![None; model.instances.len()];
         for (nth, [_, instance]) in (0..).zip(&self.sources).filter(|(_, source)| source[1] > 0) {
             placed[*instance as usize - 1] = Some(nth);
@@ -227,8 +233,11 @@ pub struct UndrawnEdges {
     pub source: crate::edges::EdgeError,
 }
 
-/// The edges of all parts.
-pub(super) fn edges_of(model: &Model) -> Result<Vec<Edges>, UndrawnEdges> {
-    let edges = |(part, p): (usize, &Part)| p.edges().map_err(|source| UndrawnEdges { part, source });
+/// The edges of all parts. Calls `told` before each part.
+pub(super) fn edges_of(model: &Model, told: Told<'_>) -> Result<Vec<Edges>, UndrawnEdges> {
+    let edges = |(part, p): (usize, &Part)| {
+        told(0);
+        p.edges().map_err(|source| UndrawnEdges { part, source })
+    };
     model.parts.par_iter().enumerate().map(edges).collect()
 }

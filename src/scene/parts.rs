@@ -15,7 +15,8 @@ use std::collections::HashMap;
 /// Faces in a batch: enough work for all threads, and little memory compared with a large scene.
 const BATCH: usize = 4096;
 
-/// Progress callback: the number of faces made since the last call. It runs on several threads, in no order.
+/// Progress callback: the number of faces made since the last call, which is 0 between other steps. It runs on several
+/// threads, in no order, and may unwind.
 pub(crate) type Told<'a> = &'a (dyn Fn(usize) + Sync);
 
 /// A part, and the other inputs of its faces.
@@ -114,6 +115,8 @@ pub(super) fn each_made(
                     parts[n].named(faces.expect("it is kept for those that are like it"))
                 }
             };
+            // putting a large part in place takes long
+            told(0);
             take(&parts[n], faces);
         }
         start = end;
@@ -193,6 +196,21 @@ mod tests {
             assert_eq!(taken, 5);
             assert_eq!(told.into_inner(), model.face_count());
         }
+    }
+
+    #[test]
+    fn a_callback_ends_it_before_a_part_is_passed_on() {
+        let model = pairs();
+        let parts: Vec<_> = model.parts.iter().map(|part| placed(part, TakenWay::Exact)).collect();
+        let (mut taken, calls) = (0, AtomicUsize::new(0));
+        let tell = |n: usize| {
+            if n == 0 && calls.fetch_add(1, Ordering::Relaxed) == 2 {
+                std::panic::resume_unwind(Box::new(()));
+            }
+        };
+        let work = std::panic::AssertUnwindSafe(|| each_made(&parts, &tell, |_, _| taken += 1));
+        assert!(std::panic::catch_unwind(work).is_err());
+        assert_eq!(taken, 2, "of {}", parts.len());
     }
 
     #[test]

@@ -29,9 +29,10 @@ pub use view::ViewArgs;
 pub use write::{ConvertArgs, ExportArgs};
 
 use crate::cut::CutArgs;
+use crate::shown::ShownArgs;
 use crate::sweep::Divided;
 use crate::trims::Way;
-use crate::values::{at_least_one, curvature, direction, mebibytes, times, tolerance, vector, zoom};
+use crate::values::{at_least_one, curvature, direction, mebibytes, near_far, times, tolerance, vector, zoom};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use selvedge::model::Model;
@@ -171,6 +172,8 @@ pub struct RenderArgs {
     pub read: ReadArgs,
     #[command(flatten)]
     pub subdivide: SubdivideArgs,
+    #[command(flatten)]
+    pub shown: ShownArgs,
     #[command(flatten)]
     pub cut: CutArgs,
     /// PNG file to write; `-` is standard output, here and for any other single file. With several views each adds its
@@ -391,6 +394,10 @@ pub struct CameraArgs {
     /// Parallel projection; the height of the picture in millimetres
     #[arg(long, value_name = "HEIGHT")]
     pub ortho: Option<f64>,
+    /// Distances of the near and the far plane from the eye, millimetres: only what lies between them is drawn. Without
+    /// it all of the model in front of the eye
+    #[arg(long, value_name = "NEAR,FAR", value_parser = near_far, requires = "eye")]
+    pub near_far: Option<(f64, f64)>,
 }
 
 /// How a frame is drawn.

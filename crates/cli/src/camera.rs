@@ -104,10 +104,12 @@ impl CameraArgs {
         let up = self.up.unwrap_or(DVec3::Z);
         if let Some(eye) = self.eye {
             let target = self.target.unwrap_or(if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() });
-            return fitted(
-                Camera { eye, target, ..self.projected(Camera::around(bounds, Camera::FROM, up, self.fov(), size)) },
-                bounds,
-            );
+            let around = self.projected(Camera::around(bounds, Camera::FROM, up, self.fov(), size));
+            let camera = Camera { eye, target, ..around };
+            let Some(depth_range) = self.near_far else { return fitted(camera, bounds) };
+            let camera = Camera { depth_range, ..camera };
+            camera.check().context("the camera shows nothing")?;
+            return Ok(camera);
         }
         let mut camera = self.framed(model, Camera::FROM, up, size);
         if let Some(target) = self.target {

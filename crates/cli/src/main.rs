@@ -40,6 +40,7 @@ mod render;
 mod report;
 mod series;
 mod sheet;
+mod shown;
 mod sweep;
 mod target;
 mod thumbnail;

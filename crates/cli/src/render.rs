@@ -77,6 +77,7 @@ fn pictures(
     let preparing = limits.begin(Work::Preparing);
     let outputs = task.outputs();
     target::check_read(&import, &outputs)?;
+    args.shown.apply(&mut import.model)?;
     args.cut.apply(&mut import.model, &args.read)?;
     let size = args.camera.pixels(&import);
     let sheet = args.contact_sheet.then(|| Sheet::new(size, task.shots.len())).transpose()?;

@@ -12,6 +12,15 @@ pub fn vector(text: &str) -> Result<DVec3, String> {
     }
 }
 
+/// `NEAR,FAR`.
+pub fn near_far(text: &str) -> Result<(f64, f64), String> {
+    let numbers = text
+        .split_once(',')
+        .and_then(|(near, far)| near.trim().parse::<f64>().ok().zip(far.trim().parse::<f64>().ok()));
+    let numbers = numbers.filter(|(near, far)| 0.0 < *near && near < far && far.is_finite());
+    numbers.ok_or_else(|| "wants two distances above 0, the larger one last, as in 0.1,50".into())
+}
+
 /// `X,Y,Z`, not all 0.
 pub fn direction(text: &str) -> Result<DVec3, String> {
     let v = vector(text)?;
@@ -85,6 +94,14 @@ mod tests {
         assert_eq!(vector("-1, 2.5,3e2"), Ok(DVec3::new(-1.0, 2.5, 300.0)));
         for bad in ["1,2", "1,2,3,4", "1,2,x", "1,2,nan", ""] {
             assert!(vector(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn planes_near_and_far() {
+        assert_eq!(near_far("0.1, 5e1"), Ok((0.1, 50.0)));
+        for bad in ["1", "0,1", "2,1", "1,1", "-1,1", "1,inf", "nan,1", "1,2,3"] {
+            assert!(near_far(bad).is_err(), "{bad}");
         }
     }
 

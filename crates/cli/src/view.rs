@@ -30,6 +30,9 @@ pub fn is_of_device(error: &anyhow::Error) -> bool {
 }
 
 #[cfg(test)]
+mod pictures;
+
+#[cfg(test)]
 mod tests {
     use super::settings::Settings;
     use glam::{DAffine3, DVec3};

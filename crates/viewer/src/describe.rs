@@ -1,10 +1,10 @@
 //! Exact descriptions of selected items, and the command that draws the view.
 
+pub mod command;
+
 use crate::session::{Picked, PointKind, Session, World};
-use crate::settings::{Lines, SUN, Settings};
 use glam::{DVec2, DVec3};
-use selvedge::model::{Camera, EdgeKind, Face, Projection, SurfaceKind};
-use selvedge::picture::Style;
+use selvedge::model::{EdgeKind, Face, SurfaceKind};
 
 /// Lines of a description: name and value.
 pub type Description = Vec<(&'static str, String)>;
@@ -24,6 +24,23 @@ pub fn number(x: f64) -> String {
 /// A point or a direction.
 pub fn vector(p: DVec3) -> String {
     p.to_array().map(number).join(", ")
+}
+
+/// The names of a face's knots along u and v.
+pub const KNOTS: [&str; 2] = ["knots in u", "knots in v"];
+/// Distinct knots that are listed of one direction.
+const MOST_KNOTS: usize = 12;
+
+/// A knot vector: each value once, with its multiplicity where that is more than 1. Knots are
+/// compared exactly. After [`MOST_KNOTS`] values follows how many there are.
+fn knots(knots: &[f64]) -> String {
+    let values: Vec<&[f64]> = knots.chunk_by(|a, b| a == b).collect();
+    let listed = values.iter().take(MOST_KNOTS).map(|same| match same {
+        [one] => number(*one),
+        _ => format!("{} ×{}", number(same[0]), same.len()),
+    });
+    let more = (values.len() > MOST_KNOTS).then(|| format!("… ({} in all)", values.len()));
+    listed.chain(more).collect::<Vec<_>>().join(", ")
 }
 
 /// A face's kind in words.
@@ -129,7 +146,7 @@ fn face_lines(face: &Face, lines: &mut Description) {
     lines.push(("degree", format!("{pu} x {pv}")));
     lines.push(("control points", format!("{nu} x {nv}")));
     let (u, v) = face.surface.knots();
-    lines.push(("knots", format!("{} x {}", u.len(), v.len())));
+    lines.extend([(KNOTS[0], knots(u)), (KNOTS[1], knots(v))]);
     lines.push(("rational", if face.surface.is_polynomial() { "no" } else { "yes" }.to_owned()));
     let curves: usize = face.loops.iter().map(|l| l.curves().count()).sum();
     lines.push(("trims", format!("{} loops, {curves} curves", face.loops.len())));
@@ -160,58 +177,11 @@ pub fn extent(session: &Session) -> Vec<DVec3> {
     points
 }
 
-/// A word of a command line, quoted for a shell where it must be.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
-}
-
-/// The line of `selvedge render` for this view. It draws one file: the first one, where several are open.
-pub fn command(session: &Session, camera: &Camera, settings: &Settings, style: Style) -> String {
-    let triple = |p: DVec3| p.to_array().map(|x| format!("{x}")).join(",");
-    let file = session.world.files.first().map_or("FILE".into(), |file| file.path.to_string_lossy());
-    let mut words = vec!["selvedge".to_owned(), "render".to_owned(), quoted(&file)];
-    let mut push = |name: &str, value: String| words.push(format!("{name}={}", quoted(&value)));
-    push("--output", "view.png".to_owned());
-    push("--size", format!("{}x{}", camera.size.0, camera.size.1));
-    push("--eye", triple(camera.eye));
-    push("--target", triple(camera.target));
-    push("--up", triple(camera.up));
-    match camera.projection {
-        Projection::Perspective { fov_y } => push("--fov", format!("{}", fov_y.to_degrees())),
-        Projection::Orthographic { height } => push("--ortho", format!("{height}")),
-        // no argument sets a calibrated camera, and the window never shows one
-        Projection::Pinhole { .. } => {}
-    }
-    push("--style", style.name().to_owned());
-    for section in session.scene.now().sections.iter().filter(|s| s.on) {
-        push("--section", format!("{},{}", triple(section.normal), section.offset));
-    }
-    let edges = match settings.lines {
-        Lines::All => "all",
-        Lines::Sharp => "sharp",
-        Lines::None => "none",
-    };
-    push("--edges", edges.to_owned());
-    push("--smooth", if settings.smooth { "borders" } else { "none" }.to_owned());
-    let ambient = settings.ambient_radius(session.world.bounds.diagonal());
-    push("--ao", ambient.map_or("none".to_owned(), |radius| format!("{radius}")));
-    if settings.shadows {
-        push("--sun", triple(SUN));
-    }
-    for (flag, on) in [("--silhouettes", settings.silhouettes), ("--hidden-lines", settings.hidden_lines)] {
-        words.extend(on.then(|| flag.to_owned()));
-    }
-    words.join(" ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec4;
+    use selvedge::spline::Surface;
 
     #[test]
     fn numbers_have_the_digits_that_they_need() {
@@ -220,23 +190,27 @@ mod tests {
         assert_eq!(text, ["0", "5", "-0.5", "12.7", "0.333333333333", "1234567", "0.0000002", "8.46666666667", "0"]);
     }
 
-    /// The program's own default is ambient occlusion, and a light that casts no shadows.
     #[test]
-    fn the_command_names_the_light_of_the_window() {
-        let bounds = selvedge::model::Bounds { min: DVec3::ZERO, max: DVec3::new(3.0, 0.0, 4.0) };
-        let camera = Camera::around(bounds, DVec3::ONE, DVec3::Z, 0.6, (64, 48));
-        let mut world = World::default();
-        world.bounds = bounds;
-        let session = Session { world: std::sync::Arc::new(world), ..Session::default() };
-        let of = |settings: &Settings| command(&session, &camera, settings, Style::Shaded);
-        let plain = of(&Settings::default());
-        assert!(plain.contains(" --ao=none") && !plain.contains("--sun"), "{plain}");
-        let lit = of(&Settings { ambient: true, shadows: true, ..Settings::default() });
-        assert!(lit.contains(" --ao=0.2") && lit.contains(" --sun=0.5,-0.7,1"), "{lit}");
+    fn knots_are_listed_once_with_their_multiplicities() {
+        assert_eq!(knots(&[0.0, 0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0, 1.0]), "0 ×4, 0.5, 1 ×4");
+        let ends: [f64; 2] = [1.0, 1.0 + f64::EPSILON];
+        assert_eq!(knots(&ends), "1, 1", "two values, whose first twelve digits are the same");
+        let of = |count: u32| knots(&(0..count).map(f64::from).collect::<Vec<_>>());
+        assert_eq!(of(12), "0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11");
+        assert_eq!(of(40), "0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, … (40 in all)");
     }
 
+    /// Cubic of two spans along u, straight along v.
     #[test]
-    fn words_of_a_shell_are_quoted() {
-        assert_eq!([quoted("a/b.step"), quoted("a b"), quoted("it's")], ["a/b.step", "'a b'", r"'it'\''s'"]);
+    fn a_face_has_its_degrees_and_knots() {
+        let (along, across) = (vec![0.0, 0.0, 0.0, 0.0, 0.25, 2.0, 2.0, 2.0, 2.0], vec![-1.0, -1.0, 3.0, 3.0]);
+        let point = |i: u32| DVec4::new(f64::from(i % 5), f64::from(i / 5), 0.0, 1.0);
+        let surface = Surface::new((3, 1), along, across, (0..10).map(point).collect()).expect("a surface");
+        let face = Face { id: 7, kind: SurfaceKind::BSpline, surface, loops: vec![], same_sense: true, colour: None };
+        let mut lines = Vec::new();
+        face_lines(&face, &mut lines);
+        let of = |name: &str| lines.iter().find(|(what, _)| *what == name).map(|(_, value)| value.as_str());
+        let told = ["degree", "control points", "knots in u", "knots in v"].map(of);
+        assert_eq!(told, [Some("3 x 1"), Some("5 x 2"), Some("0 ×4, 0.25, 2 ×4"), Some("-1 ×2, 3 ×2")]);
     }
 }

@@ -6,6 +6,7 @@
 use crate::navigation::OrbitStyle;
 use crate::navigation::gesture::Preset;
 use glam::DVec3;
+use selvedge::picture::{EdgeChoice, EdgeSettings, SceneSettings, Smooth, Style};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::io;
@@ -162,6 +163,25 @@ impl Settings {
     pub fn ambient_radius(&self, diagonal: f64) -> Option<f64> {
         let radius = AMBIENT * diagonal;
         (self.ambient && radius.is_finite() && radius > 0.0).then_some(radius)
+    }
+
+    /// The engine's settings of a model with this diagonal, in this style.
+    pub fn scene(&self, style: Style, diagonal: f64) -> SceneSettings {
+        let which = match self.lines {
+            Lines::All => EdgeChoice::All,
+            Lines::Sharp => EdgeChoice::Sharp,
+            Lines::None => EdgeChoice::None,
+        };
+        let (silhouettes, hidden) = (self.silhouettes, self.hidden_lines);
+        let edges = EdgeSettings { which, silhouettes, hidden, ..EdgeSettings::default() };
+        SceneSettings {
+            edges: (which != EdgeChoice::None || silhouettes).then_some(edges),
+            smooth: if self.smooth { Smooth::Borders } else { Smooth::None },
+            curvature: style.is_curvature(),
+            ambient: self.ambient_radius(diagonal),
+            sun: self.shadows.then_some(SUN),
+            ..SceneSettings::default()
+        }
     }
 
     /// A file was opened.

@@ -41,7 +41,7 @@ impl KnownEdges {
     }
 
     fn of(&self, model: &Model) -> Result<&[Edges], UndrawnEdges> {
-        self.0.get_or_init(|| edges_of(model)).as_deref().map_err(Clone::clone)
+        self.0.get_or_init(|| edges_of(model, &|_| ())).as_deref().map_err(Clone::clone)
     }
 }
 

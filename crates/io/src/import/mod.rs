@@ -21,6 +21,8 @@ mod chain;
 mod colour;
 #[cfg(test)]
 mod damage;
+#[cfg(test)]
+mod ended;
 mod error;
 mod external;
 mod facets;
@@ -60,7 +62,7 @@ pub use error::ImportError;
 pub use external::{Files, Folders};
 pub use obj::cage::Cage;
 pub use preview::Preview;
-pub(crate) use progress::FaceCount;
+pub(crate) use progress::{FaceCount, Pulse};
 pub use progress::{Options, Stage};
 pub use reasons::Reasons;
 pub(crate) use report::{FACE_LOST, LOOP_LOST, Warnings};
@@ -119,7 +121,8 @@ pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportErr
 /// Reads a file that another one names, without previews. If it is a scene, the files that it names are read without
 /// their own references: a scene and an assembly cannot name each other without end.
 fn found_file(bytes: Vec<u8>, found: &str, options: &Options<'_>) -> Result<external::Read, ImportError> {
-    let bytes = source::inflated(bytes, found, options.most_bytes())?;
+    let stage = Stage::Read { bytes: bytes.len() as u64 };
+    let bytes = source::inflated(bytes, found, options.most_bytes(), &|| options.tell(stage))?;
     read(&bytes, found, Path::new(found).parent(), &Options { files: None, preview: None, ..*options })
 }
 

@@ -8,7 +8,8 @@
 
 use super::{Facets, Files, Preview};
 use std::fmt;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// The stage of an import.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,10 +55,11 @@ pub enum Stage {
 /// How to import.
 #[derive(Clone, Copy, Default)]
 pub struct Options<'a> {
-    /// Called at the beginning of each stage, of STEP files before every body, after every face and some bytes of text,
-    /// of IGES and OpenSCAD files between entities, and a hundred times a second while `openscad` runs, from several
-    /// threads. It should return at once, or unwind to end the import, as [`Stop::check`](super::Stop::check) does. Files
-    /// that a file names have stages of their own.
+    /// Called at the beginning of each stage, of STEP files before every body, after every face and some bytes of
+    /// text, of OpenSCAD files between nodes, and a hundred times a second while `openscad` runs, from several
+    /// threads. A stage is repeated as it is after each megabyte that is read or decompressed, and after some ten
+    /// thousand entities, lines or triangles of STEP, IGES, OBJ, STL and OFF. It should return at once, or unwind to
+    /// end the import, as [`Stop::check`](super::Stop::check) does. Files that a file names have stages of their own.
     pub progress: Option<&'a (dyn Fn(Stage) + Sync)>,
     /// Takes the finished parts of STEP and IGES files and of assemblies in several files, while the rest is read.
     pub preview: Option<&'a dyn Preview>,
@@ -105,6 +107,41 @@ impl Options<'_> {
     }
 }
 
+/// Work between two repetitions of a stage by a [`Pulse`]: an entity that is looked up, a line or a triangle is one. So
+/// much takes some hundredths of a second.
+pub(crate) const BEAT: u64 = 1 << 16;
+
+/// Repeats the stage while work goes on that tells nothing by itself, so that a callback can end that, too.
+#[derive(Debug)]
+pub(crate) struct Pulse<'a> {
+    options: Options<'a>,
+    stage: Mutex<Stage>,
+    done: AtomicU64,
+}
+
+impl<'a> Pulse<'a> {
+    /// Nothing of a stage is done, which the caller has told.
+    pub fn new(options: &Options<'a>, stage: Stage) -> Self {
+        Self { options: *options, stage: Mutex::new(stage), done: AtomicU64::new(0) }
+    }
+
+    /// Tells the next stage.
+    pub fn tell(&self, stage: Stage) {
+        *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = stage;
+        self.options.tell(stage);
+    }
+
+    /// So much more is done, by any thread; tells the stage where a multiple of [`BEAT`] is passed.
+    pub fn work(&self, amount: usize) {
+        let before = self.done.fetch_add(amount as u64, Ordering::Relaxed);
+        if before / BEAT != (before + amount as u64) / BEAT {
+            // the callback may unwind: the lock is free by then
+            let stage = *self.stage.lock().unwrap_or_else(PoisonError::into_inner);
+            self.options.tell(stage);
+        }
+    }
+}
+
 /// Counts faces as they are done, for [`Stage::Faces`].
 pub(crate) struct FaceCount<'a> {
     options: Options<'a>,
@@ -131,7 +168,6 @@ mod tests {
     use super::*;
     use crate::import::{open, open_with};
     use std::path::Path;
-    use std::sync::Mutex;
 
     #[test]
     fn every_stage_and_every_face_is_reported_once() {
@@ -151,6 +187,22 @@ mod tests {
         built.sort_by_key(|stage| if let Stage::Faces { built, .. } = stage { *built } else { 0 });
         assert_eq!(built, (1..=total).map(|built| Stage::Faces { built, total }).collect::<Vec<_>>());
         assert_eq!(import.model, open(&path).unwrap().model);
+    }
+
+    /// By four threads, whose amounts pass a multiple one after another.
+    #[test]
+    fn a_stage_is_repeated_after_so_much_work() {
+        let told = AtomicUsize::new(0);
+        let tell = |stage| {
+            assert_eq!(stage, Stage::Parse { bytes: 7 });
+            told.fetch_add(1, Ordering::Relaxed);
+        };
+        let options = Options { progress: Some(&tell), ..Options::default() };
+        let pulse = Pulse::new(&options, Stage::Parse { bytes: 7 });
+        let (times, amount) = (500, 1000);
+        let work = || (0..times).for_each(|_| pulse.work(amount));
+        std::thread::scope(|scope| (0..4).for_each(|_| _ = scope.spawn(work)));
+        assert_eq!(told.load(Ordering::Relaxed), 4 * times * amount / BEAT as usize);
     }
 
     /// Each hull, and a place in every so many bytes of text.

@@ -1,6 +1,6 @@
 //! The bytes of files and streams: bounded, gzip undone.
 
-use super::{Files, ImportError, Options, Stage};
+use super::{Files, ImportError, Options, Pulse, Stage};
 use rayon::prelude::*;
 use std::fs::{self, File, Metadata};
 use std::io::{self, Read, Seek, SeekFrom};
@@ -27,11 +27,19 @@ pub(super) struct OtherFiles<'a> {
     finder: Option<&'a dyn Files>,
     /// Bytes of one of them, at most.
     most: u64,
+    /// Those of the file that names them.
+    options: Options<'a>,
 }
 
 impl<'a> OtherFiles<'a> {
     pub fn new(name: &'a str, folder: Option<&'a Path>, options: &Options<'a>) -> Self {
-        Self { name, folder, finder: options.files.filter(|_| folder.is_some()), most: options.most_bytes() }
+        let finder = options.files.filter(|_| folder.is_some());
+        Self { name, folder, finder, most: options.most_bytes(), options: *options }
+    }
+
+    /// Of the work on this file's own bytes, so many.
+    pub fn parsing(&self, bytes: usize) -> Pulse<'a> {
+        Pulse::new(&self.options, Stage::Parse { bytes: bytes as u64 })
     }
 
     /// Path and bytes of the file that this one calls `name`, at most `most` of them. It lies in the folder or below
@@ -77,9 +85,10 @@ pub(super) fn load(path: &Path, name: &str, options: &Options<'_>) -> Result<Vec
     if size > limit {
         return Err(ImportError::TooLarge { file: name.to_owned(), limit });
     }
-    options.tell(Stage::Read { bytes: size });
+    let tell = || options.tell(Stage::Read { bytes: size });
+    tell();
     if found.is_file() && size > 0 {
-        return inflated(read_apart(path, size as usize).map_err(unreadable)?, name, limit);
+        return inflated(read_apart(path, size as usize, &tell).map_err(unreadable)?, name, limit, &tell);
     }
     // a pipe that the shell has opened, or a file of a system that states no size
     drain(&mut File::open(path).map_err(unreadable)?, name, limit, |_| true)
@@ -103,7 +112,7 @@ pub(super) fn drain(
         }
         stream.take(limit + 1 - BEGINNING.min(limit)).read_to_end(&mut bytes).map_err(unreadable)?;
     }
-    inflated(bytes, name, limit)
+    inflated(bytes, name, limit, &|| ())
 }
 
 /// The bytes of a file beside the model, at most so many.
@@ -143,12 +152,17 @@ fn no_file(path: &Path, found: &Metadata) -> Option<&'static str> {
     None
 }
 
+/// Bytes that are read or decompressed at a time.
+const SHARE: usize = 1 << 20;
+
 /// A file's first `size` bytes, by several threads: the system takes about as long to map the memory as to copy the
-/// bytes.
-fn read_apart(path: &Path, size: usize) -> io::Result<Vec<u8>> {
-    const SHARE: usize = 1 << 20;
+/// bytes. `tell` is called before each share but the first, and may unwind.
+fn read_apart(path: &Path, size: usize, tell: &(dyn Fn() + Sync)) -> io::Result<Vec<u8>> {
     let mut bytes = vec![0; size];
     bytes.par_chunks_mut(SHARE).enumerate().try_for_each(|(k, share)| {
+        if k > 0 {
+            tell();
+        }
         let mut file = File::open(path)?;
         file.seek(SeekFrom::Start((k * SHARE) as u64))?;
         file.read_exact(share)
@@ -161,8 +175,13 @@ fn is_gzip(bytes: &[u8]) -> bool {
 }
 
 /// Undoes gzip, if the bytes are compressed. `limit` bounds the bytes before and after, [`MAX_EXPANSION`] their
-/// expansion.
-pub(super) fn inflated(bytes: Vec<u8>, name: &str, limit: u64) -> Result<Vec<u8>, ImportError> {
+/// expansion. `tell` is called after each share, and may unwind.
+pub(super) fn inflated(
+    bytes: Vec<u8>,
+    name: &str,
+    limit: u64,
+    tell: &(dyn Fn() + Sync),
+) -> Result<Vec<u8>, ImportError> {
     if bytes.len() as u64 > limit {
         return Err(ImportError::TooLarge { file: name.to_owned(), limit });
     }
@@ -171,11 +190,15 @@ pub(super) fn inflated(bytes: Vec<u8>, name: &str, limit: u64) -> Result<Vec<u8>
     }
     let limit = (bytes.len() as u64 * MAX_EXPANSION + FREE_EXPANSION).min(limit);
     let mut text = Vec::new();
-    flate2::read::MultiGzDecoder::new(bytes.as_slice())
-        .take(limit + 1)
-        .read_to_end(&mut text)
-        .map_err(|e| io::Error::new(e.kind(), format!("gzip data that are cut off or damaged: {e}")))
-        .map_err(|source| ImportError::Read { file: name.to_owned(), source })?;
+    let mut stream = flate2::read::MultiGzDecoder::new(bytes.as_slice()).take(limit + 1);
+    loop {
+        let more = stream.by_ref().take(SHARE as u64).read_to_end(&mut text);
+        let damaged = |e: io::Error| io::Error::new(e.kind(), format!("gzip data that are cut off or damaged: {e}"));
+        if more.map_err(damaged).map_err(|source| ImportError::Read { file: name.to_owned(), source })? == 0 {
+            break;
+        }
+        tell();
+    }
     if text.len() as u64 > limit {
         return Err(ImportError::Expansion { file: name.to_owned(), limit });
     }
@@ -186,6 +209,7 @@ pub(super) fn inflated(bytes: Vec<u8>, name: &str, limit: u64) -> Result<Vec<u8>
 mod tests {
     use super::*;
     use std::io::Write;
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     const ALL: u64 = u32::MAX as u64;
 
@@ -198,19 +222,32 @@ mod tests {
     #[test]
     fn gzip_round_trip() {
         let text = b"ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n";
-        assert_eq!(inflated(gzip(text), "a.stpz", ALL).unwrap(), text);
+        assert_eq!(inflated(gzip(text), "a.stpz", ALL, &|| ()).unwrap(), text);
     }
 
     #[test]
     fn gzip_bomb_is_an_error() {
         let bomb = gzip(&vec![b' '; 1 << 24]);
-        assert!(matches!(inflated(bomb, "bomb.gz", ALL), Err(ImportError::Expansion { .. })));
-        assert!(matches!(inflated(vec![b' '; 11], "b.stp", 10), Err(ImportError::TooLarge { limit: 10, .. })));
+        let inflated = |bytes, limit| inflated(bytes, "b.gz", limit, &|| ());
+        assert!(matches!(inflated(bomb, ALL), Err(ImportError::Expansion { .. })));
+        assert!(matches!(inflated(vec![b' '; 11], 10), Err(ImportError::TooLarge { limit: 10, .. })));
         let whole = gzip(b"ISO-10303-21;");
-        let cut = inflated(whole[..whole.len() - 10].to_vec(), "c.gz", ALL).unwrap_err().to_string();
-        assert!(cut.starts_with("c.gz: gzip data that are cut off or damaged: "), "{cut}");
+        let cut = inflated(whole[..whole.len() - 10].to_vec(), ALL).unwrap_err().to_string();
+        assert!(cut.starts_with("b.gz: gzip data that are cut off or damaged: "), "{cut}");
         // less than a bomb, but more than the limit
-        assert!(matches!(inflated(gzip(&[b' '; 5000]), "b.gz", 4000), Err(ImportError::Expansion { limit: 4000, .. })));
+        assert!(matches!(inflated(gzip(&[b' '; 5000]), 4000), Err(ImportError::Expansion { limit: 4000, .. })));
+    }
+
+    /// Noise, which does not shrink.
+    #[test]
+    fn a_share_is_decompressed_between_two_calls() {
+        let noise =
+            (0..3 * SHARE as u32 / 4 + 5).flat_map(|i| i.wrapping_mul(0x9e37_79b9).rotate_left(i % 31).to_le_bytes());
+        let text: Vec<u8> = noise.collect();
+        let told = AtomicUsize::new(0);
+        let count = || _ = told.fetch_add(1, Ordering::Relaxed);
+        assert!(inflated(gzip(&text), "n.gz", ALL, &count).unwrap() == text);
+        assert_eq!(told.into_inner(), 4, "three whole shares and the rest");
     }
 
     /// Files of no share, of one, and of several that do not fill the last.
@@ -220,7 +257,10 @@ mod tests {
         for size in [0usize, 1, 1 << 20, (3 << 20) + 17] {
             let written: Vec<u8> = (0..size).map(|i| (i ^ i >> 8 ^ i >> 16) as u8).collect();
             fs::write(&path, &written).unwrap();
-            let read = load(&path, "read", &Options::default()).unwrap();
+            let told = AtomicUsize::new(0);
+            let count = |_: Stage| _ = told.fetch_add(1, Ordering::Relaxed);
+            let read = load(&path, "read", &Options { progress: Some(&count), ..Options::default() }).unwrap();
+            assert_eq!(told.into_inner(), size.div_ceil(SHARE).max(1), "{size} bytes");
             assert!(read == written, "{size} bytes");
             let drained = drain(&mut written.as_slice(), "read", ALL, |_| true).unwrap();
             assert!(drained == written, "{size} bytes");

@@ -96,7 +96,9 @@ fn table(list: &mut egui::Ui, ui: &mut Ui, nth: usize, lines: &describe::Descrip
     egui::Grid::new(("table", nth)).num_columns(2).striped(true).show(list, |grid| {
         for (what, value) in lines {
             grid.label(*what);
-            let text = egui::Label::new(value.replace(", ", "\n")).wrap().sense(egui::Sense::click());
+            // coordinates stand one below the other; many knots would fill the panel
+            let shown = if describe::KNOTS.contains(what) { value.clone() } else { value.replace(", ", "\n") };
+            let text = egui::Label::new(shown).wrap().sense(egui::Sense::click());
             if grid.add(text).on_hover_text("Click to copy").clicked() {
                 ui.commands.push(Command::CopyText(value.clone()));
             }

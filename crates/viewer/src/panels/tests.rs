@@ -1,6 +1,7 @@
 //! Panels without a window: their texts, and the effects of clicks.
 
 mod by_keys;
+mod facts;
 mod trust;
 
 use super::*;

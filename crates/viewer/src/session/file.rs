@@ -261,6 +261,27 @@ mod tests {
         assert!(matches!(&last, LoaderEvent::Failed(why) if why.contains("no_such.step")), "{last:?}");
     }
 
+    /// The importer stands still before its first face until the file is given up.
+    #[test]
+    fn nothing_more_comes_of_a_file_that_is_given_up() {
+        let ((to, from), (go_on, held)) = (mpsc::channel(), mpsc::channel::<()>());
+        let held = Mutex::new(held);
+        let mut loader = Loader::new(sample("assembly.step"), None, move |event| {
+            let is_at_faces = matches!(event, LoaderEvent::Progress { stage: "faces", .. });
+            to.send(event).expect("the test waits");
+            if is_at_faces {
+                // it ends when the other side is dropped
+                let _ = held.lock().expect("no panic").recv();
+            }
+        });
+        while !matches!(from.recv().expect("faces"), LoaderEvent::Progress { stage: "faces", .. }) {}
+        loader.cancel();
+        drop(go_on);
+        loader.join();
+        let rest: Vec<_> = from.iter().collect();
+        assert!(matches!(rest[..], [LoaderEvent::Cancelled]), "{rest:?}");
+    }
+
     /// A fifth of a second, for files of any size; the thread may have read it before it stops.
     #[test]
     fn a_file_is_given_up_at_once() {

@@ -9,7 +9,7 @@
 //! The upload finds edges, too: found at the same time, both would be later, and so would the picture.
 
 use super::{Loaded, World};
-use selvedge_io::import::{Unwound, caught};
+use selvedge_io::import::{Stop, Unwound, caught};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, Sender};
@@ -30,7 +30,8 @@ pub enum JoinerEvent {
     Failed(u64, String),
 }
 
-/// A thread that puts lists of files together, one after another. It leaves out lists that are not the newest.
+/// A thread that puts lists of files together, one after another. It leaves out lists that are not the newest, and ends
+/// the work on one that is not before its next part.
 #[derive(Debug)]
 pub struct Joiner {
     newest: Arc<AtomicU64>,
@@ -46,11 +47,11 @@ pub struct Joiner {
 impl Joiner {
     /// Starts the thread, which calls `tell`. It ends after the list in work when the joiner is dropped.
     pub fn new(tell: impl Fn(JoinerEvent) + Send + 'static) -> Self {
-        Self::with(World::new, tell)
+        Self::with(World::telling, tell)
     }
 
     fn with(
-        join: impl Fn(&[Arc<Loaded>]) -> World + Send + 'static,
+        join: impl Fn(&[Arc<Loaded>], &(dyn Fn() + Sync)) -> World + Send + 'static,
         tell: impl Fn(JoinerEvent) + Send + 'static,
     ) -> Self {
         let (to, from) = mpsc::channel::<(u64, Vec<Arc<Loaded>>)>();
@@ -59,12 +60,19 @@ impl Joiner {
         let wanted = Arc::clone(&newest);
         thread::spawn(move || {
             let is_old = |number: u64| number != wanted.load(Ordering::Relaxed);
+            let stop = Stop::default();
+            stop.set();
             for (number, files) in from {
                 if is_old(number) {
                     continue;
                 }
+                let end_old = || {
+                    if is_old(number) {
+                        stop.check();
+                    }
+                };
                 let worked = caught(|| {
-                    let world = Arc::new(join(&files));
+                    let world = Arc::new(join(&files, &end_old));
                     // of models before
                     shown.try_iter().for_each(drop);
                     tell(JoinerEvent::Joined(number, Arc::clone(&world)));
@@ -75,13 +83,15 @@ impl Joiner {
                     if !is_old(number) {
                         // another model follows a preview soon
                         if !world.is_partial() {
-                            world.find_edges();
+                            world.find_edges_telling(&end_old);
                         }
                         tell(JoinerEvent::EdgesFound(number));
                     }
                 });
-                if let Err(unwound) = worked {
-                    tell(JoinerEvent::Failed(number, reason(&unwound)));
+                match worked {
+                    // the newest list is next
+                    Ok(()) | Err(Unwound::Stopped) => {}
+                    Err(unwound) => tell(JoinerEvent::Failed(number, reason(&unwound))),
                 }
             }
         });
@@ -197,10 +207,46 @@ mod tests {
         }
     }
 
+    /// Of the first list one part is put in place, whatever it has; then another list comes.
+    #[test]
+    fn a_list_that_is_not_the_newest_ends_before_its_next_part() {
+        let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../samples/assembly.step");
+        let import = selvedge_io::import::open(&path).expect("a sample");
+        assert!(import.model.parts.len() > 4);
+        let file = Arc::new(Loaded { path, import, partial: false });
+        let (to, from) = mpsc::channel();
+        let (begins, begun) = mpsc::channel();
+        let (go_on, held) = mpsc::channel::<()>();
+        let parts = Arc::new(AtomicU64::new(0));
+        let counted = Arc::clone(&parts);
+        let held = std::sync::Mutex::new(held);
+        let join = move |files: &[Arc<Loaded>], end_old: &(dyn Fn() + Sync)| {
+            World::telling(files, &|| {
+                if files.len() == 1 {
+                    if counted.fetch_add(1, Ordering::Relaxed) == 1 {
+                        begins.send(()).expect("the test waits");
+                        held.lock().expect("one thread").recv().expect("the test lets it go on");
+                    }
+                    end_old();
+                }
+            })
+        };
+        let mut joiner = Joiner::with(join, move |event| drop(to.send(event)));
+        joiner.join(vec![Arc::clone(&file)]);
+        begun.recv().expect("a part is in place");
+        joiner.join(vec![Arc::clone(&file), file]);
+        go_on.send(()).expect("the thread waits");
+        let event = from.recv().expect("an event");
+        assert!(matches!(event, JoinerEvent::Joined(2, _)), "{event:?}");
+        assert_eq!(parts.load(Ordering::Relaxed), 2, "the first part, and the call that ended it");
+    }
+
     #[test]
     fn a_panic_ends_the_work_and_not_the_thread() {
         let (to, from) = mpsc::channel();
-        let join = |files: &[Arc<Loaded>]| if files.is_empty() { panic!("on purpose") } else { World::new(files) };
+        let join = |files: &[Arc<Loaded>], _: &(dyn Fn() + Sync)| {
+            if files.is_empty() { panic!("on purpose") } else { World::new(files) }
+        };
         let mut joiner = Joiner::with(join, move |event| to.send(event).expect("the test waits"));
         for _ in 0..2 {
             joiner.join(Vec::new());

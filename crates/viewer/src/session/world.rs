@@ -135,21 +135,28 @@ impl World {
 
     /// Puts files together.
     pub fn new(files: &[Arc<Loaded>]) -> Self {
+        Self::telling(files, &|| ())
+    }
+
+    /// The same; `tell` is called before each part and each further step, and may unwind.
+    pub fn telling(files: &[Arc<Loaded>], tell: &(dyn Fn() + Sync)) -> Self {
         let mut world = Self::default();
         for file in files {
-            world.add(file);
+            world.add(file, tell);
         }
+        tell();
         world.bounds = world.model.bounds();
+        tell();
         // here, so that no first pick waits for it
         world.face(0, 0);
         world
     }
 
-    fn add(&mut self, file: &Loaded) {
+    fn add(&mut self, file: &Loaded, tell: &(dyn Fn() + Sync)) {
         let (model, of_file) = (&mut self.model, &file.import.model);
         let (first_part, first_instance) = (model.parts.len(), model.instances.len());
         let first_solid = model.solids.len();
-        model.parts.extend(of_file.parts.iter().cloned());
+        model.parts.extend(of_file.parts.iter().inspect(|_| tell()).cloned());
         let placed = |i: &Instance| Instance { part: i.part + first_part, ..i.clone() };
         model.instances.extend(of_file.instances.iter().map(placed));
         model.solids.extend(of_file.solids.iter().cloned());
@@ -206,11 +213,17 @@ impl World {
 
     /// Finds the edges of all parts, which takes a while; later calls do nothing.
     pub fn find_edges(&self) {
+        self.find_edges_telling(&|| ());
+    }
+
+    /// The same; `tell` is called before each part, and may unwind: then no edges are found.
+    pub fn find_edges_telling(&self, tell: &(dyn Fn() + Sync)) {
         self.edges.get_or_init(|| {
             let parts: Vec<Edges> = self
                 .model
                 .parts
                 .iter()
+                .inspect(|_| tell())
                 .map(|part| {
                     part.edges().unwrap_or_else(|error| {
                         tracing::warn!("edges of {}: {error}", part.name);

@@ -371,6 +371,11 @@ impl App {
         }
         input.handle_platform_output(window, output.platform_output.clone());
         let pixels = output.pixels_per_point;
+        let (at, is_down) = self.context.input(|input| (input.pointer.latest_pos(), input.pointer.any_down()));
+        if let Some(at) = at.map(|at| at * pixels) {
+            // of the frame that ends next
+            tracing::debug!("pointer at {:.0}, {:.0}, {}", at.x, at.y, if is_down { "down" } else { "up" });
+        }
         let size = window.inner_size();
         let pixel = |x: f32, most: u32| ((x * pixels).round().max(0.0) as u32).min(most);
         let (x, y) = (pixel(view.min.x, size.width), pixel(view.min.y, size.height));

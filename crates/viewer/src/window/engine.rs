@@ -4,7 +4,7 @@
 //! ```text
 //!   Ready ──hidden, coloured, moved, a loop──▶ changed in place ─▶ Ready
 //!     └─────anything else──▶ Uploading (thread: model of the state, upload) ──▶ Ready, or the model before
-//!                              └─ of a preview, and all files are read: given up
+//!                              └─ of a preview, and all files are read; of a file that is closed: given up
 //! ```
 
 use super::living::{self, Placed};
@@ -14,6 +14,7 @@ use selvedge::picture::{Effects, SceneSettings, Smooth};
 use selvedge::renderer::{RenderError, Renderer};
 use selvedge_io::import::{Stop, Unwound, caught};
 use std::collections::BTreeSet;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 use std::thread::{self, JoinHandle};
@@ -152,7 +153,7 @@ impl Engine {
     /// Shows the requested model: by changes in place, or by an upload that begins now. No frame is in flight. The thread
     /// of an upload calls `done`; [`take`](Self::take) then has the result.
     pub fn want(&mut self, wanted: Wanted<'_>, done: impl FnOnce() + Send + 'static) {
-        self.end_preview(wanted.world);
+        self.end_upload(wanted.world);
         let is_asked = self.asked.as_ref().is_some_and(|asked| wanted.is_of(asked));
         if self.is_busy() || is_asked || wanted.world.is_empty() || self.changes(wanted) {
             return;
@@ -173,10 +174,10 @@ impl Engine {
         self.upload = Some(Upload { thread, from, stop });
     }
 
-    /// Gives up the upload of a preview where all files are read by now.
-    fn end_preview(&self, wanted: &World) {
-        let is_of_preview = self.asked.as_ref().is_some_and(|asked| asked.world.is_partial());
-        if let Some(upload) = self.upload.as_ref().filter(|_| is_of_preview && !wanted.is_partial()) {
+    /// Gives up an upload that nobody waits for.
+    fn end_upload(&self, wanted: &World) {
+        let is_void = self.asked.as_ref().is_some_and(|asked| is_void(&asked.world, wanted));
+        if let Some(upload) = self.upload.as_ref().filter(|_| is_void) {
             upload.stop.set();
         }
     }
@@ -247,6 +248,13 @@ impl Engine {
     }
 }
 
+/// An upload of files that is not worth its time once others are wanted: of previews when all files are read, and of a
+/// file that is closed or given up. One of fewer files than are wanted goes on: its picture comes first.
+fn is_void(asked: &World, wanted: &World) -> bool {
+    let stays = |path: &Path| wanted.files.iter().any(|file| file.path == path);
+    asked.is_partial() && !wanted.is_partial() || !asked.files.iter().all(|file| stays(&file.path))
+}
+
 /// The result of an upload, or its panic. The renderer keeps the model before until it has all of the next one.
 fn guarded<T>(upload: impl FnOnce() -> Result<T, RenderError>) -> Result<T, UploadError> {
     match caught(upload) {
@@ -303,6 +311,27 @@ fn put(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::session::Loaded;
+    use selvedge_io::import::Import;
+
+    #[test]
+    fn an_upload_goes_on_as_long_as_its_files_are_wanted() {
+        let world = |files: &[(&str, bool)]| {
+            let loaded = |(path, partial): &(&str, bool)| {
+                Arc::new(Loaded { path: path.into(), import: Import::default(), partial: *partial })
+            };
+            World::new(&files.iter().map(loaded).collect::<Vec<_>>())
+        };
+        let of_one = world(&[("a", false)]);
+        assert!(!is_void(&of_one, &world(&[("a", false)])), "it changed on the disk: the old one is shown until then");
+        assert!(!is_void(&of_one, &world(&[("a", false), ("b", false)])), "its picture comes first");
+        assert!(!is_void(&of_one, &world(&[("a", false), ("b", true)])));
+        assert!(is_void(&of_one, &world(&[("b", false)])), "it is closed");
+        assert!(is_void(&of_one, &world(&[])));
+        let preview = world(&[("a", true)]);
+        assert!(!is_void(&preview, &world(&[("a", true)])), "more of it is read");
+        assert!(is_void(&preview, &of_one), "all of it is read");
+    }
 
     #[test]
     fn a_panic_of_an_upload_is_an_error() {

@@ -2,6 +2,7 @@
 
 use super::app::{App, Event, Opened};
 use crate::commands::Command;
+use crate::describe::command;
 use crate::navigation::gesture::{Button, Scroll};
 use crate::navigation::standard::up_from;
 use crate::session::{Ended, Loaded, News, World};
@@ -82,6 +83,7 @@ impl ApplicationHandler<Event> for App {
                     MouseScrollDelta::LineDelta(x, y) => Scroll::Lines(DVec2::new(f64::from(*x), f64::from(*y))),
                     MouseScrollDelta::PixelDelta(by) => Scroll::Pixels(DVec2::new(by.x, by.y)),
                 };
+                tracing::debug!("scrolled by {scroll:?}");
                 let scrolled = self.settings.preset.scroll(scroll, self.held);
                 let style = self.settings.orbit;
                 self.move_at_cursor(|view, at, now| view.scroll(at, scrolled, style, now));
@@ -397,9 +399,13 @@ impl App {
                 Command::Shift(x, y) => self.view.shift(DVec2::new(x, y), now),
                 Command::Zoom(notches) => self.view.zoom(notches, now),
                 Command::CopyCommand => {
-                    let text =
-                        crate::describe::command(&self.session, self.view.camera(), &self.settings, self.ui.style);
+                    let (style, background) = (self.ui.style, self.background());
+                    let text = command::line(&self.session, self.view.camera(), &self.settings, (style, background));
                     self.copy(text);
+                    let left_out = command::left_out(&self.session);
+                    if !left_out.is_empty() {
+                        self.ui.tell(format!("The copied line leaves out: {}.", left_out.join(", ")));
+                    }
                 }
                 Command::CopyText(text) => self.copy(text),
                 Command::WritePicture => self.write_picture(),

@@ -3,31 +3,14 @@
 use super::app::App;
 use crate::pick::Mark;
 use crate::session::Picked;
-use crate::settings::{Lines, SUN, Settings};
-use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, SceneSettings, Smooth};
+use selvedge::model::Colour;
+use selvedge::picture::{FrameSettings, SceneSettings};
 
 impl App {
     /// Settings of the model that is drawn.
     pub fn scene_settings(&self) -> SceneSettings {
-        let Settings { lines, silhouettes, hidden_lines, smooth, shadows, .. } = self.settings;
-        let which = match lines {
-            Lines::All => EdgeChoice::All,
-            Lines::Sharp => EdgeChoice::Sharp,
-            Lines::None => EdgeChoice::None,
-        };
-        let edges = EdgeSettings { which, silhouettes, hidden: hidden_lines, ..EdgeSettings::default() };
-        let edges = (which != EdgeChoice::None || silhouettes).then_some(edges);
-        let smooth = if smooth { Smooth::Borders } else { Smooth::None };
-        let curvature = self.ui.style.is_curvature();
-        SceneSettings {
-            edges,
-            smooth,
-            curvature,
-            ambient: self.settings.ambient_radius(self.session.world.bounds.diagonal()),
-            sun: shadows.then_some(SUN),
-            editable: self.ui.trims,
-            ..SceneSettings::default()
-        }
+        let scene = self.settings.scene(self.ui.style, self.session.world.bounds.diagonal());
+        SceneSettings { editable: self.ui.trims, ..scene }
     }
 
     /// Settings of the pictures in the window.
@@ -35,9 +18,14 @@ impl App {
         FrameSettings {
             style: self.ui.style,
             curvature_range: if self.ui.style.is_curvature() { self.session.world.curvature_range() } else { 1.0 },
-            background: Some(background(self.context.style().visuals.dark_mode)),
+            background: Some(self.background()),
             ..FrameSettings::default()
         }
+    }
+
+    /// Behind the model, linear light.
+    pub fn background(&self) -> Colour {
+        background(self.context.style().visuals.dark_mode)
     }
 
     /// Hovered and selected items, by the numbers of the shown picture.
@@ -66,6 +54,6 @@ impl App {
 }
 
 /// Behind the model, linear light.
-pub fn background(dark: bool) -> [f32; 4] {
+pub fn background(dark: bool) -> Colour {
     if dark { [0.030, 0.032, 0.037, 1.0] } else { [0.80, 0.82, 0.85, 1.0] }
 }

@@ -18,7 +18,7 @@ fn a_gesture_holds_the_point_under_the_cursor() {
     let at = at.floor();
     let point = scene.hit(at).expect("it is seen").point;
     let off = |camera: &Camera, place: DVec2| scene.in_window(camera, point).distance(place);
-    program.after(|| display.move_to(at));
+    program.point(display, at);
 
     // the wheel zooms to it
     program.after(|| drop(display.xdotool("click --repeat 3 --delay 60 4")));
@@ -28,13 +28,13 @@ fn a_gesture_holds_the_point_under_the_cursor() {
 
     // the middle button moves it
     let by = DVec2::new(42.0, 24.0);
-    program.after(|| display.drag(2, at, by));
+    program.drag(display, 2, at, by);
     let moved = scene.camera_of(&program.command(display));
     assert!(off(&moved, at + by) < HELD_PX, "{}", off(&moved, at + by));
     assert!(moved.eye.distance(zoomed.eye) > 1e-3 * scene.world.bounds.diagonal());
 
     // the right one turns about it
-    program.after(|| display.drag(3, at + by, DVec2::new(60.0, 18.0)));
+    program.drag(display, 3, at + by, DVec2::new(60.0, 18.0));
     let turned = scene.camera_of(&program.command(display));
     assert!(off(&turned, at + by) < HELD_PX, "{}", off(&turned, at + by));
     let direction = |camera: &Camera| (camera.target - camera.eye).normalize();
@@ -52,10 +52,12 @@ fn two_fingers_move_the_view_sideways() {
     let (at, _) = scene.cylinder();
     let at = at.floor();
     let point = scene.hit(at).expect("it is seen").point;
-    program.after(|| display.move_to(at));
+    program.point(display, at);
     // winit 0.30 reports a line for the press of such a button, and one for its release
     for (click, place) in [("click 6", at + 2.0 * LINE_PX * DVec2::X), ("click 7", at)] {
-        program.after(|| drop(display.xdotool(click)));
+        display.xdotool(click);
+        (0..2).for_each(|_| _ = program.wait("scrolled by "));
+        program.rest();
         let camera = scene.camera_of(&program.command(display));
         let off = scene.in_window(&camera, point).distance(place);
         assert!(off < HELD_PX, "{click}: {off} pixels from where two fingers lead");

@@ -14,8 +14,6 @@ const STILL: Duration = Duration::from_millis(700);
 const MOMENT: Duration = Duration::from_millis(200);
 /// Moves of one drag.
 const STEPS: u32 = 6;
-/// Between two of them, as of a hand: longer than a frame without a new picture.
-const STEP: Duration = Duration::from_millis(30);
 /// Size of the picture that Ctrl + Shift + S writes.
 pub const PICTURE: (u32, u32) = (1280, 720);
 
@@ -84,18 +82,6 @@ impl Display {
         };
         let all = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect();
         Pixels { size: self.size, all }
-    }
-
-    /// Drags with a button in a few steps, from a place where the cursor has rested.
-    pub fn drag(&self, button: u32, from: DVec2, by: DVec2) {
-        self.move_to(from);
-        std::thread::sleep(Duration::from_millis(200));
-        self.xdotool(&format!("mousedown {button}"));
-        for step in 1..=STEPS {
-            std::thread::sleep(STEP); // a press and a release within one frame are a click
-            self.move_to((from + by * (f64::from(step) / f64::from(STEPS))).round());
-        }
-        self.xdotool(&format!("mouseup {button}"));
     }
 }
 
@@ -255,6 +241,51 @@ impl Program {
         self.wait("frame");
         self.rest();
         self.all[before..].to_vec()
+    }
+
+    /// Moves the cursor, and waits for a frame with it there: by its end the window has what is under the cursor.
+    pub fn point(&mut self, display: &Display, at: DVec2) {
+        display.move_to(at);
+        self.seen(at, false);
+    }
+
+    /// Drags with a button in a few steps, each of which a frame has seen: panels would take a press and a release
+    /// within one frame for a click, and a view turns about the point that a frame after the press has found. Returns
+    /// what it says until it rests.
+    pub fn drag(&mut self, display: &Display, button: u32, from: DVec2, by: DVec2) -> Vec<String> {
+        let before = self.all.len();
+        self.point(display, from);
+        display.xdotool(&format!("mousedown {button}"));
+        self.seen(from, true);
+        let mut at = from;
+        for step in 1..=STEPS {
+            at = (from + by * (f64::from(step) / f64::from(STEPS))).round();
+            display.move_to(at);
+            self.seen(at, true);
+        }
+        display.xdotool(&format!("mouseup {button}"));
+        self.seen(at, false);
+        self.rest();
+        self.all[before..].to_vec()
+    }
+
+    /// Waits for the end of a frame with the cursor at a place, and a button down or none.
+    fn seen(&mut self, at: DVec2, is_down: bool) {
+        let button = if is_down { "down" } else { "up" };
+        let wanted = format!("pointer at {}, {}, {button}", at.x as i32, at.y as i32);
+        let end = Instant::now() + PATIENCE;
+        loop {
+            let last = self.all.iter().rposition(|line| line.contains("pointer at "));
+            let is_there = last.is_some_and(|nth| {
+                self.all[nth].ends_with(&wanted) && self.all[nth..].iter().any(|line| line.ends_with(": frame"))
+            });
+            if is_there {
+                return;
+            }
+            if self.line(end.saturating_duration_since(Instant::now())).is_none() {
+                panic!("no frame has seen `{wanted}`; it said\n{}", self.all.join("\n"));
+            }
+        }
     }
 
     /// The line of `selvedge render` for the view.

@@ -88,9 +88,8 @@ fn a_section_at_a_face_follows_its_handle() {
     let place = |offset: f64| scene.in_window(&scene.camera, foot(offset));
     let along = (place(section.offset + 0.08 * bounds.diagonal()) - place(section.offset)).normalize();
     let (from, by) = (place(section.offset).round(), -30.0 * along);
-    display.drag(1, from, by);
-    program.wait("uploaded");
-    program.rest();
+    let said = program.drag(display, 1, from, by);
+    assert!(said.iter().any(|line| line.contains("uploaded")), "{}", said.join("\n"));
     let dragged = offset(&program.command(display));
     assert!(dragged < section.offset);
     // the cursor has whole pixels, a step is linear in perspective, and the plane may snap to a face four pixels away
@@ -144,7 +143,7 @@ fn a_trim_follows_the_hand_without_an_upload() {
     let places = uvs.map(|uv| placed.transform.transform_point3(face.surface.point(uv.x, uv.y)));
     let mut places = places.map(|p| scene.in_window(&scene.camera, p).round());
     let grip = places.find(|place| scene.is_in_view(*place)).expect("a point of a hole is seen");
-    let said = program.after(|| display.drag(1, grip, DVec2::new(6.0, 4.0)));
+    let said = program.drag(display, 1, grip, DVec2::new(6.0, 4.0));
     assert!(is_in_place(&said), "{}", said.join("\n"));
 
     // undone, done again, and saved by the dialog

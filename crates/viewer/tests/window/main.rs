@@ -186,9 +186,9 @@ fn script(display: &Display) {
 
     // turned by the right button; all pixels come in the end
     let (width, height) = (scene.camera.size.0, scene.camera.size.1);
-    display.drag(3, at, glam::DVec2::new(84.0, 30.0));
-    program.wait(&format!("picture of {width} x {height}"));
-    program.rest();
+    let said = program.drag(display, 3, at, glam::DVec2::new(84.0, 30.0));
+    let whole = format!("picture of {width} x {height}");
+    assert!(said.iter().any(|line| line.contains(&whole)), "{}", said.join("\n"));
 
     // a picture in a file, of the view that is shown
     let pixels = program.picture(display);

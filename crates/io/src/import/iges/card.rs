@@ -11,6 +11,7 @@
 //! Lines may end in LF, CR LF or CR, may be longer than 80 columns, and need not end at all: then every
 //! 80 bytes are a card. Characters outside ASCII count as one column each where that finds the letter.
 
+use crate::import::Pulse;
 use rayon::prelude::*;
 
 /// What the letter in column 73 says.
@@ -125,8 +126,8 @@ pub(super) struct Part<'a> {
     pub lines: u32,
 }
 
-/// The parts of a file, in order, each read by itself.
-pub(super) fn parts(bytes: &[u8]) -> Vec<Part<'_>> {
+/// The parts of a file, in order, each read by itself. A line is one piece of work.
+pub(super) fn parts<'b>(bytes: &'b [u8], pulse: &Pulse<'_>) -> Vec<Part<'b>> {
     let ended = have_ends(bytes);
     let mut pieces = Vec::with_capacity(bytes.len() / PART + 1);
     let mut rest = bytes;
@@ -138,7 +139,12 @@ pub(super) fn parts(bytes: &[u8]) -> Vec<Part<'_>> {
         rest = after;
     }
     pieces.push(rest);
-    pieces.into_par_iter().map(|piece| Part::read(piece, ended)).collect()
+    let read = |piece| {
+        let part = Part::read(piece, ended);
+        pulse.work(part.lines as usize);
+        part
+    };
+    pieces.into_par_iter().map(read).collect()
 }
 
 impl<'a> Part<'a> {
@@ -219,6 +225,7 @@ pub(super) fn number(field: &[u8]) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::import::{Options, Stage};
 
     fn card(text: &str, tail: &str) -> String {
         format!("{text:<72}{tail}")
@@ -252,7 +259,8 @@ mod tests {
         for (text, ended) in
             [(cards.join("\n"), true), (cards.join("\r\n"), true), (cards.join("\r"), true), (whole, false)]
         {
-            let (all, one) = (parts(text.as_bytes()), Part::read(text.as_bytes(), ended));
+            let pulse = Pulse::new(&Options::default(), Stage::Parse { bytes: 0 });
+            let (all, one) = (parts(text.as_bytes(), &pulse), Part::read(text.as_bytes(), ended));
             assert!(all.len() > 1);
             let before = |i: usize| all[..i].iter().map(|p| p.lines).sum::<u32>();
             let joined = |list: fn(&Part<'_>) -> Texts| {

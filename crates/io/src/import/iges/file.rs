@@ -14,7 +14,7 @@ use super::directory::{self, Entry};
 use super::global::Global;
 use super::value::{Value, record};
 use crate::import::text::Encoding;
-use crate::import::{ImportError, Place, Warnings};
+use crate::import::{ImportError, Place, Pulse, Warnings};
 use rayon::prelude::*;
 
 /// The file.
@@ -60,15 +60,15 @@ const BYTES: usize = 6;
 const SHARING: usize = 4;
 
 impl File {
-    /// Reads cards.
+    /// Reads cards. A line is one piece of work, and so is a parameter.
     ///
     /// # Errors
     /// [`ImportError::NoDirectory`] when there is no entity at all, [`ImportError::Nonsense`] when most
     /// lines are not cards.
-    pub fn parse(bytes: &[u8], name: &str, warnings: &mut Warnings) -> Result<Self, ImportError> {
+    pub fn parse(bytes: &[u8], name: &str, warnings: &mut Warnings, pulse: &Pulse<'_>) -> Result<Self, ImportError> {
         let (mut global, mut entries, mut parameters) = (Vec::new(), Vec::new(), Vec::new());
         let (mut terminate, mut bad, mut seen, mut global_line, mut last_line) = (None, 0, 0, 1, 1);
-        let parts = parts(bytes);
+        let parts = parts(bytes, pulse);
         parameters.reserve(parts.iter().map(|p| p.parameters.len()).sum());
         let mut before = 0;
         for mut part in parts {
@@ -109,11 +109,11 @@ impl File {
         let global = Global::read(&global, encoding, global_line as usize, warnings);
         let entries = directory::read(&entries, encoding, warnings);
         let mut file = Self { global, entries, encoding, text: Vec::new(), arenas: Vec::new(), value_count: 0 };
-        file.read_parameters(&parameters, warnings);
+        file.read_parameters(&parameters, warnings, pulse);
         Ok(file)
     }
 
-    fn read_parameters(&mut self, cards: &[(Card<'_>, u32)], warnings: &mut Warnings) {
+    fn read_parameters(&mut self, cards: &[(Card<'_>, u32)], warnings: &mut Warnings, pulse: &Pulse<'_>) {
         // number and start of each card; the end of the text behind the last
         let (mut starts, mut end): (Vec<(u32, usize)>, _) = (Vec::with_capacity(cards.len()), 0);
         for (card, _) in cards {
@@ -154,6 +154,7 @@ impl File {
                 span.stop = record(text, span.range, delimiters, &mut values);
                 span.values.1 = values.len();
             }
+            pulse.work(values.len());
             values
         };
         let chunks: Vec<Vec<Value>> = spans.par_chunks_mut(RECORDS).map(read).collect();

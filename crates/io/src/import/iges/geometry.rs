@@ -14,7 +14,7 @@ pub(super) use crate::import::FACE_LOST;
 
 use crate::brep::Frame;
 use crate::import::guard::Guard;
-use crate::import::{Place, Reasons, Warnings};
+use crate::import::{Place, Pulse, Reasons, Warnings};
 use glam::{DAffine3, DMat3, DVec3};
 use std::cell::RefCell;
 
@@ -27,6 +27,7 @@ pub(super) struct Geometry<'a> {
     /// The file.
     pub file: &'a File,
     guard: Guard,
+    pulse: &'a Pulse<'a>,
     warnings: RefCell<Warnings>,
     dropped: RefCell<Reasons>,
 }
@@ -42,10 +43,10 @@ pub(super) struct Placed {
 }
 
 impl<'a> Geometry<'a> {
-    /// A fresh budget; `warnings` are those of the cards.
-    pub fn new(file: &'a File, warnings: Warnings) -> Self {
+    /// A fresh budget; `warnings` are those of the cards. An entity and a parameter are one piece of work each.
+    pub fn new(file: &'a File, warnings: Warnings, pulse: &'a Pulse<'a>) -> Self {
         let guard = Guard::new(file.value_count(), MAX_DEPTH);
-        Self { file, guard, warnings: RefCell::new(warnings), dropped: RefCell::default() }
+        Self { file, guard, pulse, warnings: RefCell::new(warnings), dropped: RefCell::default() }
     }
 
     /// The warnings, and the faces left out by reason.
@@ -55,7 +56,13 @@ impl<'a> Geometry<'a> {
 
     /// Takes `amount` of work for `#id` from the budget.
     pub fn spend(&self, id: u32, amount: usize) -> Result<(), Fault> {
+        self.work(amount);
         self.guard.spend(id, amount).map_err(Fault::Endless)
+    }
+
+    /// So much work was done.
+    pub fn work(&self, amount: usize) {
+        self.pulse.work(amount);
     }
 
     /// Warns about `#id`.
@@ -71,6 +78,7 @@ impl<'a> Geometry<'a> {
     /// Runs `f` with `#id` on the trail; its parameters count as work.
     pub fn nested<T>(&self, id: u32, f: impl FnOnce(Entity<'a>) -> Result<T, Fault>) -> Result<T, Fault> {
         let entity = Entity::find(self.file, id)?;
+        self.work(1 + entity.len());
         self.guard.nested(id, 1 + entity.len(), Fault::Endless, || f(entity))
     }
 

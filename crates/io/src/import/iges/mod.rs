@@ -41,7 +41,8 @@ mod trim;
 mod value;
 
 use super::{
-    FaceCount, FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Options, Place, Warnings, preview, stem, text,
+    FaceCount, FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Options, Place, Pulse, Stage, Warnings,
+    preview, stem, text,
 };
 use crate::brep::{FaceGeometry, build_face, settle};
 use crate::model::{Instance, Model, Part};
@@ -71,14 +72,15 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
         Some(card::Form::Fixed) => {}
     }
     let mut warnings = Warnings::new(name);
-    let file = File::parse(bytes, name, &mut warnings)?;
+    let pulse = Pulse::new(options, Stage::Parse { bytes: bytes.len() as u64 });
+    let file = File::parse(bytes, name, &mut warnings, &pulse)?;
     if wide.as_ref().is_some_and(|(_, whole)| !whole) {
         warnings.push(text::KIND, || Place::File, || "it is UTF-16 with units that are no characters".to_owned());
     }
     if let Some(message) = file.encoding.told() {
         warnings.push(text::KIND, || Place::File, || message);
     }
-    let geometry = Geometry::new(&file, warnings);
+    let geometry = Geometry::new(&file, warnings, &pulse);
     let tree = Tree::read(&geometry);
     let (mut bodies, placements) = (tree.bodies, tree.placements);
     let global = &file.global;
@@ -165,6 +167,7 @@ fn place_solids(
 /// Repairs edges of solids and shells where they miss their vertices.
 fn settled(geometry: &Geometry<'_>, bodies: &mut [Body], report: &mut ImportReport) {
     for body in bodies {
+        geometry.work(body.shells.edges.len() + body.shells.faces.len());
         let mut faces: Vec<_> = body.shells.faces.iter_mut().map(|(face, _)| face).collect();
         for (id, note) in settle(&mut body.shells.edges, &mut faces, body.closed, geometry.file.global.resolution) {
             report.repaired.add(&note);

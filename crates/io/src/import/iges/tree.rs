@@ -122,6 +122,7 @@ impl<'g, 'a> Tree<'g, 'a> {
     fn used(&mut self) -> Vec<(u32, u32)> {
         let (mut pairs, mut used) = (Vec::new(), Vec::new());
         for entry in &self.geometry.file.entries {
+            self.geometry.work(1);
             let Ok(entity) = Entity::find(self.geometry.file, entry.id) else { continue };
             let listed = |count: usize, first: usize, each: usize| {
                 let n = entity.count(count, each).unwrap_or(0);

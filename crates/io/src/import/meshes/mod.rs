@@ -187,9 +187,10 @@ fn utf8<'b>(bytes: &'b [u8], word: &str) -> Cow<'b, [u8]> {
 
 /// The objects in the bytes, and in other files that they name. `ending` gives the format.
 fn found(bytes: &[u8], ending: &str, files: OtherFiles<'_>) -> Result<Found, Wrong> {
+    let pulse = files.parsing(bytes.len());
     match ending {
-        "stl" => stl::read(&utf8(bytes, "solid")),
-        "off" => off::read(&utf8(bytes, "off")),
+        "stl" => stl::read(&utf8(bytes, "solid"), &pulse),
+        "off" => off::read(&utf8(bytes, "off"), &pulse),
         "ply" => ply::read(&utf8(bytes, "ply")),
         "3mf" => threemf::read(bytes),
         "amf" => amf::read(&utf8(bytes, "<")),

@@ -10,6 +10,7 @@
 //! Source: *Geomview Manual*, OFF.
 
 use super::{Found, Piece, Wrong};
+use crate::import::Pulse;
 use crate::import::colour::linear;
 use crate::model::Colour;
 use glam::DVec3;
@@ -19,7 +20,8 @@ pub(super) fn recognise(start: &[u8]) -> bool {
     word == b"OFF" || word == b"COFF"
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Found, Wrong> {
+/// Reads the text; a vertex or a face is one piece of work.
+pub(super) fn read(bytes: &[u8], pulse: &Pulse<'_>) -> Result<Found, Wrong> {
     let text = String::from_utf8_lossy(bytes);
     let lines = text.lines().zip(1..).map(|(l, n)| (l.split('#').next().unwrap_or_default().trim(), n));
     let mut lines = lines.filter(|(l, _)| !l.is_empty()).peekable();
@@ -42,6 +44,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Found, Wrong> {
     // the first vertex's colour, whether others have another, numbers that are no colour
     let (mut own, mut varies, mut unread) = (None, false, 0);
     for k in 0..*vertices {
+        pulse.work(1);
         let (content, line) =
             lines.next().ok_or_else(|| Wrong::at(last, format!("cut off: {k} of {vertices} vertices")))?;
         let number = |w: &str| w.parse::<f64>().ok().filter(|x| x.is_finite());
@@ -56,6 +59,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Found, Wrong> {
         last = line;
     }
     for k in 0..*faces {
+        pulse.work(1);
         let (content, line) = lines.next().ok_or_else(|| Wrong::at(last, format!("cut off: {k} of {faces} faces")))?;
         let mut words = content.split_whitespace();
         let count: Option<usize> = words.next().and_then(|w| w.parse().ok());

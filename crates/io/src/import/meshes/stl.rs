@@ -13,6 +13,7 @@
 //! Sources: 3D Systems, *StereoLithography Interface Specification*, 1989; Materialise Magics and VisCAM for colours.
 
 use super::{Found, Piece, Shared, Wrong};
+use crate::import::Pulse;
 use crate::import::colour::linear;
 use crate::model::Colour;
 use glam::DVec3;
@@ -34,14 +35,19 @@ fn stated(bytes: &[u8]) -> Option<usize> {
     Some(u32::from_le_bytes(bytes.get(80..HEADER)?.try_into().ok()?) as usize)
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Found, Wrong> {
+/// Reads either form; a triangle or a line is one piece of work.
+pub(super) fn read(bytes: &[u8], pulse: &Pulse<'_>) -> Result<Found, Wrong> {
     let exact = stated(bytes).is_some_and(|n| bytes.len() == HEADER + RECORD * n);
     let start = bytes.trim_ascii_start();
     let text = start.len() >= 5 && start[..5].eq_ignore_ascii_case(b"solid");
-    if exact || !text || bytes[..bytes.len().min(1024)].contains(&0) { binary(bytes) } else { ascii(bytes) }
+    if exact || !text || bytes[..bytes.len().min(1024)].contains(&0) {
+        binary(bytes, pulse)
+    } else {
+        ascii(bytes, pulse)
+    }
 }
 
-fn binary(bytes: &[u8]) -> Result<Found, Wrong> {
+fn binary(bytes: &[u8], pulse: &Pulse<'_>) -> Result<Found, Wrong> {
     let count = stated(bytes).ok_or_else(|| Wrong::new("cut off: the header of a binary STL has 84 bytes"))?;
     let there = (bytes.len() - HEADER) / RECORD;
     if there < count {
@@ -56,6 +62,7 @@ fn binary(bytes: &[u8]) -> Result<Found, Wrong> {
     let mut piece = Piece::default();
     let mut attributes = Vec::with_capacity(count);
     for (t, record) in bytes[HEADER..].chunks_exact(RECORD).take(count).enumerate() {
+        pulse.work(1);
         let number = |at: usize| {
             let at = 4 * at;
             f64::from(f32::from_le_bytes([record[at], record[at + 1], record[at + 2], record[at + 3]]))
@@ -97,12 +104,13 @@ fn five_bits(c: [u16; 3]) -> Colour {
     linear(c.map(|c| f64::from(c & 31) / 31.0), 1.0)
 }
 
-fn ascii(bytes: &[u8]) -> Result<Found, Wrong> {
+fn ascii(bytes: &[u8], pulse: &Pulse<'_>) -> Result<Found, Wrong> {
     let text = String::from_utf8_lossy(bytes);
     let mut pieces: Vec<(Piece, Shared)> = Vec::new();
     let mut corners: Option<Vec<u32>> = None; // of the loop that is being read
     let (mut open, mut last) = (false, 0);
     for (content, line) in text.lines().zip(1..) {
+        pulse.work(1);
         let mut words = content.split_whitespace();
         let Some(keyword) = words.next().map(str::to_ascii_lowercase) else { continue };
         last = line;

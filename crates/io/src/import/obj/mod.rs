@@ -53,7 +53,9 @@ pub(super) fn recognise(bytes: &[u8]) -> bool {
 /// Reads the text, and the materials that it names.
 pub(super) fn read(bytes: &[u8], name: &str, files: OtherFiles<'_>) -> Result<Import, ImportError> {
     let mut reader = read::Reader::new(name, files, bytes.len());
+    let pulse = files.parsing(bytes.len());
     for (line, text) in lines(bytes) {
+        pulse.work(1);
         reader.statement(line, &text);
     }
     reader.finish()

@@ -85,6 +85,11 @@ impl<'a> Ledger<'a> {
         self.guard.spend(id, amount).map_err(Fault::Endless)
     }
 
+    /// So much work was done that looked up no record.
+    pub fn work(&self, amount: usize) {
+        self.file.work(amount);
+    }
+
     /// Warns about `#id`.
     pub fn note(&self, kind: &'static str, id: u32, message: impl Into<String>) {
         let place = || Entity::find(self.file, id).map_or(Place::File, Entity::place);

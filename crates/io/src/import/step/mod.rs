@@ -49,8 +49,8 @@ pub(super) use surface::{OTHER_SIDE, OTHER_SIDE_HOW, as_cylinder, offset};
 
 use super::external::{Mention, Read};
 use super::{
-    FaceCount, FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Options, Place, Stage, Warnings, locate,
-    preview, stem,
+    FaceCount, FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Options, Place, Pulse, Stage, Warnings,
+    locate, preview, stem,
 };
 use crate::brep::{BuildError, BuiltFace, FaceGeometry, build_face, settle};
 use crate::model::{Colour, Instance, Model, Part};
@@ -96,7 +96,7 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Re
     let mut mapped = 0;
     for group in assembly.groups.values() {
         for &(id, representation) in &group.bodies {
-            options.tell(Stage::Bodies { mapped, total });
+            file.tell(Stage::Bodies { mapped, total });
             mapped += 1;
             if part_of.contains_key(&id) || assembly.files.contains_key(&id) {
                 continue;
@@ -180,7 +180,9 @@ fn build(
     let total = bodies.iter().map(|(body, _)| body.faces.len()).sum();
     let mut division = preview::Division::new(options);
     let (mut groups, mut group, mut count) = (Vec::new(), Vec::new(), 0);
+    let settling = Pulse::new(options, Stage::Bodies { mapped: bodies.len(), total: bodies.len() });
     for (part, (mut body, tolerance)) in bodies.into_iter().enumerate() {
+        settling.work(body.edges.len() + body.faces.len());
         let mut faces: Vec<_> = body.faces.iter_mut().map(|(face, _)| face).collect();
         for (id, note) in settle(&mut body.edges, &mut faces, body.closed, tolerance) {
             report.repaired.add(&note);

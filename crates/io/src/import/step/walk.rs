@@ -99,6 +99,7 @@ impl Walk<'_> {
 
     fn visit(&mut self, id: u32, transform: DAffine3, path: &mut Vec<u32>, name: &str) {
         self.visits += 1;
+        self.ledger.work(1);
         if self.trail.contains(&id) {
             self.ledger.note("occurrence left out", id, "the assembly contains itself");
             return;

@@ -22,7 +22,7 @@ mod value;
 pub(super) use text::decode;
 pub(super) use value::{Value, Values};
 
-use crate::import::{ImportError, Options, Place, Warnings};
+use crate::import::{ImportError, Options, Place, Pulse, Stage, Warnings};
 use std::collections::HashMap;
 
 /// A range of the text.
@@ -84,6 +84,8 @@ pub(super) struct File<'a> {
     records: Vec<Record>,
     /// Indices of `records` by name of each of their parts.
     kinds: HashMap<&'a str, Vec<u32>>,
+    /// Of the work on its records.
+    pulse: Pulse<'a>,
 }
 
 /// Bytes allowed before `ISO-10303-21`: marks of byte order, mail headers.
@@ -110,7 +112,7 @@ impl<'a> File<'a> {
         bytes: &'a [u8],
         name: &str,
         warnings: &mut Warnings,
-        options: &Options<'_>,
+        options: &Options<'a>,
     ) -> Result<Self, ImportError> {
         if u32::try_from(bytes.len()).is_err() {
             return Err(ImportError::TooLarge { file: name.to_owned(), limit: u32::MAX.into() });
@@ -135,6 +137,7 @@ impl<'a> File<'a> {
             }
         }
         for (index, record) in file.records.iter().enumerate() {
+            file.pulse.work(1);
             for part in &file.parts[record.first_part as usize..][..record.part_count as usize] {
                 file.kinds.entry(name_at(bytes, part.name)).or_default().push(index as u32);
             }
@@ -142,8 +145,19 @@ impl<'a> File<'a> {
         Ok(file)
     }
 
-    /// The record `#id`.
+    /// Tells the next stage of work on the records.
+    pub fn tell(&self, stage: Stage) {
+        self.pulse.tell(stage);
+    }
+
+    /// So much work was done that looked up no record.
+    pub fn work(&self, amount: usize) {
+        self.pulse.work(amount);
+    }
+
+    /// The record `#id`. Whatever a file costs is a multiple of the records that are looked up.
     pub fn record(&self, id: u32) -> Option<&Record> {
+        self.pulse.work(1);
         // most files number their records without gaps
         let guess = self.records.first().and_then(|first| id.checked_sub(first.id))? as usize;
         if let Some(record) = self.records.get(guess).filter(|r| r.id == id) {

@@ -6,7 +6,7 @@
 //! that the scan resumes at the place of the error. Hence linear time on any input.
 
 use super::{File, Part, Record, Slot, Span, line_of};
-use crate::import::{ImportError, Options, Place, Stage, Warnings};
+use crate::import::{ImportError, Options, Place, Pulse, Stage, Warnings};
 use std::collections::HashMap;
 
 /// Deepest nesting of lists. Real files need 5.
@@ -46,7 +46,7 @@ pub(super) fn scan<'a>(
     bytes: &'a [u8],
     name: &str,
     warnings: &mut Warnings,
-    options: &Options<'_>,
+    options: &Options<'a>,
 ) -> Result<File<'a>, ImportError> {
     let mut s = Scanner {
         bytes,
@@ -134,8 +134,8 @@ pub(super) fn scan<'a>(
         let place = || Place::Entity { id, line: line_of(bytes, offset) };
         s.warnings.push("record skipped", place, || "&SCOPE without ENDSCOPE".into());
     }
-    let (slots, parts, records) = (s.slots, s.parts, s.records);
-    Ok(File { bytes, slots, parts, header, records, kinds: HashMap::new() })
+    let pulse = Pulse::new(options, Stage::Records { read: bytes.len() as u64, bytes: bytes.len() as u64 });
+    Ok(File { bytes, slots: s.slots, parts: s.parts, header, records: s.records, kinds: HashMap::new(), pulse })
 }
 
 impl<'a> Scanner<'a, '_> {
