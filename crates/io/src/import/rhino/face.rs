@@ -6,6 +6,7 @@
 //!                           └─▶ edge ─▶ curve in space: distance of the p-curve's image from it
 //! ```
 
+use super::joined;
 use crate::brep::crossing_note;
 use crate::import::chain::chain;
 use crate::import::locate::nearest;
@@ -126,7 +127,7 @@ impl<'i> Tables<'i> {
             let p = p.get();
             DVec4::from_point(DVec3::new(p.x, p.y, p.z), weight(i))
         });
-        BSpline::new(nurbs.degree() as usize, nurbs.knots().as_slice().to_vec(), points.collect()).ok()
+        joined::curve(nurbs.degree() as usize, nurbs.knots().as_slice().to_vec(), points.collect()).ok()
     }
 }
 
@@ -192,7 +193,7 @@ fn tensor(nurbs: &NurbsSurface) -> Result<Surface, String> {
     let net = net.map(|(i, j)| point(i, j)).collect::<Option<Vec<_>>>().ok_or("a control net with holes")?;
     let knots = |k: &cadmpeg_ir::geometry::nurbs::KnotVector| k.as_slice().to_vec();
     let degrees = (nurbs.u_degree() as usize, nurbs.v_degree() as usize);
-    Surface::new(degrees, knots(nurbs.u_knots()), knots(nurbs.v_knots()), net).map_err(|e| e.to_string())
+    joined::surface(degrees, (knots(nurbs.u_knots()), knots(nurbs.v_knots())), net).map_err(|e| e.to_string())
 }
 
 /// The loop; gaps are closed where the ends are one point in space.
