@@ -6,8 +6,8 @@
 //!                           └─▶ edge ─▶ curve in space: distance of the p-curve's image from it
 //! ```
 //!
-//! The parameter of a turned curve is an angle, in which its p-curves are stated. The decoder makes it a rational spline,
-//! which has another parameter: [`Map`] leads from one to the other.
+//! The parameter of a turned curve is an angle, in which its p-curves are stated. The decoder makes it a rational
+//! spline, which has another parameter: [`Map`] leads from one to the other.
 
 use super::joined;
 use super::shape::Map;
