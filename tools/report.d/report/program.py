@@ -95,11 +95,12 @@ class Program:
         self.run("trims", *words, "--out", folder, *self.on)
         return list(csv.DictReader((folder / "trims.csv").open()))
 
-    def read_ms(self, model):
-        """From bytes on disk to a valid model."""
+    def reading(self, model):
+        """From bytes on disk to a valid model, ms, and the time of its box as a share of that."""
         _, told, _ = self.run("-v", "info", model)
         value, unit = re.search(r" read .* in ([0-9.]+)(s|ms|µs)\b", told).groups()
-        return float(value) * UNITS[unit]
+        percent = re.search(r" box in .*, ([0-9.]+) % of the time of reading", told).group(1)
+        return float(value) * UNITS[unit], float(percent) / 100
 
     def seen(self, stats):
         # of the first frame; the output may have further ones

@@ -121,9 +121,9 @@ class Program:
         rows = ((model, way, zoom, *of.split("x")) for model in models for way in ways for zoom, of in views)
         return [at(*row) | figures for row in rows]
 
-    def read_ms(self, _model):
+    def reading(self, _model):
         self.spend("info", 0.3)
-        return 50.0
+        return 50.0, 0.01
 
 
 class Peers:

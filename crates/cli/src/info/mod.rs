@@ -14,7 +14,7 @@ mod tiles;
 use crate::args::InfoArgs;
 use crate::{Outcome, output, reading, remains};
 use anyhow::Result;
-use selvedge::model::{EdgeCounts, Mesh, Model, Part, SurfaceKind};
+use selvedge::model::{Bounds, EdgeCounts, Mesh, Model, Part, SurfaceKind};
 use selvedge::picture::{SceneSettings, TrimWay};
 use selvedge::renderer::trim_way;
 use selvedge_io::import::{FaceRecord, Import, ImportReport, Summary};
@@ -22,6 +22,7 @@ use selvedge_jobs::Node;
 use serde::Serialize;
 use solids::SolidRow;
 use std::collections::BTreeMap;
+use std::time::Instant;
 use tiles::Tiles;
 
 /// Counts of a model; *distinct* unless they are called *instances*, which count placed copies.
@@ -89,8 +90,13 @@ struct PartRow<'a> {
 
 /// Reads the model and prints its description.
 pub fn run(args: &InfoArgs) -> Result<Outcome> {
+    let start = Instant::now();
     let import = reading::described(&args.model, &args.read, &args.subdivide)?;
-    let mut info = Info::new(&import);
+    let (reading, start) = (start.elapsed(), Instant::now());
+    let bounds = import.model.bounds();
+    let share = start.elapsed().as_secs_f64() / reading.as_secs_f64().max(f64::MIN_POSITIVE);
+    tracing::info!("box in {:.1?}, {:.2} % of the time of reading", start.elapsed(), 100.0 * share);
+    let mut info = Info::new(&import, bounds);
     if !import.model.solids.is_empty() && info.bounds.is_some() {
         info.folded_tiles = Tiles::new(&import.model, &args.camera.of(&import)?);
     }
@@ -108,13 +114,12 @@ pub fn run(args: &InfoArgs) -> Result<Outcome> {
 }
 
 impl<'a> Info<'a> {
-    fn new(import: &'a Import) -> Self {
+    fn new(import: &'a Import, bounds: Bounds) -> Self {
         let model = &import.model;
         let faces = || model.parts.iter().flat_map(|p| &p.faces);
         let parts = parts(model);
         let count = |closed: bool| parts.iter().filter(|p| p.closed == closed).count();
         let placed = |closed: bool| parts.iter().filter(|p| p.closed == closed).map(|p| p.instances).sum();
-        let bounds = model.bounds();
         Self {
             name: &model.name,
             unit: &model.unit,

@@ -42,6 +42,20 @@ fn edges_are_counted_by_kind() {
     }
 }
 
+/// Beside the time of reading stands that of the box, in shares of it: one command measures both.
+#[test]
+fn info_times_the_box() {
+    let good = include_bytes!("../../../io/src/import/step/tests/good.step");
+    let told = text(&piped(&["-v", "info", "-"], good).stderr);
+    let share = |line: &str| {
+        let (_, share) = line.split_once(" box in ")?.1.split_once(", ")?;
+        share.strip_suffix(" % of the time of reading")?.parse::<f64>().ok()
+    };
+    let shares: Vec<f64> = told.lines().filter_map(share).collect();
+    assert!(shares.len() == 1 && shares[0] >= 0.0, "{told}");
+    assert!(!text(&piped(&["info", "-"], good).stderr).contains(" box in "));
+}
+
 #[test]
 fn a_dash_is_standard_input() {
     let good = include_bytes!("../../../io/src/import/step/tests/good.step");

@@ -202,8 +202,7 @@ fn lost(face: &FaceGeometry, edges: &[Edge], uses: &[Vec<EdgeCurve>], support: &
     empty.map(note).collect()
 }
 
-/// The edges of each bound in the direction of the bound; edges without length are left out. A single edge whose
-/// vertices make it bound nothing is taken once around its curve.
+/// The edges of each bound, without those that have no length.
 fn edge_uses(face: &FaceGeometry, edges: &[Edge]) -> Result<Vec<Vec<EdgeCurve>>, BuildError> {
     let lists = face.bounds.iter().filter_map(|b| match b {
         Boundary::Edges(list) => Some(list),
@@ -213,28 +212,11 @@ fn edge_uses(face: &FaceGeometry, edges: &[Edge]) -> Result<Vec<Vec<EdgeCurve>>,
     // rounding of the vertices' coordinates, before anything is known about the face
     let reach = ends.clone().map(DVec3::length).fold(0.0, f64::max);
     let rounding = 1e-12 * ends.fold(Bounds::EMPTY, Bounds::with).diagonal().max(1e-3 * reach);
-    let mut uses = Vec::new();
-    for bound in &face.bounds {
-        let Boundary::Edges(list) = bound else { continue };
-        let mut out = Vec::new();
-        for &(index, forward) in list {
-            let edge = edges.get(index).ok_or(BuildError::EdgeIndex { face: face.id, index })?;
-            let of_edge = EdgeCurve::new(edge, forward, rounding)?;
-            out.extend(of_edge.map(|e| EdgeCurve { used: (index, forward), ..e }));
-        }
-        if out.len() < 2 && out.first().is_none_or(EdgeCurve::is_sliver) {
-            let around = |&(index, forward): &(usize, bool)| {
-                let whole = EdgeCurve::around(&edges[index], forward, rounding)?;
-                Ok(whole.map(|e| EdgeCurve { used: (index, forward), ..e }))
-            };
-            let all = list.iter().filter_map(|e| around(e).transpose()).collect::<Result<Vec<_>, _>>()?;
-            if all.len() == 1 {
-                out = all;
-            }
-        }
-        uses.push(out);
-    }
-    Ok(uses)
+    let of_bound = |bound: &Boundary| match bound {
+        Boundary::Edges(list) => Some(EdgeCurve::of_bound(list, edges, face.id, rounding)),
+        Boundary::Vertex(_) | Boundary::Natural => None,
+    };
+    face.bounds.iter().filter_map(of_bound).collect()
 }
 
 /// The largest distance of an edge from the surface; names edges that lie farther off than a sound

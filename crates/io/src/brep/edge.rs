@@ -54,6 +54,31 @@ impl EdgeCurve {
         Ok((this.length > eps).then_some(this))
     }
 
+    /// The edges of a bound of `face`, in the direction of the bound; those no longer than `eps` are left out. A single
+    /// edge whose vertices make it bound nothing is taken once around its curve.
+    ///
+    /// # Errors
+    /// As [`EdgeCurve::new`]; [`BuildError::EdgeIndex`] for an edge that does not exist.
+    pub fn of_bound(list: &[(usize, bool)], edges: &[Edge], face: u32, eps: f64) -> Result<Vec<Self>, BuildError> {
+        let mut all = Vec::new();
+        for &(index, forward) in list {
+            let edge = edges.get(index).ok_or(BuildError::EdgeIndex { face, index })?;
+            let of_edge = Self::new(edge, forward, eps)?;
+            all.extend(of_edge.map(|e| Self { used: (index, forward), ..e }));
+        }
+        if all.len() < 2 && all.first().is_none_or(Self::is_sliver) {
+            let around = |&(index, forward): &(usize, bool)| {
+                let whole = Self::around(&edges[index], forward, eps)?;
+                Ok(whole.map(|e| Self { used: (index, forward), ..e }))
+            };
+            let whole = list.iter().filter_map(|e| around(e).transpose()).collect::<Result<Vec<_>, _>>()?;
+            if whole.len() == 1 {
+                all = whole;
+            }
+        }
+        Ok(all)
+    }
+
     /// The edge as a whole loop: once around its curve, or along all of a curve whose ends nearly meet, whatever the
     /// order of the vertices. `None` where it closes no loop.
     ///

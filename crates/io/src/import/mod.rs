@@ -56,6 +56,7 @@ mod stop;
 mod subdivided;
 mod summary;
 mod text;
+mod torn;
 
 pub use camera::{Lens, NamedCamera, PictureSettings, Stance};
 pub use error::ImportError;

@@ -1,6 +1,8 @@
-//! Faces that are lost without a gap: thinner than the tolerance, between straight and between curved edges.
+//! Faces that are lost without a gap: thinner than the tolerance, between straight and between curved edges, or within
+//! one edge that runs there and back.
 
 use super::*;
+use crate::spline::BSpline;
 
 fn is_sliver(surface: &SurfaceGeometry, bounds: Vec<Boundary>, edges: &[Edge], tolerance: f64) -> bool {
     FaceGeometry { id: 1, surface: surface.clone(), bounds, same_sense: true, ambiguous: false }
@@ -91,4 +93,87 @@ fn lunes_of_a_sphere() {
     assert!(!is_sliver(&surface, lune(west, west), &edges, 1e-3));
     let ambiguous = FaceGeometry { id: 1, surface, bounds: lune(east, west), same_sense: true, ambiguous: true };
     assert!(!ambiguous.is_sliver(&edges, 1e-3));
+}
+
+/// A closed cubic spline of twelve corners, the first again at its end.
+fn twelve(corner: impl Fn(f64) -> DVec3) -> CurveGeometry {
+    let knots = [0.0; 3].into_iter().chain((0..=10).map(f64::from)).chain([10.0; 3]).collect();
+    let points = (0..=12).map(|i| corner(TAU * f64::from(i % 12) / 12.0).extend(1.0)).collect();
+    CurveGeometry::BSpline(BSpline::new(3, knots, points).unwrap())
+}
+
+/// A loop of one closed edge.
+fn alone(curve: CurveGeometry, at: DVec3, forward: bool) -> (Vec<Boundary>, Vec<Edge>) {
+    let mut edges = Vec::new();
+    let only = edge(&mut edges, curve, at, at);
+    (vec![Boundary::Edges(vec![(only, forward)])], edges)
+}
+
+/// One edge there and back, 20 mm long: as wide as stated, collapsed, and with one wide place.
+#[test]
+fn an_edge_that_runs_there_and_back() {
+    let f = odd_frame();
+    let surface = SurfaceGeometry::Plane { frame: f };
+    let at = |x: f64, y: f64| f.world(DVec3::new(x, y, 0.0));
+    let narrow = |width: f64, bulge: f64, forward: bool| {
+        let y = |a: f64| 0.5 * width * a.sin() + if (a - FRAC_PI_2).abs() < 0.1 { bulge } else { 0.0 };
+        alone(twelve(|a| at(10.0 * a.cos(), y(a))), at(10.0, 0.0), forward)
+    };
+    let thin = |width: f64, bulge: f64, forward: bool, tolerance: f64| {
+        let (bounds, edges) = narrow(width, bulge, forward);
+        is_sliver(&surface, bounds, &edges, tolerance)
+    };
+    for forward in [true, false] {
+        assert!(thin(5e-4, 0.0, forward, 1e-3) && thin(0.0, 0.0, forward, 1e-3));
+        assert!(!thin(5e-4, 0.0, forward, 1e-4) && !thin(5e-4, 0.5, forward, 1e-3) && !thin(5.0, 0.0, forward, 1e-3));
+        // one that is collapsed is no face
+        let (bounds, edges) = narrow(0.0, 0.0, forward);
+        assert!(build_face(&face(surface.clone(), bounds), &edges, TOLERANCE).is_err());
+    }
+    let flat = |semi_y: f64| {
+        let ellipse = CurveGeometry::Ellipse { frame: f, semi_x: 10.0, semi_y };
+        let (bounds, edges) = alone(ellipse, at(10.0, 0.0), true);
+        is_sliver(&surface, bounds, &edges, 1e-3)
+    };
+    assert!(flat(2e-4) && !flat(2e-3));
+    // vertices that nearly meet, at the ends of the curve
+    let (bounds, mut edges) = narrow(5e-4, 0.0, true);
+    edges[0].end += f.x * 1e-7;
+    assert!(is_sliver(&surface, bounds, &edges, 1e-3));
+}
+
+/// On a closed surface the directions say whether the face is what the edge encloses.
+#[test]
+fn an_edge_there_and_back_on_a_sphere() {
+    let f = odd_frame();
+    let surface = SurfaceGeometry::Sphere { frame: f, radius: 5.0 };
+    let at = |latitude: f64, longitude: f64| {
+        let out = 5.0 * latitude.cos();
+        f.world(DVec3::new(out * longitude.cos(), out * longitude.sin(), 5.0 * latitude.sin()))
+    };
+    // counter-clockwise as seen from outside
+    let lune = |forward: bool| alone(twelve(|a| at(0.5 * a.cos(), -2e-5 * a.sin())), at(0.5, 0.0), forward);
+    let is_sliver = |(bounds, edges): (Vec<Boundary>, Vec<Edge>)| is_sliver(&surface, bounds, &edges, 1e-3);
+    assert!(is_sliver(lune(true)) && !is_sliver(lune(false)));
+}
+
+/// A border that is a point leaves nothing of a plane, but it may leave all of a sphere.
+#[test]
+fn an_edge_that_is_a_point() {
+    let f = odd_frame();
+    let (plane, sphere) = (SurfaceGeometry::Plane { frame: f }, SurfaceGeometry::Sphere { frame: f, radius: 5.0 });
+    let (bounds, edges) = alone(twelve(|_| f.origin), f.origin, true);
+    let built = build_face(&face(plane.clone(), bounds.clone()), &edges, TOLERANCE);
+    assert_eq!(built.unwrap_err(), BuildError::EmptyLoop { face: 7 });
+    assert!(is_sliver(&plane, bounds.clone(), &edges, 1e-3) && !is_sliver(&sphere, bounds, &edges, 1e-3));
+    // an open curve with one vertex for both its ends
+    let knots = vec![0.0, 0.0, 1.0, 1.0];
+    let ends = [f.origin, f.origin + f.x * 10.0].map(|p| p.extend(1.0));
+    let open = CurveGeometry::BSpline(BSpline::new(1, knots, ends.to_vec()).unwrap());
+    let (bounds, edges) = alone(open, f.origin, true);
+    assert!(!is_sliver(&plane, bounds, &edges, 1e-3));
+    // edges that are points apart from each other
+    let mut edges = Vec::new();
+    let two = [f.origin, f.origin + f.x].map(|p| (edge(&mut edges, twelve(|_| p), p, p), true));
+    assert!(!is_sliver(&plane, vec![Boundary::Edges(two.to_vec())], &edges, 1e-3));
 }

@@ -1,11 +1,16 @@
 //! One face: its surface, its loops, and how far they are from the edges.
 //!
 //! ```text
-//!   face ─▶ surface     spline, or a plane, as large as its loops
+//!   face ─▶ surface     spline, turned curve, or a plane, as large as its loops
 //!        └▶ loops ─▶ coedges ─▶ p-curve in (u, v) ─▶ Bézier pieces ─chain─▶ TrimLoop
 //!                           └─▶ edge ─▶ curve in space: distance of the p-curve's image from it
 //! ```
+//!
+//! The parameter of a turned curve is an angle, in which its p-curves are stated. The decoder makes it a rational
+//! spline, which has another parameter: [`Map`] leads from one to the other.
 
+use super::joined;
+use super::shape::Map;
 use crate::brep::crossing_note;
 use crate::import::chain::chain;
 use crate::import::locate::nearest;
@@ -15,6 +20,7 @@ use cadmpeg_ir::document::CadIr;
 use cadmpeg_ir::geometry::nurbs::NurbsSurface;
 use cadmpeg_ir::geometry::pcurve::{Pcurve, PcurveGeometry};
 use cadmpeg_ir::geometry::{Curve, CurveGeometry, SolvedCurveGeometry, SolvedSurfaceGeometry, Surface as Carrier};
+use cadmpeg_ir::geometry::{ProceduralSurface, ProceduralSurfaceDefinition};
 use cadmpeg_ir::topology::{Coedge, Edge, Face as Stated, Loop, LoopBoundaryRole, Sense};
 use glam::{DVec2, DVec3, DVec4};
 use std::collections::HashMap;
@@ -23,6 +29,7 @@ use std::collections::HashMap;
 pub(super) struct Tables<'i> {
     faces: HashMap<&'i str, &'i Stated>,
     surfaces: HashMap<&'i str, &'i Carrier>,
+    constructions: HashMap<&'i str, &'i ProceduralSurface>,
     loops: HashMap<&'i str, &'i Loop>,
     coedges: HashMap<&'i str, &'i Coedge>,
     pcurves: HashMap<&'i str, &'i Pcurve>,
@@ -68,6 +75,7 @@ impl<'i> Tables<'i> {
         Self {
             faces: m.faces.iter().map(|x| (x.id.as_str(), x)).collect(),
             surfaces: m.surfaces.iter().map(|x| (x.id.as_str(), x)).collect(),
+            constructions: m.procedural_surfaces.iter().map(|x| (x.id.as_str(), x)).collect(),
             loops: m.loops.iter().map(|x| (x.id.as_str(), x)).collect(),
             coedges: m.coedges.iter().map(|x| (x.id.as_str(), x)).collect(),
             pcurves: m.pcurves.iter().map(|x| (x.id.as_str(), x)).collect(),
@@ -93,7 +101,17 @@ impl<'i> Tables<'i> {
             rings.push(Ring { curves: self.ring(stated)?, hole });
         }
         let all = rings.iter().flat_map(|ring| &ring.curves).flat_map(|(curve, _)| curve.points().iter());
-        let (surface, kind, flipped) = spline_of(geometry, all.map(|p| p.point()))?;
+        let (mut surface, mut kind, flipped) = spline_of(geometry, all.map(|p| p.point()))?;
+        let construction =
+            carrier.geometry.procedural_construction().and_then(|id| self.constructions.get(id.as_str()));
+        if let Some(ProceduralSurfaceDefinition::Revolution(turned)) = construction.map(|c| c.definition()) {
+            let (over, map) = by_angle(&surface, turned.angular_interval().endpoints(), *turned.transposed())?;
+            surface = over;
+            kind = SurfaceKind::Revolution;
+            for (curve, _) in rings.iter_mut().flat_map(|ring| &mut ring.curves) {
+                *curve = map.curve(&raised(curve)?)?;
+            }
+        }
         let same_sense = matches!(face.sense, Sense::Forward) != flipped;
         let colour = face.color.map(super::linear);
         built(Face { id, kind, surface, loops: Vec::new(), same_sense, colour }, &rings, Vec::new())
@@ -126,7 +144,7 @@ impl<'i> Tables<'i> {
             let p = p.get();
             DVec4::from_point(DVec3::new(p.x, p.y, p.z), weight(i))
         });
-        BSpline::new(nurbs.degree() as usize, nurbs.knots().as_slice().to_vec(), points.collect()).ok()
+        joined::curve(nurbs.degree() as usize, nurbs.knots().as_slice().to_vec(), points.collect()).ok()
     }
 }
 
@@ -182,6 +200,26 @@ fn spline_of(
     }
 }
 
+/// A turned curve over its angle instead of a parameter that is linear in it, and how angles become its parameters.
+fn by_angle(surface: &Surface, [from, to]: [f64; 2], along_v: bool) -> Result<(Surface, Map), String> {
+    let (along_u, other) = surface.knots();
+    let (domain_u, domain_v) = surface.domain();
+    let (knots, (low, high)) = if along_v { (other, domain_v) } else { (along_u, domain_u) };
+    let angle = |t: &f64| if *t == high { to } else { from + (t - low) / (high - low) * (to - from) };
+    let turned: Vec<f64> = knots.iter().map(angle).collect();
+    let mut angles = turned.clone();
+    angles.dedup();
+    let knots = if along_v { (along_u.to_vec(), turned) } else { (turned, other.to_vec()) };
+    let surface = Surface::new(surface.degrees(), knots.0, knots.1, surface.points().to_vec());
+    Ok((surface.map_err(|e| e.to_string())?, Map::Angle { along_v, from: [low, high], angles }))
+}
+
+/// A curve in `(u, v)` as one in space, at height 0.
+fn raised(curve: &BSpline<DVec3>) -> Result<BSpline<DVec4>, String> {
+    let points = curve.points().iter().map(|p| DVec4::new(p.x, p.y, 0.0, p.z)).collect();
+    BSpline::new(curve.degree(), curve.knots().to_vec(), points).map_err(|e| e.to_string())
+}
+
 fn tensor(nurbs: &NurbsSurface) -> Result<Surface, String> {
     let (count_u, count_v) = (nurbs.u_count(), nurbs.v_count());
     let point = |i: usize, j: usize| {
@@ -192,7 +230,7 @@ fn tensor(nurbs: &NurbsSurface) -> Result<Surface, String> {
     let net = net.map(|(i, j)| point(i, j)).collect::<Option<Vec<_>>>().ok_or("a control net with holes")?;
     let knots = |k: &cadmpeg_ir::geometry::nurbs::KnotVector| k.as_slice().to_vec();
     let degrees = (nurbs.u_degree() as usize, nurbs.v_degree() as usize);
-    Surface::new(degrees, knots(nurbs.u_knots()), knots(nurbs.v_knots()), net).map_err(|e| e.to_string())
+    joined::surface(degrees, (knots(nurbs.u_knots()), knots(nurbs.v_knots())), net).map_err(|e| e.to_string())
 }
 
 /// The loop; gaps are closed where the ends are one point in space.
@@ -212,4 +250,46 @@ fn distance(trim: &BSpline<DVec3>, grid: &PatchGrid, edge: &BSpline<DVec4>) -> f
 /// Distance of a point from a curve.
 fn off(curve: &BSpline<DVec4>, p: DVec3) -> f64 {
     (curve.point(nearest(curve, p)) - p).length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spline::arc::revolve;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    /// Half a cylinder of radius 5 and height 2 over the parameters 3 to 5, and a helix that is a line in them.
+    #[test]
+    fn lines_on_a_turned_curve_are_helices() {
+        let ends = [DVec4::new(5.0, 0.0, 0.0, 1.0), DVec4::new(5.0, 0.0, 2.0, 1.0)];
+        let profile = (1, vec![0.0, 0.0, 1.0, 1.0], &ends[..]);
+        let stated =
+            revolve(profile, (DVec3::ZERO, DVec3::Z), &[3.0, 4.0, 5.0].map(|t| (t - 3.0) * FRAC_PI_2)).unwrap();
+        let stretched = |k: &f64| 3.0 + k / FRAC_PI_2;
+        let knots_u = stated.knots().0.iter().map(stretched).collect();
+        let stated =
+            Surface::new(stated.degrees(), knots_u, stated.knots().1.to_vec(), stated.points().to_vec()).unwrap();
+        let line = |swap: bool| {
+            let at = |u: f64, v: f64| if swap { DVec3::new(v, u, 1.0) } else { DVec3::new(u, v, 1.0) };
+            BSpline::new(1, vec![0.0, 0.0, 1.0, 1.0], vec![at(3.1, 0.1), at(4.7, 0.9)]).unwrap()
+        };
+        for (surface, along_v) in [(stated.clone(), false), (stated.transposed(), true)] {
+            let (surface, map) = by_angle(&surface, [0.0, PI], along_v).unwrap();
+            let grid = surface.patches();
+            let helix = map.curve(&raised(&line(along_v)).unwrap()).unwrap();
+            for k in 0..=64 {
+                let share = f64::from(k) / 64.0;
+                let p = helix.point(share);
+                let point = grid.point(p.x, p.y);
+                let angle = (0.1 + 1.6 * share) * FRAC_PI_2;
+                let wanted = DVec3::new(5.0 * angle.cos(), 5.0 * angle.sin(), 2.0 * (0.1 + 0.8 * share));
+                assert!(point.distance(wanted) < 1e-12, "{k}: {point}, not {wanted}");
+            }
+            // the spline's own parameter is another one
+            let p = line(along_v).point(0.1);
+            let own = stated.patches();
+            let off = if along_v { own.point(p.y, p.x) } else { own.point(p.x, p.y) };
+            assert!(off.distance(grid.point(helix.point(0.1).x, helix.point(0.1).y)) > 0.01);
+        }
+    }
 }

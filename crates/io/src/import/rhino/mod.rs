@@ -15,6 +15,7 @@
 mod archive;
 mod brep;
 mod face;
+mod joined;
 mod refused;
 mod shape;
 

@@ -6,6 +6,7 @@
 //! ```
 
 use super::archive::{Class, Lost, Reader};
+use super::joined;
 use crate::model::SurfaceKind;
 use crate::spline::arc::{arc, assemble, pieces, revolve};
 use crate::spline::{BSpline, Bezier, Control, Span, Surface};
@@ -221,7 +222,7 @@ pub(super) fn surface(class: Class<'_>, scale: f64) -> Lost<Carrier> {
             // stored column by column
             let stored = (0..total).map(|_| control(&mut r, layout).map(large)).collect::<Lost<Vec<_>>>()?;
             let net = (0..counts.1).flat_map(|j| (0..counts.0).map(move |i| i * counts.1 + j)).map(|k| stored[k]);
-            let surface = Surface::new(degrees, u, v, net.collect()).map_err(failed)?;
+            let surface = joined::surface(degrees, (u, v), net.collect()).map_err(failed)?;
             Ok(Carrier { surface, kind: SurfaceKind::BSpline, map: Map::Same })
         }
         (PLANE, 1) => {

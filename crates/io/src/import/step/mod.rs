@@ -40,7 +40,6 @@ mod spline;
 mod surface;
 mod swept;
 mod tessellated;
-mod torn;
 mod units;
 mod walk;
 

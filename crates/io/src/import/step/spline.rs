@@ -11,8 +11,8 @@
 
 use super::entity::{Entity, Fault, Fields};
 use super::geometry::Geometry;
-use super::torn::{Part, mend};
 use crate::brep::CurveGeometry;
+use crate::import::torn::{Part, mend};
 use crate::spline::{BSpline, Control, MAX_DEGREE, Surface};
 use glam::DVec4;
 

@@ -2,6 +2,7 @@
 
 mod assemblies;
 mod classes;
+mod closing;
 mod colours;
 mod csg;
 mod damage;

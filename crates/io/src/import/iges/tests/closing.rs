@@ -29,6 +29,19 @@ fn curve(kind: &str, gap: f64) -> (Entity, f64) {
                 .collect();
             (Entity { form: 11, ..e(&format!("106,1,13,0.,{};", corners.join(","))) }, 27.0)
         }
+        // uniform knots, whose range leaves the first three and the last out; the last point counts a sixth at the end
+        "cubic" => {
+            let knots: Vec<String> = (0..19).map(|i| format!("{i}.")).collect();
+            let points: Vec<String> = (0..15)
+                .map(|i| (i, at(TAU * f64::from(i % 12) / 12.0)))
+                .map(|(i, (x, y))| format!("{x:.17},{:.17},0.", if i == 14 { y + 6.0 * gap } else { y }))
+                .collect();
+            let weights = ["1."; 15].join(",");
+            let text = format!("126,14,3,1,1,1,1,{},{weights},{},3.,15.,0.,0.,1.;", knots.join(","), points.join(","));
+            // a circle within 3e-4 of its radius
+            let radius = 3.0 * (4.0 + 2.0 * (TAU / 12.0).cos()) / 6.0;
+            (e(&text), PI * radius * radius)
+        }
         // a linear spline over uniform knots, whose range leaves the first and the last out
         _ => {
             let knots: Vec<String> = (-1..=13).map(|i| format!("{i}.")).collect();
@@ -58,7 +71,7 @@ fn bounds(way: &str) -> (Vec<Entity>, &'static str) {
 #[test]
 fn a_loop_of_one_curve_is_there_whatever_its_gap() {
     let gaps = [0.0, 1e-15, 1e-14, 1e-12, 1e-10, 1e-9, 5e-9, 1e-8, 1e-7, 3e-7, 1e-6, 1e-5, 1e-4, 3e-3];
-    for kind in ["arc", "ellipse", "polyline", "spline"] {
+    for kind in ["arc", "ellipse", "polyline", "spline", "cubic"] {
         for gap in gaps.into_iter().flat_map(|g| [g, -g]) {
             for way in ["space", "parameters", "both", "composite", "boundary"] {
                 for hole in [true, false] {

@@ -117,6 +117,41 @@ fn a_solid_without_all_its_faces_is_not_closed() {
     }
 }
 
+/// A fourth face of the can, collapsed to a line or to a point, whose loop is one spline: what lacks it has no gap. The
+/// same with a neighbour that is lost as a whole.
+#[test]
+fn a_collapsed_face_within_one_spline_leaves_its_solid_closed() {
+    let with = |tip: &str, damage: &[&str; 2]| {
+        let more = format!(
+            "#700=DIRECTION('',(0.,1.,0.));#701=AXIS2_PLACEMENT_3D('',#12,#700,#22);#702=PLANE('',#701);\
+             #703=B_SPLINE_CURVE_WITH_KNOTS('',1,(#10,{tip},#10),.UNSPECIFIED.,.T.,.F.,(2,1,2),(0.,1.,2.),$);\
+             #704=EDGE_CURVE('',#40,#40,#703,.T.);#705=ORIENTED_EDGE('',*,*,#704,.T.);#706=EDGE_LOOP('',(#705));\
+             #707=FACE_OUTER_BOUND('',#706,.T.);#708=ADVANCED_FACE('',(#707),#702,.T.);\nENDSEC;\nEND-ISO"
+        );
+        let text = replaced(GOOD, "\nENDSEC;\nEND-ISO", &format!("\n{more}"));
+        let text = replaced(&text, "(#61,#62,#63)", "(#61,#62,#63,#708)");
+        step(replaced(&text, damage[0], damage[1]).as_bytes(), "good.step").unwrap()
+    };
+    let lost = |import: &Import| {
+        let told = import.warnings.iter().map(ToString::to_string).filter(|w| w.contains("face left out"));
+        let solid = import.model.parts.iter().find(|part| part.faces.len() > 1).unwrap();
+        (solid.faces.len(), solid.closed, told.collect::<Vec<_>>())
+    };
+    let whole = ["CYLINDRICAL_SURFACE('',#24,5.)"; 2];
+    for tip in ["#11", "#10"] {
+        let (faces, closed, told) = lost(&with(tip, &whole));
+        assert_eq!((faces, closed, told.len()), (3, true, 1), "{told:?}");
+        assert!(told[0].contains("#708"), "{told:?}");
+        let neighbours =
+            [[whole[0], "CYLINDRICAL_SURFACE('',#24,0.)"], ["#57=EDGE_LOOP('',(#54))", "#57=EDGE_LOOP('',(#52))"]];
+        for (neighbour, id) in neighbours.iter().zip(["#61", "#62"]) {
+            let (faces, closed, told) = lost(&with(tip, neighbour));
+            assert_eq!((faces, closed, told.len()), (2, false, 2), "{told:?}");
+            assert!(told.iter().any(|w| w.contains(id)), "{told:?}");
+        }
+    }
+}
+
 /// Surfaces of one spline shared by every face of a shell: the work is cut off, not the program.
 #[test]
 fn sharing_is_bounded() {

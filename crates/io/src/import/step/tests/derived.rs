@@ -332,6 +332,39 @@ fn splines_that_break() {
     assert!(matches!(curve("#5"), CurveGeometry::BSpline(s) if s.points().len() == 3));
 }
 
+/// Half a circle of two quarters whose weights differ at their joint, and a cylinder over it: both are round.
+#[test]
+fn rational_pieces_of_other_weights_are_joined() {
+    let corner = 0.5f64.sqrt();
+    let points = "#40=CARTESIAN_POINT('',(1.,0.,0.));#41=CARTESIAN_POINT('',(1.,1.,0.));#42=CARTESIAN_POINT('',(0.,1.,0.));\
+        #43=CARTESIAN_POINT('',(-1.,1.,0.));#44=CARTESIAN_POINT('',(-1.,0.,0.));#50=CARTESIAN_POINT('',(1.,0.,4.));\
+        #51=CARTESIAN_POINT('',(1.,1.,4.));#52=CARTESIAN_POINT('',(0.,1.,4.));#53=CARTESIAN_POINT('',(-1.,1.,4.));\
+        #54=CARTESIAN_POINT('',(-1.,0.,4.));";
+    let weights = [1.0, corner, 1.0, 3.0, 3.0 * corner, 3.0].map(|w| format!("{w:?}"));
+    let curve = format!(
+        "{points}#100=(BOUNDED_CURVE() B_SPLINE_CURVE(2,(#40,#41,#42,#42,#43,#44),.U.,.F.,.F.)\
+         B_SPLINE_CURVE_WITH_KNOTS((3,3,3),(0.,1.,2.),.U.) CURVE() GEOMETRIC_REPRESENTATION_ITEM()\
+         RATIONAL_B_SPLINE_CURVE(({})) REPRESENTATION_ITEM(''));",
+        weights.join(",")
+    );
+    let CurveGeometry::BSpline(curve) = with(&curve, |g| g.curve(100)).unwrap() else { panic!("one spline") };
+    let round = |p: DVec3, radius: f64| (p.truncate().length() - radius).abs() < 1e-14 * radius;
+    assert!((0..=40).all(|k| round(curve.point(f64::from(k) / 20.0), 10.0)));
+
+    let pairs: Vec<String> = [40, 41, 42, 42, 43, 44].iter().map(|i| format!("(#{i},#{})", i + 10)).collect();
+    let rows: Vec<String> = weights.iter().map(|w| format!("({w},{w})")).collect();
+    let found = import(&format!(
+        "{SQUARE}{points}#21=(BOUNDED_SURFACE() B_SPLINE_SURFACE(2,1,({}),.U.,.F.,.F.,.F.)\
+         B_SPLINE_SURFACE_WITH_KNOTS((3,3,3),(2,2),(0.,1.,2.),(0.,1.),.U.) GEOMETRIC_REPRESENTATION_ITEM()\
+         RATIONAL_B_SPLINE_SURFACE(({})) REPRESENTATION_ITEM('') SURFACE());",
+        pairs.join(","),
+        rows.join(",")
+    ));
+    assert_eq!(found.model.face_count(), 1, "{:?}", found.warnings);
+    let grid = found.model.parts[0].faces[0].surface.patches();
+    assert!((0..=40).all(|k| round(grid.point(f64::from(k) / 20.0, 0.5), 1.0)));
+}
+
 /// A square whose edges are listed in any order.
 #[test]
 fn edges_of_a_loop_in_any_order() {
