@@ -17,12 +17,19 @@
 //!
 //! **Profiles.** The map from space to distance and height about a line lengthens nothing, so two pieces are no nearer
 //! than their images. The square of the distance is a quotient of Bernstein polynomials: of a circle about the line it
-//! comes out as one number, of a piece of any size. Round things about one axis, whose nearest points are many, are
-//! decided at once.
+//! comes out as one number, of a piece of any size, and in general the quotient's range is found by halving it alone.
+//! Round things about one axis or centre, whose nearest points are many, are decided at once.
 
 use super::Source;
-use crate::spline::{Control, Patch, binomial};
+use crate::spline::{Control, Net, Patch, binomial};
 use glam::{DVec2, DVec3, DVec4};
+
+/// Halvings in search of the range of a profile's quotient.
+const HALVINGS: usize = 40;
+/// Its bound and a value that it has agree within this share.
+const CLOSE: f64 = 1e-13;
+/// Coefficients of the largest quotient that is halved.
+const MOST_COEFFICIENTS: usize = 81;
 
 /// A line or a point that pieces are seen from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -269,14 +276,24 @@ fn profile(net: &Patch, hull: &[DVec3], datum: &Datum) -> (DVec2, DVec2) {
         square(&scaled(&|p| (p.truncate() - from * p.w).dot(*axis)), &mut squares);
     }
     square(&scaled(&|p| p.w), &mut weights);
-    let quotients = squares.iter().zip(&weights).map(|(x, w)| x / w);
-    let (low, high) = quotients.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
-    // rounding: of the sums, and of coordinates
+    let quotient = |sign: f64| {
+        Net::build(2 * n, 2 * k, |i, j| {
+            let at = j * (2 * n + 1) + i;
+            DVec2::new(sign * squares[at], weights[at]) * (1.0 / (binomial(2 * n, i) * binomial(2 * k, j)))
+        })
+    };
+    let (low, high) = (least(quotient(1.0)), -least(quotient(-1.0)));
+    // rounding: of the sums and their halves, and of coordinates
     let reach = hull.iter().map(|p| p.distance(from)).fold(0.0, f64::max);
-    let of_squares = f64::EPSILON * ((n + 1) * (k + 1) + 16) as f64 * reach * reach;
+    let ends = net.points.iter().map(|p| p.w).fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(w), b.max(w)));
+    let roundings = ((n + 1) * (k + 1) + 16 + 2 * HALVINGS * (n + k)) as f64 * (ends.1 / ends.0).powi(2);
+    let of_squares = f64::EPSILON * roundings * reach * reach;
     let of_places = 8.0 * f64::EPSILON * (reach + from.length());
     let near = ((low - of_squares).max(0.0).sqrt() - of_places).max(0.0);
-    let far = (high + of_squares).sqrt() + of_places;
+    // the distance is convex: no point of the hull is farther than all of its corners. Near the datum this is better
+    let aside = |p: &DVec3| across.iter().map(|axis| (*p - from).dot(*axis).powi(2)).sum::<f64>().sqrt();
+    let corners = hull.iter().map(aside).fold(0.0, f64::max);
+    let far = (high + of_squares).max(0.0).sqrt().min(corners) + of_places;
     let (down, up) = match *datum {
         Datum::Line(_, direction) => {
             let (low, high) = range(hull, direction);
@@ -286,4 +303,40 @@ fn profile(net: &Patch, hull: &[DVec3], datum: &Datum) -> (DVec2, DVec2) {
         Datum::Point(_) => (0.0, 0.0),
     };
     (DVec2::new(near, down), DVec2::new(far, up))
+}
+
+/// A lower bound of a quotient of Bernstein polynomials over the unit square, `x / y` of each coefficient with `y > 0`:
+/// the least coefficient of a net halved until that is a value of the quotient, or [`HALVINGS`] times.
+fn least(net: Net<DVec2>) -> f64 {
+    let quotient = |c: DVec2| c.x / c.y;
+    let lowest = |net: &Net<DVec2>| net.all().iter().map(|c| quotient(*c)).fold(f64::INFINITY, f64::min);
+    let reached = |net: &Net<DVec2>| {
+        let corners = [(0, 0), (net.n, 0), (0, net.k), (net.n, net.k)];
+        corners.iter().map(|(i, j)| quotient(net.at(*i, *j))).fold(f64::INFINITY, f64::min)
+    };
+    let halvings = if net.all().len() > MOST_COEFFICIENTS { 0 } else { HALVINGS };
+    let mut value = reached(&net);
+    let mut open = vec![(lowest(&net), net)];
+    for _ in 0..halvings {
+        let numbers = 0..open.len();
+        let Some(number) = numbers.min_by(|a, b| open[*a].0.total_cmp(&open[*b].0)) else { break };
+        if open[number].0 >= value - CLOSE * value.abs() {
+            break;
+        }
+        let (_, net) = open.swap_remove(number);
+        let halves = if varies_more_along_u(&net) { net.halves_u() } else { net.halves_v() };
+        for half in halves {
+            value = value.min(reached(&half));
+            open.push((lowest(&half), half));
+        }
+    }
+    open.iter().map(|(bound, _)| *bound).fold(f64::INFINITY, f64::min)
+}
+
+fn varies_more_along_u(net: &Net<DVec2>) -> bool {
+    let quotient = |i: usize, j: usize| net.at(i, j).x / net.at(i, j).y;
+    let places = || (0..=net.k).flat_map(|j| (0..=net.n).map(move |i| (i, j)));
+    let along_u = places().filter(|p| p.0 < net.n).map(|(i, j)| (quotient(i + 1, j) - quotient(i, j)).abs());
+    let along_v = places().filter(|p| p.1 < net.k).map(|(i, j)| (quotient(i, j + 1) - quotient(i, j)).abs());
+    along_u.fold(0.0, f64::max) >= along_v.fold(0.0, f64::max)
 }

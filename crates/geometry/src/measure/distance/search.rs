@@ -68,7 +68,7 @@ impl Ord for Pair {
     }
 }
 
-/// The smallest distance, after at most `most` pairs.
+/// The smallest distance, after at most `most` pairs, or as many as the first pair of points needs.
 pub(super) fn smallest(a: &Pieces<'_>, b: &Pieces<'_>, most: usize) -> Option<Distance> {
     let datums: Vec<Datum> = a.datum.into_iter().chain(b.datum).collect();
     let trees = [Tree::new(a, &datums)?, Tree::new(b, &datums)?];
@@ -77,7 +77,8 @@ pub(super) fn smallest(a: &Pieces<'_>, b: &Pieces<'_>, most: usize) -> Option<Di
     search.consider(roots, 0.0, None);
     let mut count = 0;
     while let Some(pair) = search.open.pop() {
-        if count == most || search.is_settled(pair.bound, search.noise(pair.pieces)) {
+        let is_over = count >= most && search.best.is_some();
+        if is_over || search.is_settled(pair.bound, search.noise(pair.pieces)) {
             search.close(pair.bound, pair.pieces);
         } else {
             count += 1;
