@@ -9,8 +9,8 @@
 //! | two of the first three | smallest distance and where; angle; distance of centres or axes |
 //! | two points | distance, also along x, y and z |
 //!
-//! Values carry an estimate of their own error; the accuracy of the file is the limit. [`Face::area`], [`Face::radius`]
-//! and [`Edge::length`] give single numbers in the coordinates of the part.
+//! Values carry an estimate of their own error, smallest distances a proven bound of it; the accuracy of the file is the
+//! limit. [`Face::area`], [`Face::radius`] and [`Edge::length`] are single numbers in the coordinates of the part.
 
 pub mod distance;
 pub mod mass;
@@ -19,7 +19,7 @@ pub mod surface;
 
 use crate::edges::curve::{self, Circle, CurveShape, SAME};
 use crate::model::{Edge, Face, Part};
-use distance::{Distance, Sampled};
+use distance::{Distance, Pieces};
 use glam::{DAffine3, DVec3};
 use surface::SurfaceShape;
 
@@ -43,7 +43,7 @@ pub struct Value {
     pub what: &'static str,
     /// The number.
     pub value: f64,
-    /// Estimate of its error, in the same unit.
+    /// Estimate of its error, in the same unit; of a smallest distance a bound that is proven.
     pub error: f64,
     /// `mm`, `mm²`, `mm³`, `°`.
     pub unit: &'static str,
@@ -180,19 +180,19 @@ fn frame(item: &Item<'_>) -> Frame {
     }
 }
 
-fn pieces<'a>(item: &Item<'a>) -> Vec<Sampled<'a>> {
+fn pieces<'a>(item: &Item<'a>) -> Option<Pieces<'a>> {
     match item {
-        Item::Point(p) => Sampled::point(*p),
-        Item::Edge(edges, transform) => edges.iter().flat_map(|edge| Sampled::edge(edge, *transform)).collect(),
-        Item::Face(face, transform) => Sampled::face(face, *transform),
-        Item::Part(..) => Vec::new(),
+        Item::Point(p) => Some(Pieces::point(*p)),
+        Item::Edge(edges, transform) => Some(Pieces::edges(edges, *transform)),
+        Item::Face(face, transform) => Some(Pieces::face(face, *transform)),
+        Item::Part(..) => None,
     }
 }
 
 /// Measures two items together; `None` where one of them has no points, or is a part.
 pub fn two(a: &Item<'_>, b: &Item<'_>) -> Option<Measured> {
     let mut all = Measured::default();
-    let Distance { distance, points: [p, q], error } = distance::smallest(&pieces(a), &pieces(b))?;
+    let Distance { distance, points: [p, q], error } = distance::smallest(&pieces(a)?, &pieces(b)?)?;
     all.add("distance", distance, error, "mm");
     for (what, x) in ["along x", "along y", "along z"].into_iter().zip((q - p).to_array()) {
         all.add(what, x, error, "mm");

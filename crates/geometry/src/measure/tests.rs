@@ -95,13 +95,8 @@ fn surfaces_are_known_with_their_dimensions() {
 }
 
 fn apart(a: (&Part, usize, DAffine3), b: (&Part, usize, DAffine3)) -> Distance {
-    let sampled =
-        |(part, face, transform): (&'static Part, usize, DAffine3)| Sampled::face(&part.faces[face], transform);
-    let still = |(part, face, transform): (&Part, usize, DAffine3)| {
-        let part: &'static Part = Box::leak(Box::new(part.clone()));
-        sampled((part, face, transform))
-    };
-    distance::smallest(&still(a), &still(b)).expect("both have points")
+    let [a, b] = [a, b].map(|(part, face, transform)| Pieces::face(&part.faces[face], transform));
+    distance::smallest(&a, &b).expect("both have points")
 }
 
 #[test]
