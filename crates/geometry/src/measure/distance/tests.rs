@@ -41,7 +41,7 @@ fn at(x: f64, y: f64, z: f64) -> DAffine3 {
 }
 
 /// The first face of a kind of surface.
-fn side<'a>(body: &'a Body, is_it: impl Fn(&SurfaceShape) -> bool) -> &'a Face {
+fn side(body: &Body, is_it: impl Fn(&SurfaceShape) -> bool) -> &Face {
     body.faces.iter().find(|f| is_it(&shape(f, DAffine3::IDENTITY))).expect("such a face")
 }
 
