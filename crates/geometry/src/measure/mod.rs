@@ -9,8 +9,8 @@
 //! | two of the first three | smallest distance and where; angle; distance of centres or axes |
 //! | two points | distance, also along x, y and z |
 //!
-//! Values carry an estimate of their own error, smallest distances a proven bound of it; the accuracy of the file is the
-//! limit. [`Face::area`], [`Face::radius`] and [`Edge::length`] are single numbers in the coordinates of the part.
+//! Values carry an estimate of their own error, smallest distances a proven bound of it; the accuracy of the file is
+//! the limit. [`Face::area`], [`Face::radius`] and [`Edge::length`] are single numbers in the coordinates of the part.
 
 pub mod distance;
 pub mod mass;

@@ -55,8 +55,9 @@ pub struct Distance {
     pub error: f64,
 }
 
-/// Pairs of pieces that are looked at, most: a second, about. Items at one distance along curves or areas that are
-/// neither straight nor round about one axis need more, and are known less exactly.
+/// Pairs of pieces that are looked at, most: a second, about. Items that are nearest along whole curves or areas need
+/// more, and are known less exactly, where neither flat pieces nor a profile decides: two cones or tori about one axis,
+/// a free-form face and its offset.
 const MOST_PAIRS: usize = 50_000;
 /// Points of a curve by which it is known as a circle.
 const LOOKS: usize = 8;

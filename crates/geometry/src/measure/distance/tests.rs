@@ -146,8 +146,8 @@ fn the_nearest_point_may_lie_on_a_fold() {
     holds(&Pieces::face(&ball.faces[0], at(0.0, 1.7, 5.0)), &roof, 3.0);
 }
 
-/// A ridge of 2/3, as wide as 4 of 200 spans, on a flat strip: samples at 24ths of the strip see none of it, and from the
-/// one nearest to the point Newton's method leads to the flat, 3 away.
+/// A ridge of 2/3, as wide as 4 of 200 spans, on a flat strip: samples at 24ths of the strip see none of it, and from
+/// the one nearest to the point Newton's method leads to the flat, 3 away.
 #[test]
 fn a_narrow_place_is_found() {
     let (spans, degree, raised) = (200_usize, 3_usize, 105_usize);
@@ -289,6 +289,21 @@ fn a_search_cut_short_states_how_far_it_came() {
         }
     }
     assert!(cut >= 12, "only {cut} searches were cut short");
+}
+
+/// Two tori about one axis are nearest along whole circles, which no datum's profile decides: the search is cut short,
+/// and says so.
+#[test]
+fn an_undecided_distance_has_a_large_error() {
+    let [small, large] = [(4.0, 1.25), (9.0, 1.0)].map(|(r, s)| shapes::torus(r, s).expect("a torus").part);
+    let [a, b] = [(&small, 0.0), (&large, 2.0)].map(|(part, z)| Pieces::face(&part.faces[0], at(0.0, 0.0, z)));
+    let expected = 5.0_f64.hypot(2.0) - 2.25;
+    for (most, worst) in [(500, 1.0), (3000, 0.1)] {
+        let found = search::smallest(&a, &b, most).expect("both have points");
+        assert!((found.distance - expected).abs() <= found.error, "{found:?} instead of {expected}");
+        assert!((found.distance - expected).abs() <= 1e-12, "the pair of points is one of the nearest: {found:?}");
+        assert!(found.error > STATED && found.error < worst, "{found:?}");
+    }
 }
 
 #[test]
