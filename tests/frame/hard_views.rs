@@ -165,11 +165,9 @@ fn what_lies_behind_255_faces_is_seen() {
     let inside = Camera { eye: DVec3::X * -0.3, depth_range: (0.1, 250.0), ..few };
     let bands = SceneSettings { solid_budget: Some(8000), ..Default::default() };
     let samples = SceneSettings { samples: Samples::Four, ..Default::default() };
-    for (what, settings, camera, least_bands) in [
-        ("bands", bands, whole, 2),
-        ("samples", samples, few, 1),
-        ("from within", SceneSettings::default(), inside, 1),
-    ] {
+    for (what, settings, camera, least_bands) in
+        [("bands", bands, whole, 2), ("samples", samples, few, 1), ("from within", SceneSettings::default(), inside, 1)]
+    {
         renderer.upload_with(&model, settings).unwrap();
         let picture = render(&mut renderer, &camera);
         all_are(&picture, 200, what);
