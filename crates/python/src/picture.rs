@@ -114,7 +114,8 @@ impl Picture {
 
     /// Device, driver, milliseconds of each pass, counts; "clamps" above 0 are places where the promise is not
     /// kept. "upload_s": seconds in which the model was prepared, before its first picture. "draw_s": seconds of this
-    /// picture; with pictures in flight, since the one before.
+    /// picture; with pictures in flight, since the one before. "blank": no pixel shows anything of the model; known
+    /// with the image of faces, or on a background that hides nothing, else False.
     #[getter]
     fn stats(&self, py: Python<'_>) -> Py<PyAny> {
         self.stats.clone_ref(py)
