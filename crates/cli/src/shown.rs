@@ -12,7 +12,7 @@ use std::str::FromStr;
 #[derive(Debug, Default, Args)]
 pub struct ShownArgs {
     /// Leave out occurrences and Boolean solids by their numbers, as in 2,5-9: occurrences count from 1 as in the
-    /// instance image, and the file's solids come behind them; before any section
+    /// instance image of a call that hides and cuts nothing, and the file's solids come behind them; before any section
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
     pub hide: Vec<Numbers>,
     /// Give an occurrence a CSS colour, by its number; an opacity below 1 makes it transparent. May be given several

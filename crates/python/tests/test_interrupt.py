@@ -11,6 +11,8 @@ SAMPLES = pathlib.Path(__file__).parents[3] / "samples"
 
 INTERRUPTED = """
 import selvedge, signal, sys, threading, time
+# a shell's background jobs ignore it, and so do their children
+signal.signal(signal.SIGINT, signal.default_int_handler)
 spheres = "".join(f"v {i % 100} {i // 100} {(i * 7919) % 97 / 9}\\n" for i in range(100 * 100))
 quads = "".join(f"f {a+1} {a+2} {a+102} {a+101}\\n" for a in range(9800) if a % 100 < 99)
 model = selvedge.open((spheres + quads).encode(), name="sheet.obj")

@@ -94,8 +94,9 @@ pub fn run(args: &InfoArgs) -> Result<Outcome> {
     let import = reading::described(&args.model, &args.read, &args.subdivide)?;
     let (reading, start) = (start.elapsed(), Instant::now());
     let bounds = import.model.bounds();
-    let share = start.elapsed().as_secs_f64() / reading.as_secs_f64().max(f64::MIN_POSITIVE);
-    tracing::info!("box in {:.1?}, {:.2} % of the time of reading", start.elapsed(), 100.0 * share);
+    let boxed = start.elapsed();
+    let share = boxed.as_secs_f64() / reading.as_secs_f64().max(f64::MIN_POSITIVE);
+    tracing::info!("box in {:.1?}, {:.2} % of the time of reading", boxed, 100.0 * share);
     let mut info = Info::new(&import, bounds);
     if !import.model.solids.is_empty() && info.bounds.is_some() {
         info.folded_tiles = Tiles::new(&import.model, &args.camera.of(&import)?);

@@ -43,7 +43,8 @@ pub struct Value {
     pub what: &'static str,
     /// The number.
     pub value: f64,
-    /// Estimate of its error, in the same unit; of a smallest distance a bound that is proven.
+    /// Estimate of its error, in the same unit; of a smallest distance a bound that is proven; of its
+    /// parts along x, y and z the same number, which bounds nothing where several pairs of points are as near.
     pub error: f64,
     /// `mm`, `mm²`, `mm³`, `°`.
     pub unit: &'static str,

@@ -57,8 +57,9 @@ pub enum Stage {
 pub struct Options<'a> {
     /// Called at the beginning of each stage, of STEP files before every body, after every face and some bytes of
     /// text, of OpenSCAD files between nodes, and a hundred times a second while `openscad` runs, from several
-    /// threads. A stage is repeated as it is after each megabyte that is read or decompressed, and after some ten
-    /// thousand entities, lines or triangles of STEP, IGES, OBJ, STL and OFF. It should return at once, or unwind to
+    /// threads. A stage is repeated as it is after each megabyte of a file on a disk that is read or decompressed, but
+    /// not of a stream or of a file beside the model; and after some 65,000 entities, lines or triangles of STEP, IGES,
+    /// OBJ, STL and OFF. It should return at once, or unwind to
     /// end the import, as [`Stop::check`](super::Stop::check) does. Files that a file names have stages of their own.
     pub progress: Option<&'a (dyn Fn(Stage) + Sync)>,
     /// Takes the finished parts of STEP and IGES files and of assemblies in several files, while the rest is read.

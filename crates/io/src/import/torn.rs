@@ -49,10 +49,10 @@ pub(super) fn mend(degree: usize, part: Part, tolerance: f64) -> (Vec<Part>, f64
     (parts, closed)
 }
 
-/// The factor that all are; `None` where they differ, or one is not positive.
+/// The one value that all factors have; `None` where they differ, or where one is not positive.
 fn even(factors: impl Iterator<Item = f64>) -> Option<f64> {
     let (low, high) = factors.fold((f64::INFINITY, 0.0), |(low, high), f| (f.min(low), f.max(high)));
-    (low > 0.0 && high.is_finite() && high - low <= EVEN * high).then_some(low)
+    (low > 0.0 && low.is_finite() && high.is_finite() && high - low <= EVEN * high).then_some(low)
 }
 
 /// The first interior knot repeated more often than the degree: where its run begins, and how long it is.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import errno
 import hashlib
 import io
 import json
@@ -241,6 +242,8 @@ class _Rows:
             self._parquet = _pyarrow()
         else:
             self._path = os.path.realpath(self._path)  # a link leads where it led
+            if os.path.exists(self._path) and not os.access(self._path, os.W_OK):
+                raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), self._path)
             self._file = open(_beside(self._path), "w", encoding="utf-8", newline="")
             with suppress(FileNotFoundError):
                 shutil.copymode(self._path, _beside(self._path))
@@ -250,13 +253,13 @@ class _Rows:
 
     def begin(self) -> None:
         """Puts a CSV file in the place of an old one; rows are added to it there."""
-        self._begun = True
         if self._file is not None:
             os.fsync(self._file.fileno())
             # some systems rename no file that is open
             self._file.close()
             os.replace(_beside(self._path), self._path)
             self._file = open(self._path, "a", encoding="utf-8", newline="")
+        self._begun = True
 
     def add(self, row: dict[str, Any]) -> None:
         self.all.append(row)

@@ -18,7 +18,7 @@ fn quoted(word: &str) -> String {
     }
 }
 
-/// Degrees of an angle that have the angle's bits when they are radians again.
+/// Degrees of an angle: those that have its bits as radians again, where one of the three nearest does.
 fn degrees(angle: f64) -> f64 {
     let near = angle.to_degrees();
     let all = [near, near.next_up(), near.next_down()];
@@ -202,7 +202,7 @@ mod tests {
         assert_eq!([ranges(&[]), ranges(&[3]), ranges(&[1, 2, 3, 7, 9, 10])], ["", "3", "1-3,7,9-10"]);
     }
 
-    /// Degrees have 53 bits, too: some angle beside each has its radians.
+    /// Within a rounding; exactly for the window's own angle.
     #[test]
     fn angles_come_back_from_degrees() {
         for angle in [0.6, 35.0_f64.to_radians(), crate::navigation::FOV, 0.123_456_789] {

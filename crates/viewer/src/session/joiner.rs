@@ -30,8 +30,8 @@ pub enum JoinerEvent {
     Failed(u64, String),
 }
 
-/// A thread that puts lists of files together, one after another. It leaves out lists that are not the newest, and ends
-/// the work on one that is not before its next part.
+/// A thread that puts lists of files together, one after another. It leaves out lists that are not the newest. If a newer
+/// list comes, it ends the work on the old one before the next part.
 #[derive(Debug)]
 pub struct Joiner {
     newest: Arc<AtomicU64>,

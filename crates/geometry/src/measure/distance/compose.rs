@@ -10,11 +10,12 @@
 //! ```
 //!
 //! A curve of degree `n` on a patch of degrees `p` and `q` becomes one of degree `n (p + q)`; `n p` where `v` is
-//! constant. Exact but for rounding: all factors are positive where the control points lie in the patch's domain. A
-//! curve beyond the domain lies on the domain's border, as [`Surface::jet2`](crate::spline::Surface::jet2) has it.
+//! constant. Exact but for rounding, which grows where a control point of the trim curve lies beyond the patch: there a
+//! factor is negative, and terms cancel. A curve beyond the domain lies on the domain's border, as [`Surface::jet2`](crate::spline::Surface::jet2) has it.
 //!
-//! A piece whose degree would exceed [`MOST_DEGREE`], or whose weights come out not positive, is halved, and at last
-//! replaced by chords in `(u, v)`; how far those lie off in space is part of the piece's [`Curve::noise`].
+//! A piece whose weights come out not positive is halved. One that still has such weights after [`MOST_HALVINGS`], or
+//! whose degree exceeds [`MOST_DEGREE`], is replaced by chords in `(u, v)`; how far those lie off in space is part of the
+//! piece's [`Curve::noise`].
 //!
 //! Source: T. DeRose, *Composing Bézier simplexes*, 1988.
 
@@ -104,7 +105,8 @@ fn composed(curve: &Bezier<DVec3>, held: [Option<f64>; 2], cell: &Cell, halvings
     if degree <= MOST_DEGREE {
         let points = substituted(curve, &patch);
         if points.iter().all(|p| p.is_finite() && p.w > 0.0) {
-            all.push(Curve { points, noise: cell.noise });
+            let spread = spread(curve, 0).powi(patch.degree_u as i32) * spread(curve, 1).powi(patch.degree_v as i32);
+            all.push(Curve { points, noise: cell.noise * spread });
             return;
         }
     }
@@ -129,6 +131,11 @@ fn composed(curve: &Bezier<DVec3>, held: [Option<f64>; 2], cell: &Cell, halvings
         let noise = cell.noise + part.points.iter().map(off).fold(0.0, f64::max);
         all.push(Curve { points: substituted(&Bezier::line(from, to), &patch), noise });
     }
+}
+
+/// How many times as large as their sum the two factors of a de Casteljau step may be; 1 within the patch.
+fn spread(curve: &Bezier<DVec3>, axis: usize) -> f64 {
+    curve.points.iter().map(|p| ((p.z - p[axis]).abs() + p[axis].abs()) / p.z).fold(1.0, f64::max)
 }
 
 /// The curve of a patch at one `u`, as a patch of degree 0 along `u`.

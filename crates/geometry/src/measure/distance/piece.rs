@@ -31,6 +31,9 @@ const CLOSE: f64 = 1e-13;
 /// Coefficients of the largest quotient that is halved.
 const MOST_COEFFICIENTS: usize = 81;
 
+/// Control points of the largest piece that is squared for a profile.
+const MOST_SQUARED: usize = 128;
+
 /// A line or a point that pieces are seen from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Datum {
@@ -247,15 +250,8 @@ fn slope(net: &Patch, axis: usize, centre: DVec3, radius: f64, noise: f64) -> Sl
     Slope { along, off }
 }
 
-/// The box of distance and height about a datum.
-fn profile(net: &Patch, hull: &[DVec3], datum: &Datum) -> (DVec2, DVec2) {
-    let (from, across) = match *datum {
-        Datum::Line(point, direction) => {
-            let x = direction.any_orthonormal_vector();
-            (point, vec![x, direction.cross(x)])
-        }
-        Datum::Point(point) => (point, DVec3::AXES.to_vec()),
-    };
+/// The least and the largest square of the distance from `from` along some axes, but for rounding.
+fn squares(net: &Patch, from: DVec3, across: &[DVec3]) -> (f64, f64) {
     // coefficients times binomials: products are convolutions, and their binomials cancel in the quotient
     let (n, k) = (net.degree_u, net.degree_v);
     let scaled = |value: &dyn Fn(&DVec4) -> f64| -> Vec<f64> {
@@ -272,7 +268,7 @@ fn profile(net: &Patch, hull: &[DVec3], datum: &Datum) -> (DVec2, DVec2) {
     };
     let none = vec![0.0; (2 * n + 1) * (2 * k + 1)];
     let (mut squares, mut weights) = (none.clone(), none);
-    for axis in &across {
+    for axis in across {
         square(&scaled(&|p| (p.truncate() - from * p.w).dot(*axis)), &mut squares);
     }
     square(&scaled(&|p| p.w), &mut weights);
@@ -282,7 +278,21 @@ fn profile(net: &Patch, hull: &[DVec3], datum: &Datum) -> (DVec2, DVec2) {
             DVec2::new(sign * squares[at], weights[at]) * (1.0 / (binomial(2 * n, i) * binomial(2 * k, j)))
         })
     };
-    let (low, high) = (least(quotient(1.0)), -least(quotient(-1.0)));
+    (least(quotient(1.0)), -least(quotient(-1.0)))
+}
+
+/// The box of distance and height about a datum.
+fn profile(net: &Patch, hull: &[DVec3], datum: &Datum) -> (DVec2, DVec2) {
+    let (from, across) = match *datum {
+        Datum::Line(point, direction) => {
+            let x = direction.any_orthonormal_vector();
+            (point, vec![x, direction.cross(x)])
+        }
+        Datum::Point(point) => (point, DVec3::AXES.to_vec()),
+    };
+    let (n, k) = (net.degree_u, net.degree_v);
+    // the cost grows with the square of the control points
+    let (low, high) = if net.points.len() > MOST_SQUARED { (0.0, f64::INFINITY) } else { squares(net, from, &across) };
     // rounding: of the sums and their halves, and of coordinates
     let reach = hull.iter().map(|p| p.distance(from)).fold(0.0, f64::max);
     let ends = net.points.iter().map(|p| p.w).fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(w), b.max(w)));

@@ -35,7 +35,7 @@ pub(super) fn surface(
         other => return other,
     };
     let count_u = knots_u.len().saturating_sub(degrees.0 + 1);
-    if count_u == 0 || !net.len().is_multiple_of(count_u) {
+    if net.is_empty() || count_u == 0 || !net.len().is_multiple_of(count_u) {
         return Err(torn);
     }
     let columns = (0..count_u).map(|i| net[i..].iter().step_by(count_u).copied().collect()).collect();
@@ -107,6 +107,7 @@ mod tests {
         // a net that does not fit its knots
         let (knots, mut net) = turned(profile(0.0, 0.4));
         net.pop();
-        assert!(surface((2, 2), knots, net).is_err());
+        assert!(surface((2, 2), knots.clone(), net).is_err());
+        assert!(surface((2, 2), knots, Vec::new()).is_err());
     }
 }

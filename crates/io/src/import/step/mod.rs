@@ -155,7 +155,7 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Re
     let mut notes = ledger.finish();
     drop((assembly, colours));
     let places = file.into_places();
-    build((bodies, parts), (&places, &mut notes), &mut model, &mut report, options);
+    build((bodies, parts, total), (&places, &mut notes), &mut model, &mut report, options);
     solids.finish(parts, &mut model, (&places, &mut notes));
     report.face_records.iter_mut().for_each(|r| r.part = r.part.min(parts));
     report.dropped = notes.dropped;
@@ -168,9 +168,9 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Re
 type PartBody = (usize, Body, f64);
 
 /// Builds all faces, in parallel; results are taken in file order. Between groups of bodies, previews show the first of
-/// the `parts` that the model will have. The input of a face is freed with it.
+/// the `parts` that the model will have. The input of a face is freed with it. `listed`: the bodies of which stages tell.
 fn build(
-    (bodies, parts): (Vec<(Body, f64)>, usize),
+    (bodies, parts, listed): (Vec<(Body, f64)>, usize, usize),
     (places, notes): (&Places<'_>, &mut Notes),
     model: &mut Model,
     report: &mut ImportReport,
@@ -179,7 +179,7 @@ fn build(
     let total = bodies.iter().map(|(body, _)| body.faces.len()).sum();
     let mut division = preview::Division::new(options);
     let (mut groups, mut group, mut count) = (Vec::new(), Vec::new(), 0);
-    let settling = Pulse::new(options, Stage::Bodies { mapped: bodies.len(), total: bodies.len() });
+    let settling = Pulse::new(options, Stage::Bodies { mapped: listed, total: listed });
     for (part, (mut body, tolerance)) in bodies.into_iter().enumerate() {
         settling.work(body.edges.len() + body.faces.len());
         let mut faces: Vec<_> = body.faces.iter_mut().map(|(face, _)| face).collect();
