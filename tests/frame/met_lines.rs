@@ -71,7 +71,7 @@ fn circle(camera: &Camera) -> Vec<(DVec2, f64)> {
     (0..4000).map(point).map(|p| (camera.project(p).unwrap().0, p.dot(to_eye) / RADIUS)).collect()
 }
 
-/// Also `selvedge check --edges` asks for these lines, and sees it if they are not there.
+/// `selvedge check --edges` asks for these lines, too, and reports those that are missing.
 #[test]
 fn lines_are_where_solids_meet_faces() {
     let mut renderer = renderer();

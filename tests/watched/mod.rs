@@ -46,13 +46,13 @@ fn expecting(mut renderer: HeadlessRenderer) -> HeadlessRenderer {
     renderer
 }
 
-/// Devices of tests that have ended. A device and its pipelines take longer than most tests, under validation, so the
+/// Devices whose renderer has ended. Under validation a device and its pipelines take longer than most tests, so the
 /// tests of a process hand them on.
 static IDLE: Mutex<Vec<HeadlessDevice>> = Mutex::new(Vec::new());
-/// How many tests have had each of these devices.
+/// How many renderers each of these devices has had.
 static USES: Mutex<BTreeMap<vk::Device, u32>> = Mutex::new(BTreeMap::new());
-/// After so many tests a device is destroyed: only then do the layers tell what was never freed. Devices that are idle
-/// at the end of the process tell nothing.
+/// After so many renderers a device is destroyed: only then do the layers tell what was never freed. They tell nothing
+/// of devices that are idle at the end of the process.
 const MOST_USES: u32 = 8;
 
 /// Ends the renderer; any message of the layers fails the test, and so does any object that is left.

@@ -239,7 +239,7 @@ mod tests {
                 Box::new(|m| m.instances[0].transform.matrix3 = DMat3::ZERO),
                 "the transform of instance 0 makes everything flat",
             ),
-            // of which the volume of a cube is no number in double precision, or 0
+            // the determinants of these overflow double precision, or are 0 there
             (Box::new(|m| m.instances[0].transform = DAffine3::from_scale(DVec3::splat(1e103))), scale),
             (Box::new(|m| m.instances[0].transform = DAffine3::from_scale(DVec3::splat(-1e-110))), scale),
             (Box::new(move |m| m.instances[0].colour = Some(nan)), "the colour of instance 0 is not between 0 and 1"),

@@ -174,7 +174,7 @@ impl Engine {
         self.upload = Some(Upload { thread, from, stop });
     }
 
-    /// Gives up an upload that nobody waits for.
+    /// Ends an upload whose picture nobody waits for.
     fn end_upload(&self, wanted: &World) {
         let is_void = self.asked.as_ref().is_some_and(|asked| is_void(&asked.world, wanted));
         if let Some(upload) = self.upload.as_ref().filter(|_| is_void) {
