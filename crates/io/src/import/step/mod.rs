@@ -168,7 +168,8 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Re
 type PartBody = (usize, Body, f64);
 
 /// Builds all faces, in parallel; results are taken in file order. Between groups of bodies, previews show the first of
-/// the `parts` that the model will have. The input of a face is freed with it. `listed` is the number of bodies that the stages state.
+/// the `parts` that the model will have. The input of a face is freed with it. `listed` is the number of bodies that the
+/// stages state.
 fn build(
     (bodies, parts, listed): (Vec<(Body, f64)>, usize, usize),
     (places, notes): (&Places<'_>, &mut Notes),
