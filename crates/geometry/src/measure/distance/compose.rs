@@ -10,8 +10,9 @@
 //! ```
 //!
 //! A curve of degree `n` on a patch of degrees `p` and `q` becomes one of degree `n (p + q)`; `n p` where `v` is
-//! constant. Exact but for rounding, which grows where a control point of the trim curve lies beyond the patch: there a
-//! factor is negative, and terms cancel. A curve beyond the domain lies on the domain's border, as [`Surface::jet2`](crate::spline::Surface::jet2) has it.
+//! constant. Exact but for rounding, which grows where a control point of the trim curve lies beyond the patch:
+//! there a factor is negative, and terms cancel. A curve beyond the domain lies on the domain's border, as
+//! [`Surface::jet2`](crate::spline::Surface::jet2) has it.
 //!
 //! A piece whose weights come out not positive is halved. One that still has such weights after [`MOST_HALVINGS`], or
 //! whose degree exceeds [`MOST_DEGREE`], is replaced by chords in `(u, v)`; how far those lie off in space is part of the
