@@ -18,9 +18,9 @@
 //! loops. The search is over when no bound is above the mark by more than the tolerance, so parts and faces away from
 //! the border of the model are never examined.
 //!
-//! *Work.* A face is first as high as its control points, then as those of the knot spans that its loops reach; only then
-//! it is cut into patches. A piece is composed with its patch once for all directions. Whether the face is beside a piece
-//! is tested last, where no other candidate is higher.
+//! *Work.* A face is first as high as its control points, then as those of the knot spans that its loops reach. Only
+//! then it is cut into patches. A piece is composed with its patch once for all directions. The face beside a piece is
+//! tested last, when no other candidate is higher.
 //!
 //! *Accuracy.* Each side touches a point of the model, and no point is beyond it by more than [`ANALYTIC`] of the box's
 //! diagonal, or [`OTHER`] of it for faces without an equation, plus some roundings of the largest coordinate. The faces

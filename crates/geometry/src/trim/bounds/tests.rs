@@ -1,9 +1,10 @@
 //! How much a search prepares: what is extreme, and little else.
 
+use super::compose::compose;
 use super::search::{Body, Work};
 use super::{OTHER, of};
 use crate::model::{Bounds, Face, SurfaceKind, TrimLoop};
-use crate::spline::{Bezier, Surface};
+use crate::spline::{Bezier, Control, Patch, Surface};
 use glam::{DAffine3, DVec2, DVec3, DVec4};
 use std::f64::consts::TAU;
 
@@ -77,4 +78,30 @@ fn only_the_highest_pieces_are_tested_for_the_face_beside_them() {
     let expected = Bounds { min: DVec3::new(-1.0, -1.0, 3.0), max: DVec3::new(1.0, 1.0, 3.0) };
     let work = work(&[face(SurfaceKind::Plane, square(2.0, 3.0), vec![disc])], expected);
     assert!(work.pieces_in_space <= EDGES && work.pieces_tested <= 4 * 2 + 2, "{work:?}");
+}
+
+/// A rational patch along rational curves: one that bends, and lines along either parameter.
+#[test]
+fn a_composed_curve_is_the_patch_at_the_points_of_the_curve() {
+    let point = |i: usize, j: usize| {
+        let (u, v) = (i as f64, j as f64);
+        DVec4::from_point(DVec3::new(u + 0.2 * v, v * v - 0.3 * u, u * v), 1.0 + 0.4 * ((i + 2 * j) % 3) as f64)
+    };
+    let points = (0..12).map(|k| point(k % 3, k / 3)).collect();
+    let patch = Patch { degree_u: 2, degree_v: 3, points };
+    let at = |u: f64, v: f64, w: f64| DVec3::from_point(DVec2::new(u, v), w);
+    let curves = [
+        vec![at(0.1, 0.2, 1.0), at(0.9, 0.3, 2.0), at(0.4, 0.8, 0.7)],
+        vec![at(0.2, 0.3, 1.0), at(0.7, 0.3, 1.5)],
+        vec![at(0.6, 0.9, 1.0), at(0.6, 0.1, 1.0)],
+    ];
+    for points in curves {
+        let composed = Bezier { points: compose(&patch, &points) };
+        let curve = Bezier { points };
+        for t in [0.0, 0.17, 0.5, 0.83, 1.0] {
+            let on = curve.point(t);
+            let (found, expected) = (composed.point(t), patch.point(on.x, on.y));
+            assert!(found.distance(expected) < 1e-13, "{found} instead of {expected}");
+        }
+    }
 }
