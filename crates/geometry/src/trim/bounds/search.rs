@@ -72,21 +72,16 @@ impl<'a> Body<'a> {
 pub(super) struct Work {
     pub faces: usize,
     pub patches: usize,
-    pub pieces_in_space: usize,
     pub pieces_tested: usize,
 }
 
 #[cfg(test)]
 impl Body<'_> {
     pub fn work(&self) -> Work {
-        self.faces.iter().filter_map(|item| item.carried.get()).fold(Work::default(), |all, carried| {
-            let (in_space, tested) = carried.work();
-            Work {
-                faces: all.faces + 1,
-                patches: all.patches + carried.hulls.len(),
-                pieces_in_space: all.pieces_in_space + in_space,
-                pieces_tested: all.pieces_tested + tested,
-            }
+        self.faces.iter().filter_map(|item| item.carried.get()).fold(Work::default(), |all, carried| Work {
+            faces: all.faces + 1,
+            patches: all.patches + carried.hulls.len(),
+            pieces_tested: all.pieces_tested + carried.pieces_tested(),
         })
     }
 }
