@@ -8,12 +8,14 @@
 //!                           ──────┬─────┴──────┬─────
 //! ```
 
-use super::height::{Up, in_unit_square};
+use super::compose::{compose, in_unit_square};
+use super::height::Up;
 use crate::math::bernstein::sign_changes;
-use crate::model::{Face, TrimLoop};
-use crate::spline::{Bezier, Control, PatchGrid, SurfacePatch};
+use crate::model::{Bounds, Face, TrimLoop};
+use crate::spline::{Bezier, Control, PatchGrid, Surface, SurfacePatch};
 use crate::trim::{LoopIndex, RectSide};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, DVec4};
+use std::borrow::Cow;
 use std::cell::{Cell, OnceCell};
 use std::ops::Range;
 
@@ -38,7 +40,9 @@ pub(super) struct Piece {
     /// Number of the patch.
     pub patch: usize,
     /// Homogeneous, in the patch's unit square.
-    pub curve: Vec<DVec3>,
+    curve: Vec<DVec3>,
+    /// The same in space, for all directions.
+    in_space: OnceCell<Vec<DVec4>>,
     /// Whether the face lies anywhere beside it.
     beside: OnceCell<bool>,
 }
@@ -61,12 +65,39 @@ pub(super) enum Parts {
     Groups([usize; 2]),
 }
 
+/// The part of a face's surface that its loops can reach: whole knot spans.
+#[derive(Debug)]
+pub(super) struct Reached<'a> {
+    face: &'a Face,
+    surface: Cow<'a, Surface>,
+    /// Box of the control points of each loop.
+    boxes: Vec<(DVec2, DVec2)>,
+    /// Box of all of them; `None` where there are no loops.
+    around: Option<(DVec2, DVec2)>,
+    /// Box of the part's control points.
+    pub hull: Bounds,
+}
+
+impl<'a> Reached<'a> {
+    pub fn new(face: &'a Face) -> Self {
+        let boxes: Vec<(DVec2, DVec2)> = face.loops.iter().map(TrimLoop::bounds).collect();
+        let around = boxes.iter().copied().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let part = around.and_then(|(lo, hi)| face.surface.spans_over(lo, hi));
+        let surface = part.map_or(Cow::Borrowed(&face.surface), Cow::Owned);
+        let (min, max) = surface.bounds();
+        Self { face, surface, boxes, around, hull: Bounds { min, max } }
+    }
+}
+
 /// See the module.
 #[derive(Debug)]
 pub(super) struct Carried<'a> {
     face: &'a Face,
+    /// Of the part that the loops can reach.
     pub grid: PatchGrid,
-    /// Boxes of the control points of each loop.
+    /// Box of the control points of each patch.
+    pub hulls: Vec<Bounds>,
+    /// Box of the control points of each loop.
     boxes: Vec<(DVec2, DVec2)>,
     /// Box of all of them; `None` where there are no loops.
     around: Option<(DVec2, DVec2)>,
@@ -84,17 +115,21 @@ pub(super) struct Carried<'a> {
 }
 
 impl<'a> Carried<'a> {
-    pub fn new(face: &'a Face) -> Self {
-        let grid = face.surface.patches();
-        let boxes: Vec<(DVec2, DVec2)> = face.loops.iter().map(TrimLoop::bounds).collect();
-        let around = boxes.iter().copied().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
-        let domain = face.surface.domain();
+    pub fn new(reached: &Reached<'a>) -> Self {
+        let (face, surface) = (reached.face, &reached.surface);
+        let grid = surface.patches();
+        let domain = surface.domain();
         let lines = [lines(&grid, 0, domain.0.1), lines(&grid, 1, domain.1.1)];
+        let hull = |patch: &SurfacePatch| {
+            let (min, max) = patch.patch.bounds();
+            Bounds { min, max }
+        };
         let mut this = Self {
             face,
+            hulls: grid.patches.iter().map(hull).collect(),
             grid,
-            boxes,
-            around,
+            boxes: reached.boxes.clone(),
+            around: reached.around,
             index: OnceCell::new(),
             spent: Cell::new(0),
             pieces: Vec::new(),
@@ -105,7 +140,7 @@ impl<'a> Carried<'a> {
         let curves = face.loops.iter().flat_map(|l| l.curves());
         this.pieces = curves.flat_map(|curve| this.cut(&curve, &lines)).collect();
         this.group();
-        let degrees = face.surface.degrees();
+        let degrees = surface.degrees();
         let counts = (this.grid.count_u, this.grid.count_v);
         let is_straight = (degrees.0, counts.0) == (1, 1) || (degrees.1, counts.1) == (1, 1);
         this.is_ruled = is_straight && this.around.is_some_and(|(lo, hi)| !this.is_beyond(lo) && !this.is_beyond(hi));
@@ -157,7 +192,26 @@ impl<'a> Carried<'a> {
         let Group { patch, lo, hi, .. } = &self.groups[group];
         // pieces are within their patch, whatever their control points
         let [lo, hi] = [*lo, *hi].map(|p| p.clamp(DVec2::ZERO, DVec2::ONE));
-        up.of_patch(&self.grid.patches[*patch].patch.rectangle((lo.x, hi.x), (lo.y, hi.y))).upper()
+        up.upper_of(&self.grid.patches[*patch].patch.rectangle((lo.x, hi.x), (lo.y, hi.y)).points)
+    }
+
+    /// The control points of a piece in space, homogeneous.
+    pub fn in_space(&self, piece: usize) -> &[DVec4] {
+        let Piece { patch, curve, in_space, .. } = &self.pieces[piece];
+        in_space.get_or_init(|| compose(&self.grid.patches[*patch].patch, curve))
+    }
+
+    /// A height that no point of a patch exceeds by more than rounding; what does not reach above the mark may have a
+    /// larger one than need be.
+    pub fn upper_of_patch(&self, patch: usize, up: Up, mark: f64) -> f64 {
+        let upper = up.of_box(self.hulls[patch]);
+        if upper > mark { up.upper_of(&self.grid.patches[patch].patch.points).min(upper) } else { upper }
+    }
+
+    /// How many pieces were tested for the face beside them.
+    #[cfg(test)]
+    pub fn pieces_tested(&self) -> usize {
+        self.pieces.iter().filter(|piece| piece.beside.get().is_some()).count()
     }
 
     /// Lengths of the domain.
@@ -172,7 +226,8 @@ impl<'a> Carried<'a> {
         for (axis, lines) in lines.iter().enumerate() {
             let along = curve.points.iter().map(|p| p[axis] / p.z);
             let (lo, hi) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
-            for &line in lines.iter().filter(|line| lo < **line && **line < hi) {
+            let first = lines.partition_point(|line| *line <= lo);
+            for &line in lines[first..].iter().take_while(|line| **line < hi) {
                 let off: Vec<f64> = curve.points.iter().map(|p| p[axis] - line * p.z).collect();
                 let noise = |p: &DVec3| 4.0 * f64::EPSILON * (p[axis].abs() + line.abs() * p.z);
                 stops.extend(sign_changes(&off, &curve.points.iter().map(noise).collect::<Vec<_>>()));
@@ -192,7 +247,7 @@ impl<'a> Carried<'a> {
         let patch = self.grid.index(middle.x, middle.y);
         let SurfacePatch { u, v, .. } = &self.grid.patches[patch];
         let curve = in_unit_square(&curve.segment(from, to).points, *u, *v);
-        Some(Piece { patch, curve, beside: OnceCell::new() })
+        Some(Piece { patch, curve, in_space: OnceCell::new(), beside: OnceCell::new() })
     }
 
     fn index(&self) -> &LoopIndex {
@@ -214,7 +269,7 @@ impl<'a> Carried<'a> {
             let near = self.face.loops.iter().zip(&self.boxes).filter(|(_, bounds)| is_in(p, **bounds)).map(|(l, _)| l);
             let curves: usize = near.clone().map(|l| l.curves().len()).sum();
             self.spent.set(self.spent.get() + curves + self.boxes.len() / BOX_SHARE);
-            if self.spent.get() < self.pieces.len() {
+            if 2 * self.spent.get() < self.pieces.len() {
                 let near: Vec<TrimLoop> = near.cloned().collect();
                 return !near.is_empty() && LoopIndex::new(&near).contains(p);
             }

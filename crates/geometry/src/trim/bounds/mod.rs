@@ -12,11 +12,15 @@
 //! *Method.* Each of the six sides is a search for the highest point along a direction. Its candidates are in a heap,
 //! the highest bound first: placed parts, their faces, pieces of trim curves (many in groups), patches and their sides.
 //! Bounds come from boxes, then from control values. A piece of a trim curve over one patch is a rational curve in
-//! space ([`height`]), and is halved until the bound is met. A patch is halved likewise, and dropped where the loops
+//! space ([`compose`]), and is halved until the bound is met. A patch is halved likewise, and dropped where the loops
 //! leave nothing of it or where it is nowhere level. Trimmed planes, cylinders, cones and other ruled faces are highest
 //! on their trim curves. Points that certainly belong to the model raise a mark: ends of curves, and corners inside the
 //! loops. The search is over when no bound is above the mark by more than the tolerance, so parts and faces away from
 //! the border of the model are never examined.
+//!
+//! *Work.* A face is first as high as its control points, then as those of the knot spans that its loops reach. Only
+//! then it is cut into patches. A piece is composed with its patch once for all directions. The face beside a piece is
+//! tested last, when no other candidate is higher.
 //!
 //! *Accuracy.* Each side touches a point of the model, and no point is beyond it by more than [`ANALYTIC`] of the box's
 //! diagonal, or [`OTHER`] of it for faces without an equation, plus some roundings of the largest coordinate. The faces
@@ -36,12 +40,15 @@
 //! chapter 10 (Bézier clipping), with the test for level points instead of clipping.
 
 mod carried;
+mod compose;
 mod convex;
 mod framing;
 mod height;
 mod polyhedron;
 mod search;
 mod solid;
+#[cfg(test)]
+mod tests;
 
 use crate::model::{Bounds, Face, Instance, Model, Part, Solid, meet};
 use glam::{DAffine3, DVec3};

@@ -1,7 +1,7 @@
 //! The largest height of placed faces and meshes, by branch and bound.
 //!
 //! ```text
-//!   body ──▶ face ──┬─▶ piece of a trim curve ──▶ its halves …      the heap, the highest bound first
+//!   body ──▶ face ──┬─▶ piece of a trim curve ──▶ in space ──▶ its halves …      the heap, the highest bound first
 //!     │             │     ▲
 //!     │             ├─▶ group of many pieces ──▶ its halves …
 //!     │             └─▶ patch ──┬─▶ its halves, inside or across the loops …
@@ -11,9 +11,10 @@
 //! Patches of a face that is nowhere higher than its trim curves ([`Carried::is_ruled`]) are searched only if a piece is
 //! left out, because the face is not beside it at the places where that is tested.
 
-use super::carried::{Carried, Parts, Piece};
+use super::carried::{Carried, Parts, Reached};
 use super::height::{Height, ROUNDING, Up, quotient};
 use crate::model::{Bounds, Face, Mesh};
+use crate::spline::SurfacePatch;
 use crate::trim::RectSide;
 use glam::{DAffine3, DVec2, DVec3};
 use std::cell::OnceCell;
@@ -27,29 +28,61 @@ const MOST_HALVINGS: u32 = 96;
 
 /// Faces and meshes that are placed together.
 pub(super) struct Body<'a> {
-    faces: Vec<(&'a Face, Bounds, OnceCell<Carried<'a>>)>,
+    faces: Vec<Item<'a>>,
     meshes: Vec<(&'a Mesh, Bounds)>,
     /// Box of all control points and vertices.
     pub around: Bounds,
 }
 
+/// A face, and what searches prepare of it when they need it.
+struct Item<'a> {
+    face: &'a Face,
+    /// Box of all control points.
+    around: Bounds,
+    reached: OnceCell<Reached<'a>>,
+    carried: OnceCell<Carried<'a>>,
+}
+
 impl<'a> Body<'a> {
     pub fn new(faces: &'a [Face], meshes: &'a [Mesh]) -> Self {
-        let faces: Vec<_> = faces
-            .iter()
-            .map(|face| {
-                let (min, max) = face.surface.bounds();
-                (face, Bounds { min, max }, OnceCell::new())
-            })
-            .collect();
+        let item = |face: &'a Face| {
+            let (min, max) = face.surface.bounds();
+            Item { face, around: Bounds { min, max }, reached: OnceCell::new(), carried: OnceCell::new() }
+        };
+        let faces: Vec<_> = faces.iter().map(item).collect();
         let meshes: Vec<_> = meshes.iter().map(|mesh| (mesh, mesh.bounds())).filter(|m| !m.1.is_empty()).collect();
-        let around = faces.iter().map(|f| f.1).chain(meshes.iter().map(|m| m.1)).fold(Bounds::EMPTY, Bounds::union);
+        let around =
+            faces.iter().map(|f| f.around).chain(meshes.iter().map(|m| m.1)).fold(Bounds::EMPTY, Bounds::union);
         Self { faces, meshes, around }
     }
 
+    fn reached(&self, face: usize) -> &Reached<'a> {
+        let Item { face, reached, .. } = &self.faces[face];
+        reached.get_or_init(|| Reached::new(face))
+    }
+
     fn carried(&self, face: usize) -> &Carried<'a> {
-        let (face, _, carried) = &self.faces[face];
-        carried.get_or_init(|| Carried::new(face))
+        self.faces[face].carried.get_or_init(|| Carried::new(self.reached(face)))
+    }
+}
+
+/// What searches have prepared.
+#[cfg(test)]
+#[derive(Debug, Default)]
+pub(super) struct Work {
+    pub faces: usize,
+    pub patches: usize,
+    pub pieces_tested: usize,
+}
+
+#[cfg(test)]
+impl Body<'_> {
+    pub fn work(&self) -> Work {
+        self.faces.iter().filter_map(|item| item.carried.get()).fold(Work::default(), |all, carried| Work {
+            faces: all.faces + 1,
+            patches: all.patches + carried.hulls.len(),
+            pieces_tested: all.pieces_tested + carried.pieces_tested(),
+        })
     }
 }
 
@@ -78,16 +111,22 @@ enum What {
         face: usize,
         group: usize,
     },
-    /// A piece of a trim curve, as high as its patch or group.
+    /// A piece of a trim curve, as high as its patch or group, or as its control points in space.
     Piece {
         face: usize,
         piece: usize,
+        in_space: bool,
     },
     /// A part of such a piece.
     Curve {
         face: usize,
         height: Height,
         halvings: u32,
+    },
+    /// A whole patch.
+    Patch {
+        face: usize,
+        patch: usize,
     },
     /// A rectangle of a face's domain within one patch, or a line of it.
     Area(Area),
@@ -108,7 +147,7 @@ struct Area {
 impl What {
     /// The order among equal bounds: trim curves raise the mark at once, areas need a test against the loops.
     fn rank(&self) -> u8 {
-        u8::from(!matches!(self, Self::Area(_)))
+        u8::from(!matches!(self, Self::Area(_) | Self::Patch { .. }))
     }
 }
 
@@ -159,7 +198,7 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         let mut placed: Vec<(Up, usize)> = highest.into_iter().map(|((body, _), up)| (up, body)).collect();
         placed.sort_by(|a, b| a.1.cmp(&b.1).then(a.0.offset.total_cmp(&b.0.offset)));
-        let upper = |(up, body): &(Up, usize)| of_box(*up, bodies[*body].around);
+        let upper = |(up, body): &(Up, usize)| up.of_box(bodies[*body].around);
         let size = placed.iter().map(|(up, body)| {
             let around = bodies[*body].around;
             up.along.abs().dot(around.min.abs().max(around.max.abs())) + up.offset.abs()
@@ -205,10 +244,14 @@ impl<'s, 'a> Search<'s, 'a> {
             | What::Group { face, .. }
             | What::Piece { face, .. }
             | What::Curve { face, .. }
+            | What::Patch { face, .. }
             | What::Area(Area { face, .. }) => *face,
         };
-        let (face, ..) = self.bodies[self.placed[of.placed].1].faces[face];
-        if face.kind.is_elementary() { tolerance.analytic } else { tolerance.other }
+        if self.bodies[self.placed[of.placed].1].faces[face].face.kind.is_elementary() {
+            tolerance.analytic
+        } else {
+            tolerance.other
+        }
     }
 
     fn push(&mut self, placed: usize, upper: f64, what: What) {
@@ -227,11 +270,11 @@ impl<'s, 'a> Search<'s, 'a> {
         let body = &bodies[body];
         match what {
             What::Body => {
-                for (i, (_, around, _)) in body.faces.iter().enumerate() {
-                    self.push(placed, of_box(up, *around), What::Face(i));
+                for (i, item) in body.faces.iter().enumerate() {
+                    self.push(placed, up.of_box(item.around), What::Face(i));
                 }
                 for (i, (_, around)) in body.meshes.iter().enumerate() {
-                    self.push(placed, of_box(up, *around), What::Mesh(i));
+                    self.push(placed, up.of_box(*around), What::Mesh(i));
                 }
             }
             What::Mesh(mesh) => {
@@ -239,12 +282,19 @@ impl<'s, 'a> Search<'s, 'a> {
                 let corners = mesh.triangles().iter().flatten().map(|&v| up.of_point(mesh.positions()[v as usize]));
                 self.find(corners.fold(f64::NEG_INFINITY, f64::max));
             }
-            What::Face(face) => self.face(placed, up, face, body.carried(face)),
+            What::Face(face) => {
+                let least = up.of_box(body.reached(face).hull);
+                if least < upper {
+                    self.push(placed, least, What::Face(face));
+                } else {
+                    self.face(placed, up, face, body.carried(face));
+                }
+            }
             What::Group { face, group } => {
                 let carried = body.carried(face);
                 match &carried.groups[group].parts {
                     Parts::Pieces(pieces) => {
-                        pieces.clone().for_each(|piece| self.push(placed, upper, What::Piece { face, piece }));
+                        pieces.clone().for_each(|piece| self.piece(placed, upper, face, piece));
                     }
                     Parts::Groups(halves) => {
                         for &group in halves {
@@ -254,26 +304,27 @@ impl<'s, 'a> Search<'s, 'a> {
                     }
                 }
             }
-            What::Piece { face, piece } => {
+            What::Piece { face, piece, in_space: false } => {
+                let upper = up.upper_of(body.carried(face).in_space(piece)).min(upper);
+                self.push(placed, upper, What::Piece { face, piece, in_space: true });
+            }
+            What::Piece { face, piece, in_space: true } => {
+                // the test beside the curve costs more than its bound, so that only the highest pieces are tested
                 let carried = body.carried(face);
                 if carried.is_beside(piece) {
-                    let Piece { patch, curve, .. } = &carried.pieces[piece];
-                    let height = up.of_patch(&carried.grid.patches[*patch].patch).along(curve);
-                    self.push(placed, height.upper().min(upper), What::Curve { face, height, halvings: 0 });
+                    self.curve(placed, upper, face, up.of_curve(carried.in_space(piece)), 0);
                 } else if carried.is_ruled && self.inside.insert((placed, face)) {
-                    self.patches(placed, face, carried, heights(carried, up));
+                    self.patches(placed, up, face, carried);
                 }
             }
-            What::Curve { face, height, halvings } => {
-                let ends = [height.at(0, 0), height.at(height.n, 0)].map(quotient);
-                ends.into_iter().for_each(|end| self.find(end));
-                if self.is_done(upper, height.lower(), &height, halvings) {
-                    return;
-                }
-                for half in height.halves_u() {
-                    let upper = half.upper().min(upper);
-                    self.push(placed, upper, What::Curve { face, height: half, halvings: halvings + 1 });
-                }
+            What::Curve { face, height, halvings } => self.curve(placed, upper, face, height, halvings),
+            What::Patch { face, patch } => {
+                let carried = body.carried(face);
+                let SurfacePatch { u, v, patch } = &carried.grid.patches[patch];
+                let (lo, hi) = (DVec2::new(u.0, v.0), DVec2::new(u.1, v.1));
+                let height = up.of_patch(patch);
+                let area = Area { face, height, lo, hi, inside: false, whole: true, halvings: 0 };
+                self.area(placed, upper, area, carried);
             }
             What::Area(area) => {
                 let carried = body.carried(area.face);
@@ -282,29 +333,45 @@ impl<'s, 'a> Search<'s, 'a> {
         }
     }
 
+    fn piece(&mut self, placed: usize, upper: f64, face: usize, piece: usize) {
+        self.push(placed, upper, What::Piece { face, piece, in_space: false });
+    }
+
+    fn curve(&mut self, placed: usize, upper: f64, face: usize, height: Height, halvings: u32) {
+        let ends = [height.at(0, 0), height.at(height.n, 0)].map(quotient);
+        ends.into_iter().for_each(|end| self.find(end));
+        if self.is_done(upper, height.lower(), &height, halvings) {
+            return;
+        }
+        for half in height.halves_u() {
+            let upper = half.upper().min(upper);
+            self.push(placed, upper, What::Curve { face, height: half, halvings: halvings + 1 });
+        }
+    }
+
     fn face(&mut self, placed: usize, up: Up, face: usize, carried: &Carried<'_>) {
-        let heights = heights(carried, up);
-        let uppers: Vec<f64> = heights.iter().map(Height::upper).collect();
+        let uppers: Vec<f64> =
+            (0..carried.hulls.len()).map(|patch| carried.upper_of_patch(patch, up, self.low)).collect();
         for &(patch, group) in &carried.tops {
             self.push(placed, uppers[patch], What::Group { face, group });
         }
         if carried.tops.is_empty() {
             for (number, piece) in carried.pieces.iter().enumerate() {
-                self.push(placed, uppers[piece.patch], What::Piece { face, piece: number });
+                self.piece(placed, uppers[piece.patch], face, number);
             }
         }
         if !carried.is_ruled {
-            self.patches(placed, face, carried, heights);
+            for (patch, upper) in uppers.into_iter().enumerate() {
+                self.push(placed, upper, What::Patch { face, patch });
+            }
         }
     }
 
     /// The patches of a face, whole.
-    fn patches(&mut self, placed: usize, face: usize, carried: &Carried<'_>, heights: Vec<Height>) {
-        for (patch, height) in carried.grid.patches.iter().zip(heights) {
-            let (lo, hi) = (DVec2::new(patch.u.0, patch.v.0), DVec2::new(patch.u.1, patch.v.1));
-            let upper = height.upper();
-            let area = Area { face, height, lo, hi, inside: false, whole: true, halvings: 0 };
-            self.push(placed, upper, What::Area(area));
+    fn patches(&mut self, placed: usize, up: Up, face: usize, carried: &Carried<'_>) {
+        for patch in 0..carried.hulls.len() {
+            let upper = carried.upper_of_patch(patch, up, self.low);
+            self.push(placed, upper, What::Patch { face, patch });
         }
     }
 
@@ -372,17 +439,4 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         false
     }
-}
-
-/// The height of each patch of a face.
-fn heights(carried: &Carried<'_>, up: Up) -> Vec<Height> {
-    carried.grid.patches.iter().map(|p| up.of_patch(&p.patch)).collect()
-}
-
-/// The largest height of a box; negative infinity for an empty box.
-fn of_box(up: Up, around: Bounds) -> f64 {
-    if around.is_empty() {
-        return f64::NEG_INFINITY;
-    }
-    up.of_point(DVec3::select(up.along.cmpgt(DVec3::ZERO), around.max, around.min))
 }

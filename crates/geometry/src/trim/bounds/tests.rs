@@ -1,0 +1,107 @@
+//! How much a search prepares: what is extreme, and little else.
+
+use super::compose::compose;
+use super::search::{Body, Work};
+use super::{OTHER, of};
+use crate::model::{Bounds, Face, SurfaceKind, TrimLoop};
+use crate::spline::{Bezier, Control, Patch, Surface};
+use glam::{DAffine3, DVec2, DVec3, DVec4};
+use std::f64::consts::TAU;
+
+fn face(kind: SurfaceKind, surface: Surface, loops: Vec<TrimLoop>) -> Face {
+    Face { id: 1, kind, surface, loops, same_sense: true, colour: None }
+}
+
+/// The square from -half to half at a height, with its coordinates as parameters.
+fn square(half: f64, z: f64) -> Surface {
+    let at = |k: i32| half * f64::from(2 * k - 1);
+    let points = (0..4).map(|k| DVec4::new(at(k % 2), at(k / 2), z, 1.0)).collect();
+    let knots = vec![-half, -half, half, half];
+    Surface::new((1, 1), knots.clone(), knots, points).unwrap()
+}
+
+fn polygon(corners: &[DVec2]) -> TrimLoop {
+    let line = |i: usize| vec![corners[i].extend(1.0), corners[(i + 1) % corners.len()].extend(1.0)];
+    TrimLoop::new((0..corners.len()).map(|i| Bezier { points: line(i) }).collect(), DVec2::ZERO).unwrap()
+}
+
+fn rectangle(lo: DVec2, hi: DVec2) -> TrimLoop {
+    polygon(&[lo, DVec2::new(hi.x, lo.y), hi, DVec2::new(lo.x, hi.y)])
+}
+
+/// The box is as expected; what the search has prepared for it.
+#[track_caller]
+fn work(faces: &[Face], expected: Bounds) -> Work {
+    let bodies = [Body::new(faces, &[])];
+    let found = of(&bodies, &[(0, DAffine3::IDENTITY)]);
+    let off = (found.min - expected.min).abs().max((found.max - expected.max).abs()).max_element();
+    assert!(off <= OTHER * expected.diagonal(), "off by {off:e}: {found:?} instead of {expected:?}");
+    bodies[0].work()
+}
+
+/// Squares one above the other, each smaller than the one below: the lowest and the highest are extreme.
+#[test]
+fn faces_within_the_box_of_others_are_not_cut() {
+    let square = |k: i32| {
+        let half = f64::from(20 - k);
+        let all = rectangle(DVec2::splat(-half), DVec2::splat(half));
+        face(SurfaceKind::Plane, square(half, f64::from(k)), vec![all])
+    };
+    let faces: Vec<Face> = (0..20).map(square).collect();
+    let expected = Bounds { min: DVec3::new(-20.0, -20.0, 0.0), max: DVec3::new(20.0, 20.0, 19.0) };
+    assert_eq!(work(&faces, expected).faces, 2);
+}
+
+/// `(u, v, u v)` in 1600 patches, of which loops leave the middle of two by two.
+#[test]
+fn patches_that_loops_do_not_reach_are_not_cut() {
+    const ACROSS: i32 = 40;
+    let points = (0..(ACROSS + 1) * (ACROSS + 1)).map(|k| {
+        let (u, v) = (f64::from(k % (ACROSS + 1)), f64::from(k / (ACROSS + 1)));
+        DVec4::new(u, v, u * v, 1.0)
+    });
+    let inner = (0..=ACROSS).map(f64::from);
+    let knots: Vec<f64> = std::iter::once(0.0).chain(inner).chain([f64::from(ACROSS)]).collect();
+    let surface = Surface::new((1, 1), knots.clone(), knots, points.collect()).unwrap();
+    let (lo, hi) = (DVec2::new(30.5, 7.5), DVec2::new(31.5, 8.5));
+    let expected = Bounds { min: lo.extend(30.5 * 7.5), max: hi.extend(31.5 * 8.5) };
+    let work = work(&[face(SurfaceKind::BSpline, surface, vec![rectangle(lo, hi)])], expected);
+    assert_eq!(work.patches, 4, "{work:?}");
+}
+
+/// A disc of 200 edges: two meet at each of four extreme points. It is level, so that one edge is enough across.
+#[test]
+fn only_the_highest_pieces_are_tested_for_the_face_beside_them() {
+    const EDGES: usize = 200;
+    let corner = |k: usize| DVec2::from_angle(TAU * k as f64 / EDGES as f64);
+    let disc = polygon(&(0..EDGES).map(corner).collect::<Vec<_>>());
+    let expected = Bounds { min: DVec3::new(-1.0, -1.0, 3.0), max: DVec3::new(1.0, 1.0, 3.0) };
+    let work = work(&[face(SurfaceKind::Plane, square(2.0, 3.0), vec![disc])], expected);
+    assert!(work.pieces_tested <= 4 * 2 + 2, "{work:?}");
+}
+
+/// A rational patch along rational curves: one that bends, and lines along either parameter.
+#[test]
+fn a_composed_curve_is_the_patch_at_the_points_of_the_curve() {
+    let point = |i: usize, j: usize| {
+        let (u, v) = (i as f64, j as f64);
+        DVec4::from_point(DVec3::new(u + 0.2 * v, v * v - 0.3 * u, u * v), 1.0 + 0.4 * ((i + 2 * j) % 3) as f64)
+    };
+    let points = (0..12).map(|k| point(k % 3, k / 3)).collect();
+    let patch = Patch { degree_u: 2, degree_v: 3, points };
+    let at = |u: f64, v: f64, w: f64| DVec3::from_point(DVec2::new(u, v), w);
+    let curves = [
+        vec![at(0.1, 0.2, 1.0), at(0.9, 0.3, 2.0), at(0.4, 0.8, 0.7)],
+        vec![at(0.2, 0.3, 1.0), at(0.7, 0.3, 1.5)],
+        vec![at(0.6, 0.9, 1.0), at(0.6, 0.1, 1.0)],
+    ];
+    for points in curves {
+        let composed = Bezier { points: compose(&patch, &points) };
+        let curve = Bezier { points };
+        for t in [0.0, 0.17, 0.5, 0.83, 1.0] {
+            let on = curve.point(t);
+            let (found, expected) = (composed.point(t), patch.point(on.x, on.y));
+            assert!(found.distance(expected) < 1e-13, "{found} instead of {expected}");
+        }
+    }
+}
