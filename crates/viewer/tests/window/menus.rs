@@ -114,6 +114,27 @@ fn menus_choose_styles_and_cut_three_times() {
 }
 
 #[test]
+fn each_choice_of_lines_and_light_is_seen() {
+    let Some(screen) = Screen::open(WINDOW) else { return };
+    let display = &screen.display;
+    let (_folder, mut program, scene) = opened(display, "bracket.step");
+    let mut panels = Panels::new(&scene, WINDOW);
+    let mut last = program.picture(display);
+    // silhouettes and smooth borders are on at first
+    for choice in
+        ["silhouettes", "hidden lines", "smooth borders", "ambient occlusion", "shadows", "sharp edges", "no edges"]
+    {
+        panels.click(display, &mut program, "Style", 0);
+        panels.click(display, &mut program, choice, 0);
+        program.rest();
+        let picture = program.picture(display);
+        assert!(picture != last, "{choice}: nothing of it is seen");
+        last = picture;
+    }
+    program.close(display);
+}
+
+#[test]
 fn keys_alone_write_a_picture_without_background() {
     let Some(screen) = Screen::open(WINDOW) else { return };
     let display = &screen.display;

@@ -5,7 +5,7 @@
 use super::Screen;
 use super::hand::{Display, Program, numbers};
 use glam::{DAffine3, DVec2, DVec4};
-use selvedge::model::{Instance, Model, Part, SurfaceKind};
+use selvedge::model::{Face, Instance, Model, Part, SurfaceKind};
 use selvedge::spline::Surface;
 use selvedge_io::native;
 use std::f64::consts::TAU;
@@ -80,14 +80,16 @@ fn view(program: &Program) -> (Vec<f64>, DVec2) {
 
 /// A plate of squares, each a face.
 fn plate((along, across): (u32, u32)) -> Model {
-    let mut part = Part::default();
-    for (x, y) in (0..across).flat_map(|y| (0..along).map(move |x| (f64::from(x), f64::from(y)))) {
+    let square = |nth: u32| {
+        let (x, y) = (f64::from(nth % along), f64::from(nth / along));
         let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
         let net = corners.map(|(u, v)| DVec4::new(x + u, y + v, 0.0, 1.0)).to_vec();
         let knots = || vec![0.0, 0.0, 1.0, 1.0];
         let surface = Surface::new((1, 1), knots(), knots(), net).expect("a square");
-        part.add(SurfaceKind::Plane, surface, Vec::new(), true);
-    }
+        let (kind, loops) = (SurfaceKind::Plane, Vec::new());
+        Face { id: nth + 1, kind, surface, loops, same_sense: true, colour: None }
+    };
+    let part = Part { faces: (0..along * across).map(square).collect(), ..Part::default() };
     let placed = Instance { part: 0, transform: DAffine3::IDENTITY, colour: None, name: String::new() };
     Model { parts: vec![part], instances: vec![placed], ..Model::default() }
 }
