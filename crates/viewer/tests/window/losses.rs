@@ -1,5 +1,5 @@
-//! Losses of the surface and of the device, a suspended program, no memory for a picture, and a display of another scale:
-//! the window goes on, and looks the same.
+//! Losses of the surface and of the device, a suspended program, no memory for a picture, and a display of another
+//! scale: the window goes on, and looks the same.
 
 use super::hand::{Program, numbers};
 use super::living::is_in_place;
@@ -76,8 +76,8 @@ fn a_lost_surface_and_a_lost_device_change_nothing_that_is_shown() {
     program.close(display);
 }
 
-/// Each time the system takes the surface while a frame is in flight. Nothing is drawn until it gives one again; then the
-/// window shows what it did, with the device, the scene, the view and the selection of before.
+/// Each time the system takes the surface while a frame is in flight. Nothing is drawn until it gives one again; then
+/// the window shows what it did, with the device, the scene, the view and the selection of before.
 #[test]
 fn a_suspended_window_draws_nothing_and_then_goes_on() {
     let Some(screen) = Screen::open((900, 560)) else { return };
@@ -166,8 +166,8 @@ fn panels_and_picture_have_the_scale_of_display_and_settings_and_the_desktop_s_c
     program.close(display);
 }
 
-/// A display of half as many pixels again for an inch, as when a window comes to another monitor: it has as many points as
-/// before, with as large a text to the eye, and the hand still meets what it points at.
+/// A display of half as many pixels again for an inch, as when a window comes to another monitor: the window has as many
+/// points as before, with as large a text to the eye, and the hand still meets what it points at.
 #[test]
 fn a_display_of_another_scale_changes_the_text_and_the_picture_s_pixels() {
     let Some(screen) = Screen::open((1400, 900)) else { return };

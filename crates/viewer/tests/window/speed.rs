@@ -1,6 +1,6 @@
-//! How fast a window of 1280 x 800 is, on files that the environment names: the first frame and the first picture, frames
-//! of a moving view, the whole picture after it, a click, the item under the cursor, and what an idle window uses. Other
-//! work on the machine falsifies it, so a usual run leaves it out. Validation is off meanwhile.
+//! How fast a window of 1280 x 800 is, on files that the environment names: the first frame and the first picture,
+//! frames of a moving view, the whole picture after it, a click, the item under the cursor, and what an idle window
+//! uses. Other work on the machine falsifies it, so a usual run leaves it out. Validation is off meanwhile.
 
 use super::Screen;
 use super::hand::{Display, Program, numbers};
