@@ -9,6 +9,7 @@ use selvedge::model::Bounds;
 use selvedge_io::{import, native};
 use selvedge_viewer::commands::Command;
 use selvedge_viewer::describe::extent;
+use selvedge_viewer::navigation::standard::StandardView;
 
 const WINDOW: (u32, u32) = (900, 560);
 /// Pixels of a view that are judged at least: those of a whole one are twenty thousand.
@@ -165,6 +166,12 @@ fn less_motion_is_heard_of_and_both_forms_are_saved() {
         std::fs::write(folder.join("gtk-3.0/settings.ini"), settings).expect("written");
     });
     program.last("the desktop asks for less motion");
+    // the view is there at once: on its way it would be another one when the second key comes
+    display.xdotool("key --clearmodifiers 3 ctrl+shift+c");
+    let camera = scene.camera_of(&program.wait("copied: selvedge render"));
+    let from = (camera.eye - camera.target).normalize();
+    assert!(from.distance(StandardView::Right.from().normalize()) < 1e-9, "from {from}");
+    program.rest();
     let mut panels = Panels::new(&scene, WINDOW);
 
     // the model as it is, in both forms
