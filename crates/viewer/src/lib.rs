@@ -34,4 +34,4 @@ pub mod view;
 pub mod watch;
 mod window;
 
-pub use window::{Closed, Faults, ViewError, ViewOptions, run};
+pub use window::{Closed, Fault, Faults, ViewError, ViewOptions, run};

@@ -7,7 +7,7 @@ use super::screen::{Frame, Picture, Screen};
 use super::selecting::{Click, LookUp};
 use super::shown::{Pictures, ShownPicture};
 use super::waiter::Waiter;
-use super::{Failure, ViewError, ViewOptions};
+use super::{Failure, Fault, ViewError, ViewOptions};
 use crate::measure::Measurement;
 use crate::navigation::gesture::Held;
 use crate::panels::{Facts, Ui, Verdict};
@@ -47,6 +47,8 @@ pub enum Event {
     Measured(Vec<Picked>, Option<Measurement>),
     /// The verdict on a picture, or why there is none.
     Judged(Result<Verdict, String>),
+    /// The system resumes the program, as imitated.
+    Resumed,
     /// The desktop is set to less motion.
     LessMotion,
     /// The desktop is dark, or light.
@@ -61,6 +63,8 @@ struct Flight {
     picture: Option<(Due, FrameSettings, u64, Instant)>,
     /// Where it picks: pixels of the view.
     pick: Option<DVec2>,
+    /// The move of the cursor before it.
+    pointed: Option<Instant>,
     /// The picture that the pick reads.
     camera: Option<Camera>,
     /// The scene of that picture, and the engine's count.
@@ -94,14 +98,14 @@ pub struct App {
     /// The desktop's colours, where its settings have them.
     pub desktop: Option<egui::Theme>,
     /// The settings in the file.
-    kept: Settings,
+    pub kept: Settings,
     pub files: Vec<Arc<Loaded>>,
     pub loads: Loads,
     pub joiner: Joiner,
     pub watcher: Option<Watcher>,
     flight: Option<Flight>,
     /// The system was told that a frame is due.
-    due: bool,
+    pub due: bool,
     /// Drawn again once the frame in flight is done.
     pub again: bool,
     /// Nothing has happened since the log said that the window is idle.
@@ -111,11 +115,15 @@ pub struct App {
     pub pictures: Pictures,
     pub stats: Option<FrameStats>,
     pub rect: ViewRect,
+    /// The display's scale in the last event of it.
+    pub scale: Option<f64>,
     /// Pixels of the window.
     pub cursor: Option<DVec2>,
     pub held: Held,
     /// A pick to make: pixels of the view.
     pub pick: Option<DVec2>,
+    /// The last move of the cursor, until a frame has it.
+    pub pointed: Option<Instant>,
     /// A click that waits for its pick.
     pub click: Option<Click>,
     /// The last pick, whose result the view has.
@@ -123,7 +131,7 @@ pub struct App {
     /// The time of a click whose selection no frame has shown yet.
     pub selected: Option<Instant>,
     pub failed: Option<ViewError>,
-    clipboard: Option<arboard::Clipboard>,
+    pub clipboard: Option<arboard::Clipboard>,
     /// Of the validation layer.
     pub messages: Vec<String>,
     /// The first frame was shown.
@@ -188,9 +196,11 @@ impl App {
             pictures: Pictures::default(),
             stats: None,
             rect: ViewRect::default(),
+            scale: None,
             cursor: None,
             held: Held::default(),
             pick: None,
+            pointed: None,
             click: None,
             look_up: None,
             selected: None,
@@ -214,12 +224,24 @@ impl App {
 
     /// A frame is due.
     pub fn redraw(&mut self) {
-        if self.flight.is_some() {
-            self.again = true;
-        } else if let Some(opened) = &self.opened {
-            opened.window.request_redraw();
-            self.due = true;
+        let is_ready = self.is_ready();
+        match &self.opened {
+            Some(opened) if is_ready => {
+                opened.window.request_redraw();
+                self.due = true;
+            }
+            _ => self.again = true,
         }
+    }
+
+    /// A frame may begin: none is in flight, and the window has a surface.
+    fn is_ready(&self) -> bool {
+        self.flight.is_none() && self.opened.is_some() && !self.is_suspended()
+    }
+
+    /// The system has suspended the program.
+    pub fn is_suspended(&self) -> bool {
+        self.opened.as_ref().is_some_and(|opened| opened.screen.is_suspended())
     }
 
     /// Nothing is drawn, read, put together or uploaded, and no frame is due.
@@ -243,10 +265,10 @@ impl App {
         (inside && !self.ui.pointer_taken).then_some(at)
     }
 
-    /// One frame; none while one is in flight.
+    /// One frame; none while one is in flight, or while the program is suspended.
     pub fn draw(&mut self) -> Result<(), ViewError> {
         (self.due, self.rests) = (false, false);
-        if self.flight.is_some() || self.opened.is_none() {
+        if !self.is_ready() {
             self.again = true;
             return Ok(());
         }
@@ -296,16 +318,17 @@ impl App {
             self.view.hold(None);
         }
         screen.set_textures(&output.textures_delta)?;
+        let fault = self.options.faults.as_ref().and_then(|faults| (faults.0)());
         let shapes = self.context.tessellate(output.shapes, output.pixels_per_point);
         let frame = Frame {
             view: self.rect,
-            pick: pick.zip(seen_by).map(|(at, camera)| pixel_of(at, camera.size, self.rect)),
+            pick: pick.zip(seen_by).map(|(at, camera)| self.rect.pixel(at, camera.size)),
             marks: (marks.0, &marks.1),
             panels: (&shapes, output.pixels_per_point),
             background: background(self.context.style().visuals.dark_mode),
-            fault: self.options.faults.as_ref().and_then(|faults| (faults.0)()),
+            fault,
         };
-        let free = output.textures_delta.free;
+        let (free, pointed) = (output.textures_delta.free, self.pointed.take());
         let (drawn, in_picture, pick) = match screen.draw(window, picture, &frame) {
             Ok(drawn) => (drawn, in_picture, pick),
             Err(Failure::Picture(error)) => {
@@ -320,13 +343,16 @@ impl App {
         };
         if drawn {
             waiter.watch(screen.context.fence);
-            self.flight = Some(Flight { picture: in_picture, pick, camera: seen_by, scene, generation, free });
+            self.flight = Some(Flight { picture: in_picture, pick, pointed, camera: seen_by, scene, generation, free });
         } else {
             screen.free_textures(&free)?;
         }
         let repaint = output.viewport_output.get(&egui::ViewportId::ROOT).map(|v| v.repaint_delay);
         let repaint = repaint.and_then(|delay| now.checked_add(delay)).filter(|_| drawn);
         self.wake = [repaint, self.view.wake(now)].into_iter().flatten().min();
+        if let Some(Fault::Suspended(time)) = fault {
+            self.suspend_for(time);
+        }
         Ok(())
     }
 
@@ -346,8 +372,9 @@ impl App {
             Theme::Dark => egui::ThemePreference::Dark,
         };
         self.context.set_theme(theme);
-        if (self.context.zoom_factor() - self.settings.text).abs() > 1e-3 {
-            self.context.set_zoom_factor(self.settings.text);
+        let zoom = self.zoom();
+        if (self.context.zoom_factor() - zoom).abs() > 1e-3 {
+            self.context.set_zoom_factor(zoom);
         }
         let Some(Opened { window, input, engine, screen, .. }) = &mut self.opened else { unreachable!("checked") };
         let mut raw = input.take_egui_input(window);
@@ -390,34 +417,10 @@ impl App {
         output
     }
 
-    /// The desktop's clipboard, or why there is none; what was copied is there as long as the window is.
-    pub fn clipboard(&mut self) -> Result<&mut arboard::Clipboard, arboard::Error> {
-        match &mut self.clipboard {
-            Some(clipboard) => Ok(clipboard),
-            none => Ok(none.insert(arboard::Clipboard::new()?)),
-        }
-    }
-
-    fn set_clipboard(&mut self, text: String) {
-        if let Err(error) = self.clipboard().and_then(|clipboard| clipboard.set_text(text)) {
-            self.ui.tell(format!("Not copied: {error}"));
-        }
-    }
-
-    fn keep_settings(&mut self) {
-        if self.settings == self.kept {
-            return;
-        }
-        self.kept = self.settings.clone();
-        let written = self.options.settings.as_deref().map(|path| self.settings.write(path));
-        if let Some(Err(error)) = written {
-            self.ui.tell(format!("The settings cannot be written: {error}"));
-        }
-    }
-
     /// The frame in flight has finished.
     pub fn frame_done(&mut self, result: Result<(), vk::Result>) -> Result<(), ViewError> {
-        let Some(Flight { picture, pick, camera, scene, generation, free }) = self.flight.take() else { return Ok(()) };
+        let Some(flight) = self.flight.take() else { return Ok(()) };
+        let Flight { picture, pick, pointed, camera, scene, generation, free } = flight;
         result?;
         tracing::debug!("frame");
         let ms = |since: Instant| since.elapsed().as_secs_f64() * 1e3;
@@ -459,6 +462,9 @@ impl App {
         let scene = scene.filter(|scene| Arc::ptr_eq(&scene.world, &self.session.world));
         if let (Some(at), Some(camera), Some(samples), Some(scene)) = (pick, camera, samples, scene) {
             self.picked(&samples, &scene, LookUp { at, camera, generation, filter: self.ui.filter });
+            if let Some(moved) = pointed {
+                tracing::debug!("the item under the cursor is found {:.1} ms after its move", ms(moved));
+            }
         }
         if self.again || self.pick.is_some() || self.click.is_some() {
             self.redraw();
@@ -478,14 +484,4 @@ impl App {
         }
         self.redraw();
     }
-}
-
-/// The pixel of a picture at a place of the view.
-fn pixel_of(at: DVec2, picture: (u32, u32), rect: ViewRect) -> (u32, u32) {
-    let scale = DVec2::new(
-        f64::from(picture.0) / f64::from(rect.width.max(1)),
-        f64::from(picture.1) / f64::from(rect.height.max(1)),
-    );
-    let pixel = (at * scale).max(DVec2::ZERO);
-    (pixel.x as u32, pixel.y as u32)
 }

@@ -8,6 +8,7 @@ use super::made::Made;
 use super::targets::{Targets, buffer, free_buffer};
 use crate::pick::Mark;
 use ash::vk;
+use glam::DVec2;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocation;
 use selvedge::{ash, gpu_allocator};
@@ -35,6 +36,15 @@ pub struct ViewRect {
     pub y: u32,
     pub width: u32,
     pub height: u32,
+}
+
+impl ViewRect {
+    /// The pixel of a picture at a place of the view.
+    pub fn pixel(&self, at: DVec2, picture: (u32, u32)) -> (u32, u32) {
+        let of = |size: (u32, u32)| DVec2::new(f64::from(size.0), f64::from(size.1));
+        let pixel = at * (of(picture) / of((self.width.max(1), self.height.max(1))));
+        (pixel.x.max(0.0) as u32, pixel.y.max(0.0) as u32)
+    }
 }
 
 /// The pass.

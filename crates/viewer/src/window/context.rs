@@ -25,6 +25,7 @@ pub struct Context {
     debug: Option<(ash::ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
     messages: Arc<Mutex<Vec<String>>>,
     pub surfaces: ash::khr::surface::Instance,
+    /// Null while the program is suspended.
     pub surface: vk::SurfaceKHR,
     pub physical: vk::PhysicalDevice,
     pub device: ash::Device,
@@ -175,14 +176,16 @@ impl Context {
         &self.allocator
     }
 
-    /// A new surface in place of a lost one; the swapchain of the old one is gone.
-    pub fn renew_surface(&mut self, window: &Window) -> Result<(), ViewError> {
-        // SAFETY: nothing uses the old surface any more; the window is alive.
-        unsafe {
-            // where no new one can be made there is none: it is not destroyed twice
-            self.surfaces.destroy_surface(std::mem::take(&mut self.surface), None);
-            self.surface = surface(&self.entry, &self.instance, window)?;
-        }
+    /// Frees the surface, whose swapchain is gone.
+    pub fn drop_surface(&mut self) {
+        // SAFETY: nothing uses it any more. A null handle is ignored: it is not destroyed twice.
+        unsafe { self.surfaces.destroy_surface(std::mem::take(&mut self.surface), None) };
+    }
+
+    /// Makes a surface where there is none.
+    pub fn make_surface(&mut self, window: &Window) -> Result<(), ViewError> {
+        // SAFETY: the window is alive.
+        self.surface = unsafe { surface(&self.entry, &self.instance, window) }?;
         Ok(())
     }
 

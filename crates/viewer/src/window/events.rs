@@ -18,11 +18,14 @@ use winit::window::WindowId;
 
 impl ApplicationHandler<Event> for App {
     fn resumed(&mut self, events: &ActiveEventLoop) {
-        if self.opened.is_none()
-            && let Err(error) = self.open_window(events)
-        {
+        let opened = if self.opened.is_none() { self.open_window(events) } else { self.resume() };
+        if let Err(error) = opened {
             self.fail(error, events);
         }
+    }
+
+    fn suspended(&mut self, _: &ActiveEventLoop) {
+        self.suspend();
     }
 
     fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
@@ -54,8 +57,14 @@ impl ApplicationHandler<Event> for App {
         name_copying(input.egui_input_mut());
         match &event {
             WindowEvent::CloseRequested => events.exit(),
-            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
+            WindowEvent::Resized(_) => {
                 screen.resized();
+                self.redraw();
+            }
+            WindowEvent::ScaleFactorChanged { scale_factor, .. } => {
+                tracing::debug!("the display's scale is {scale_factor}");
+                screen.resized();
+                self.scale = Some(*scale_factor);
                 self.redraw();
             }
             WindowEvent::RedrawRequested => {
@@ -154,6 +163,7 @@ impl ApplicationHandler<Event> for App {
                 }
                 self.redraw();
             }
+            Event::Resumed => self.resumed(events),
             Event::LessMotion => {
                 tracing::info!("the desktop asks for less motion");
                 self.less_motion = true;
@@ -193,6 +203,10 @@ impl App {
             return self.fail(error, events);
         }
         tracing::error!("{error}");
+        if self.is_suspended() {
+            // there is no surface to choose a device for: the first frame after it meets the loss again
+            return;
+        }
         if let Err(error) = self.reopen_device() {
             self.fail(error, events);
         }
@@ -209,7 +223,9 @@ impl App {
     fn cursor_moved(&mut self) {
         self.catch_up();
         match (self.view.is_dragging(), self.over_view()) {
-            (false, Some(at)) => self.pick = Some(self.view.wants_point().unwrap_or(at)),
+            (false, Some(at)) => {
+                (self.pick, self.pointed) = (Some(self.view.wants_point().unwrap_or(at)), Some(Instant::now()));
+            }
             (false, None) => self.view.hover = None,
             _ => {}
         }

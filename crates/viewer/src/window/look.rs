@@ -23,6 +23,14 @@ impl App {
         }
     }
 
+    /// The zoom of the panels: that of the settings. Under X11 a window has the display's new scale only when a window
+    /// manager moves it; until then the zoom makes up for what the event of the scale said.
+    pub fn zoom(&self) -> f32 {
+        let own = self.opened.as_ref().map(|opened| opened.window.scale_factor());
+        let missing = self.scale.zip(own).map_or(1.0, |(scale, own)| scale / own);
+        self.settings.text * missing as f32
+    }
+
     /// Behind the model, linear light.
     pub fn background(&self) -> Colour {
         background(self.context.style().visuals.dark_mode)

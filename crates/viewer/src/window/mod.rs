@@ -32,7 +32,7 @@ use selvedge::renderer::RenderError;
 use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use winit::event_loop::EventLoop;
 
 /// How to open the window.
@@ -52,17 +52,25 @@ pub struct ViewOptions {
     pub size: Option<(u32, u32)>,
     /// Finds parts of assemblies in other files; `None`: beside the file that names them.
     pub finder: Option<Finder>,
-    /// Failures of Vulkan to imitate; `None` imitates none.
+    /// Failures to imitate; `None` imitates none.
     pub faults: Option<Faults>,
 }
 
-/// Imitates failures of Vulkan, for tests: a lost surface, a lost device, no memory for a picture.
+/// Imitates failures, for tests.
 #[derive(Clone)]
 pub struct Faults(
-    /// Called before each frame; a result is handled as that of the frame's first call, and lack of memory as that of the
-    /// picture's images.
-    pub Arc<dyn Fn() -> Option<vk::Result> + Send + Sync>,
+    /// Called before each frame.
+    pub Arc<dyn Fn() -> Option<Fault> + Send + Sync>,
 );
+
+/// A failure to imitate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// The result of the frame's first call. Lack of device memory is that of the picture's images.
+    Vulkan(vk::Result),
+    /// The system suspends the program while the frame is in flight, and resumes it after this time.
+    Suspended(Duration),
+}
 
 impl fmt::Debug for Faults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

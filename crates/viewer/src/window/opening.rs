@@ -7,6 +7,7 @@ use super::screen::Screen;
 use super::waiter::Waiter;
 use super::{Closed, ViewError, ViewOptions};
 use crate::desktop;
+use crate::navigation::gesture::Held;
 use std::sync::Arc;
 use std::time::Duration;
 use winit::event_loop::ActiveEventLoop;
@@ -71,6 +72,39 @@ impl App {
         let (proxy, device) = (self.proxy.clone(), self.devices);
         let done = move |result| drop(proxy.send_event(Event::FrameDone(device, result)));
         Ok((Waiter::new(screen.context.device.clone(), done), engine, screen))
+    }
+
+    /// The system takes the surface until it resumes the program. The device with the scene, the view and the selection
+    /// stay.
+    pub fn suspend(&mut self) {
+        let Some(opened) = &mut self.opened else { return };
+        opened.screen.suspend();
+        (self.due, self.wake) = (false, None);
+        // the system reports no release of what is held
+        self.held = Held::default();
+        self.view.release();
+        tracing::info!("suspended");
+    }
+
+    /// Goes on after [`suspend`](Self::suspend).
+    pub fn resume(&mut self) -> Result<(), ViewError> {
+        let Some(Opened { window, screen, .. }) = &mut self.opened else { return Ok(()) };
+        if screen.is_suspended() {
+            screen.resume(window)?;
+            tracing::info!("resumed");
+            self.redraw();
+        }
+        Ok(())
+    }
+
+    /// Imitates a system that suspends the program for a while.
+    pub fn suspend_for(&mut self, time: Duration) {
+        self.suspend();
+        let proxy = self.proxy.clone();
+        std::thread::spawn(move || {
+            std::thread::sleep(time);
+            drop(proxy.send_event(Event::Resumed));
+        });
     }
 
     /// Makes all objects of the device again, after it was lost. The window, the session and the view stay.

@@ -9,7 +9,7 @@ use super::composite::{Composite, ViewRect};
 use super::context::{Context, DeviceOptions};
 use super::swapchain::{self, Presented, Swapchain};
 use super::targets::{Area, FORMATS, PickBuffer, Targets, barrier, record_barriers};
-use super::{Failure, ViewError};
+use super::{Failure, Fault, ViewError};
 use crate::pick::{Mark, Samples};
 use ash::vk;
 use egui_ash_renderer::{DynamicRendering, Options, Renderer as PanelRenderer};
@@ -33,7 +33,7 @@ pub struct Frame<'a> {
     /// Colour where there is no picture, linear.
     pub background: [f32; 4],
     /// A failure to imitate.
-    pub fault: Option<vk::Result>,
+    pub fault: Option<Fault>,
 }
 
 /// The engine's next picture.
@@ -167,13 +167,30 @@ impl Screen {
         self.outdated |= what != Presented::Shown;
         if what == Presented::SurfaceLost {
             tracing::warn!("the surface is lost, and made again");
-            self.context.wait();
-            if let Some(old) = self.swapchain.take() {
-                old.destroy(&self.context);
-            }
-            self.context.renew_surface(window)?;
+            self.suspend();
+            self.context.make_surface(window)?;
         }
         Ok(())
+    }
+
+    /// Frees the swapchain and the surface once the frame in flight is presented. All else stays.
+    pub fn suspend(&mut self) {
+        self.context.wait();
+        if let Some(old) = self.swapchain.take() {
+            old.destroy(&self.context);
+        }
+        self.context.drop_surface();
+        self.outdated = true;
+    }
+
+    /// There is no surface: nothing may be drawn.
+    pub fn is_suspended(&self) -> bool {
+        self.context.surface == vk::SurfaceKHR::null()
+    }
+
+    /// Makes the surface again; the next frame makes a swapchain.
+    pub fn resume(&mut self, window: &Window) -> Result<(), ViewError> {
+        self.context.make_surface(window)
     }
 
     /// Textures of the panels that have changed, before the frame that shows them.
@@ -192,8 +209,8 @@ impl Screen {
     /// [`Failure::Picture`] when the engine could not record its picture, or there is no memory for it: the frame is shown
     /// with the picture before.
     pub fn draw(&mut self, window: &Window, picture: Option<Picture<'_>>, frame: &Frame<'_>) -> Result<bool, Failure> {
-        let is_full = frame.fault == Some(vk::Result::ERROR_OUT_OF_DEVICE_MEMORY);
-        if let Some(fault) = frame.fault.filter(|_| !is_full) {
+        let is_full = frame.fault == Some(Fault::Vulkan(vk::Result::ERROR_OUT_OF_DEVICE_MEMORY));
+        if let Some(Fault::Vulkan(fault)) = frame.fault.filter(|_| !is_full) {
             self.lost(window, Presented::of(Err(fault))?)?;
         }
         let Some(image) = self.acquire(window)? else { return Ok(false) };

@@ -58,6 +58,33 @@ impl App {
         self.photograph(&camera, FrameSettings { background, ..usual })
     }
 
+    /// Writes settings that have changed.
+    pub fn keep_settings(&mut self) {
+        if self.settings == self.kept {
+            return;
+        }
+        self.kept = self.settings.clone();
+        let written = self.options.settings.as_deref().map(|path| self.settings.write(path));
+        if let Some(Err(error)) = written {
+            self.ui.tell(format!("The settings cannot be written: {error}"));
+        }
+    }
+
+    /// The desktop's clipboard, or why there is none; what was copied is there as long as the window is.
+    fn clipboard(&mut self) -> Result<&mut arboard::Clipboard, arboard::Error> {
+        match &mut self.clipboard {
+            Some(clipboard) => Ok(clipboard),
+            none => Ok(none.insert(arboard::Clipboard::new()?)),
+        }
+    }
+
+    /// Copies a text to it.
+    pub fn set_clipboard(&mut self, text: String) {
+        if let Err(error) = self.clipboard().and_then(|clipboard| clipboard.set_text(text)) {
+            self.ui.tell(format!("Not copied: {error}"));
+        }
+    }
+
     /// Copies the picture of the dialog to the desktop's clipboard.
     pub fn copy_picture(&mut self) {
         let Some(photograph) = self.shot() else { return };

@@ -7,6 +7,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
+use x11rb::connection::Connection;
+use x11rb::protocol::xproto::{AtomEnum, PropMode};
+use x11rb::wrapper::ConnectionExt;
 
 /// An act of the hand reaches the program before its log was silent so long.
 const STILL: Duration = Duration::from_millis(700);
@@ -54,6 +57,19 @@ impl Display {
         let output = Command::new("xdotool").args(words.split(' ')).env("DISPLAY", &self.name).output().expect("runs");
         assert!(output.status.success(), "xdotool {words}: {}", String::from_utf8_lossy(&output.stderr));
         String::from_utf8_lossy(&output.stdout).trim().to_owned()
+    }
+
+    /// Gives the display another scale. winit reads it from the root window's resources when those of its own window
+    /// change.
+    pub fn set_scale(&self, window: &str, scale: f64) {
+        let (connection, screen) = x11rb::connect(Some(&self.name)).expect("the server");
+        let root = connection.setup().roots[screen].root;
+        let resources = format!("Xft.dpi:\t{}\n", 96.0 * scale);
+        for window in [root, window.parse().expect("a number")] {
+            let (name, kind) = (AtomEnum::RESOURCE_MANAGER, AtomEnum::STRING);
+            let changed = connection.change_property8(PropMode::REPLACE, window, name, kind, resources.as_bytes());
+            changed.expect("sent").check().expect("changed");
+        }
     }
 
     pub fn move_to(&self, at: DVec2) {

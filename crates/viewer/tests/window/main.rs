@@ -4,6 +4,7 @@
 //! edges on the screen from the same camera in `f64`. The validation layer is on, and must stay silent.
 
 mod clipboard;
+mod drops;
 mod gestures;
 mod hand;
 mod living;

@@ -9,6 +9,7 @@ use selvedge::model::Bounds;
 use selvedge_io::{import, native};
 use selvedge_viewer::commands::Command;
 use selvedge_viewer::describe::extent;
+use selvedge_viewer::navigation::standard::StandardView;
 
 const WINDOW: (u32, u32) = (900, 560);
 /// Pixels of a view that are judged at least: those of a whole one are twenty thousand.
@@ -114,6 +115,27 @@ fn menus_choose_styles_and_cut_three_times() {
 }
 
 #[test]
+fn each_choice_of_lines_and_light_is_seen() {
+    let Some(screen) = Screen::open(WINDOW) else { return };
+    let display = &screen.display;
+    let (_folder, mut program, scene) = opened(display, "bracket.step");
+    let mut panels = Panels::new(&scene, WINDOW);
+    let mut last = program.picture(display);
+    // silhouettes and smooth borders are on at first
+    for choice in
+        ["silhouettes", "hidden lines", "smooth borders", "ambient occlusion", "shadows", "sharp edges", "no edges"]
+    {
+        panels.click(display, &mut program, "Style", 0);
+        panels.click(display, &mut program, choice, 0);
+        program.rest();
+        let picture = program.picture(display);
+        assert!(picture != last, "{choice}: nothing of it is seen");
+        last = picture;
+    }
+    program.close(display);
+}
+
+#[test]
 fn keys_alone_write_a_picture_without_background() {
     let Some(screen) = Screen::open(WINDOW) else { return };
     let display = &screen.display;
@@ -144,6 +166,12 @@ fn less_motion_is_heard_of_and_both_forms_are_saved() {
         std::fs::write(folder.join("gtk-3.0/settings.ini"), settings).expect("written");
     });
     program.last("the desktop asks for less motion");
+    // the view is there at once: on its way it would be another one when the second key comes
+    display.xdotool("key --clearmodifiers 3 ctrl+shift+c");
+    let camera = scene.camera_of(&program.wait("copied: selvedge render"));
+    let from = (camera.eye - camera.target).normalize();
+    assert!(from.distance(StandardView::Right.from().normalize()) < 1e-9, "from {from}");
+    program.rest();
     let mut panels = Panels::new(&scene, WINDOW);
 
     // the model as it is, in both forms

@@ -8,6 +8,7 @@ use selvedge_viewer::panels::{Facts, Ui, context, show};
 use selvedge_viewer::session::Session;
 use selvedge_viewer::settings::Settings;
 use selvedge_viewer::view::View;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Frames until a menu or a dialog has its place.
@@ -21,6 +22,8 @@ pub struct Panels {
     settings: Settings,
     view: View,
     size: (u32, u32),
+    /// A file is being read.
+    pub reads: bool,
 }
 
 impl Panels {
@@ -30,7 +33,7 @@ impl Panels {
         session.open(Arc::clone(&scene.world));
         let (mut view, settings) = (View::default(), Settings::default());
         view.resize(scene.camera.size);
-        let mut panels = Self { ctx: context(), ui: Ui::default(), session, settings, view, size };
+        let mut panels = Self { ctx: context(), ui: Ui::default(), session, settings, view, size, reads: false };
         panels.texts();
         let (rect, _) = panels.frame(Vec::new());
         let (corner, end) = (scene.corner, DVec2::new(f64::from(rect.max.x), f64::from(rect.max.y)).round());
@@ -46,8 +49,8 @@ impl Panels {
         let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size));
         let input = egui::RawInput { screen_rect, events, ..Default::default() };
         let Self { ctx, ui, session, settings, view, .. } = self;
-        let facts =
-            Facts { loading: Vec::new(), stats: None, notice: None, busy: false, picture: None, view, device: "" };
+        let loading = self.reads.then_some((Path::new(""), "", None)).into_iter().collect();
+        let facts = Facts { loading, stats: None, notice: None, busy: false, picture: None, view, device: "" };
         let mut rect = egui::Rect::NOTHING;
         let output = ctx.run(input, |ctx| rect = show(ctx, ui, session, settings, &facts));
         let mut texts = Vec::new();

@@ -1,6 +1,7 @@
 //! The first parts of an assembly are shown while the rest is read.
 
 use super::hand::{Display, Program};
+use super::panels::Panels;
 use super::scene::Scene;
 use super::{SLOW, Screen, sample};
 use glam::DVec3;
@@ -14,6 +15,8 @@ const READING: Duration = Duration::from_millis(500);
 const BOLT: &str = "bolt.stp";
 const NUT: &str = "nut.stp";
 const GO: &str = "go";
+/// Least difference of a part from the background, of 255; a grey part is three times as bright as a dark background.
+const SEEN: u32 = 20;
 
 /// Reads files of a folder slowly.
 pub struct Slow(pub PathBuf);
@@ -107,5 +110,34 @@ fn a_view_that_was_moved_stays_when_the_rest_is_read() {
     assert!(moved != first);
     go_on(&mut program, &file);
     assert_eq!(eye(&mut program, display, &bolt), moved);
+    program.close(display);
+}
+
+/// The thread that reads waits for a disk that never answers.
+#[test]
+fn a_cancelled_file_goes_without_a_wait_for_its_disk() {
+    const WINDOW: (u32, u32) = (900, 560);
+    let Some(screen) = Screen::open(WINDOW) else { return };
+    let display = &screen.display;
+    let (folder, file) = pair();
+    let mut program = Program::begin(display, &file, &[(SLOW, "1")]);
+    program.quiet();
+    let bolt = Scene::new(&folder.path().join(BOLT), &program.last("view of "));
+    let (at, away) = (bolt.cylinder().0, bolt.corner + 4.0);
+    let shown = |display: &Display| {
+        let screen = display.screen();
+        screen.brightness(at).abs_diff(screen.brightness(away))
+    };
+    let before = shown(display);
+    assert!(before > SEEN, "the first part is {before} brighter than the background");
+    let mut panels = Panels::new(&bolt, WINDOW);
+    panels.reads = true;
+    panels.click(display, &mut program, "Cancel", 0);
+    program.said(": Cancel");
+    program.rest();
+    let after = shown(display);
+    assert!(after < SEEN / 4, "a part is seen still: {after}");
+    let all = program.all.join("\n");
+    assert!(!all.contains(&format!("read {}", file.display())), "{all}");
     program.close(display);
 }

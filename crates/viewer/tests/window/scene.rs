@@ -7,7 +7,7 @@ use selvedge_check::{Hit, Tracer};
 use selvedge_io::import::{Folders, Options, open_with};
 use selvedge_viewer::session::{Loaded, World};
 use selvedge_viewer::view::View;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -28,11 +28,19 @@ pub struct Scene {
 impl Scene {
     /// Of the log's line on the view's place.
     pub fn new(file: &Path, line: &str) -> Self {
+        Self::of(&[file.to_owned()], line)
+    }
+
+    /// The same, of several files.
+    pub fn of(files: &[PathBuf], line: &str) -> Self {
         let place = numbers(line, "view of ");
         let beside = Folders::new(Vec::new());
         let options = Options { files: Some(&beside), ..Options::default() };
-        let import = open_with(file, &options).expect("a sample");
-        let world = World::new(&[Arc::new(Loaded { path: file.to_owned(), import, partial: false })]);
+        let loaded = |file: &PathBuf| {
+            let import = open_with(file, &options).expect("a sample");
+            Arc::new(Loaded { path: file.clone(), import, partial: false })
+        };
+        let world = World::new(&files.iter().map(loaded).collect::<Vec<_>>());
         world.find_edges();
         let mut view = View::default();
         view.resize((place[0] as u32, place[1] as u32));
