@@ -9,8 +9,10 @@
 // Operands without equations have edges of their own, which pass `edge_line` draws. So have faces and meshes that are
 // of no solid; where a solid meets one of them, the line is drawn here.
 //
-// Of solids that are seen through (SEEN_THROUGH), the nearest faces are looked at, and by themselves the farthest ones
-// in front of what is opaque. Beside the nearest ones, what is opaque counts as it does without them.
+// Of solids that are seen through (SEEN_THROUGH), the faces of one number from the eye on are looked at, and by
+// themselves the farthest ones in front of what is opaque. Where a ray meets fewer faces than that number, what is opaque
+// counts as it does without them. Beside an outline of glass one number is that of another face, without a change of
+// either: the nearer one ends nowhere near, so there is no line.
 #ifndef EDGE_CHANGE_GLSL
 #define EDGE_CHANGE_GLSL
 
