@@ -10,9 +10,9 @@
 // of no solid; where a solid meets one of them, the line is drawn here.
 //
 // Of solids that are seen through (SEEN_THROUGH), the faces of one number from the eye on are looked at, and by
-// themselves the farthest ones in front of what is opaque. Where a ray meets fewer faces than that number, what is opaque
-// counts as it does without them. Beside an outline of glass one number is that of another face, without a change of
-// either: neither ends near, so there is no line.
+// themselves the farthest ones in front of what is opaque. Where a ray meets fewer faces than that number, what is
+// opaque counts as it does without them. Beside an outline of glass one number is that of another face, without a
+// change of either: neither ends near, so there is no line.
 #ifndef EDGE_CHANGE_GLSL
 #define EDGE_CHANGE_GLSL
 

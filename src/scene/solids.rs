@@ -338,8 +338,8 @@ impl SolidData {
         leaves.filter(|(_, leaf)| leaf.flags & abi::LEAF_ELSEWHERE == 0).any(is_one)
     }
 
-    /// Number of faces of solids that are seen through that one ray may meet, at most: both ends of each leaf's span, and
-    /// of its gap. `None` where an operand without equations bounds one.
+    /// Number of faces of solids that are seen through that one ray may meet, at most: both ends of each leaf's span,
+    /// and of its gap. `None` where an operand without equations bounds one.
     pub(crate) fn most_clear_faces(&self) -> Option<u32> {
         let leaves = self.leaves[self.followed as usize..].iter().filter(|leaf| leaf.flags & abi::LEAF_ELSEWHERE == 0);
         leaves.map(|leaf| (leaf.flags & abi::LEAF_BOUNDARY == 0).then(|| if self.has_gap(leaf) { 4 } else { 2 })).sum()

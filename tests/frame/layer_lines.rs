@@ -65,8 +65,8 @@ fn crossings(edges: &[[DVec2; 2]]) -> Vec<DVec2> {
     pairs.filter_map(cross).collect()
 }
 
-/// All edges of blocks of glass have lines, those at their back, too: of a Boolean solid, and of a part, whose edges have
-/// their own numbers. The edges of a hollow are between the nearest and the farthest faces.
+/// All edges of blocks of glass have lines, those at their back, too: of a Boolean solid, and of a part, whose edges
+/// have their own numbers. The edges of a hollow are between the nearest and the farthest faces.
 #[test]
 fn all_edges_of_a_glass_block_have_lines() {
     let (whole, part) = (glass_block(), glass_part());

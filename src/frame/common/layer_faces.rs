@@ -12,8 +12,8 @@ pub(crate) enum Faces {
     Farthest,
 }
 
-/// Faces from the eye on that have lines, at most: each costs a walk of all rays and a search for changes. Of a ray that
-/// meets more, the farthest one has lines, too.
+/// Faces from the eye on that have lines, at most: each costs a walk of all rays and a search for changes. Of a ray
+/// that meets more, the farthest one has lines, too.
 pub(crate) const MOST_FACES: u32 = 8;
 
 /// Format of the image of such faces: `glsl/include/layer_words.glsl`.

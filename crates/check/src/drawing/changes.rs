@@ -19,9 +19,9 @@
 //!   of its own, by a cut, or as a facet;
 //! * at meshes that are drawn as meshes.
 //!
-//! A view is looked at once for what is opaque, and once for each number of a face along the rays of what is seen through
-//! ([`Look`]). Beside an outline of glass the faces behind it have other numbers; they change nowhere, so no line is
-//! theirs.
+//! A view is looked at once for what is opaque, and once for each number of a face along the rays of what is seen
+//! through ([`Look`]). Beside an outline of glass the faces behind it have other numbers; they change nowhere, so no
+//! line is theirs.
 
 use super::{DrawingSettings, LineKind};
 use crate::model::{Camera, EdgeLimits, Isolated, Model, Primitive, Shape};
@@ -179,8 +179,8 @@ impl<'a> Changes<'a> {
         probe.hits(pixel).iter().find(|hit| !self.tracer.is_layer(hit)).copied()
     }
 
-    /// Whether the ray through a place meets this face, too, as any of its layers; `close`: how far apart the depths may
-    /// be.
+    /// Whether the ray through a place meets this face, too, as any of its layers; `close`: how far apart the depths
+    /// may be.
     fn goes_on(&self, face: &Hit, pixel: DVec2, close: f64, probe: &mut Probe<'_>) -> bool {
         let primitive = self.tracer.primitive(face);
         layers(self.tracer, probe.hits(pixel)).iter().any(|hit| {

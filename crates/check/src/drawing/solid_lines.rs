@@ -10,8 +10,8 @@
 //!   edges of operands without equations: where the operand is seen beside a point of one, a line may be
 //! ```
 //!
-//! What no pixel's centre sees needs no line. What is seen through is looked at layer by layer, as many as the ray of some
-//! centre meets.
+//! What no pixel's centre sees needs no line. What is seen through is looked at layer by layer, as many as the ray of
+//! some centre meets.
 
 use super::changes::{Change, Changes, Look, OFF, Ray, Why, layers};
 use super::judge::SPACING;

@@ -262,8 +262,9 @@ fn all_edges_of_block(camera: &Camera, low: DVec3, high: DVec3) -> Vec<[DVec2; 2
     begins.map(|(a, b)| [a, b].map(|k| pixel(camera, corner(k)))).collect()
 }
 
-/// A hollow block of glass: the edges of the hollow are between the nearest and the farthest faces, and are missed if they
-/// have no lines. Beside the hollow's outline the block's back is the second layer and not the fourth, and has no line.
+/// A hollow block of glass: the edges of the hollow are between the nearest and the farthest faces, and are missed if
+/// they have no lines. Beside the hollow's outline the block's back is the second layer and not the fourth, and has no
+/// line.
 #[test]
 fn edges_in_the_middle_of_glass_have_lines() {
     let clear = |half: DVec3| Primitive { colour: [1.0, 1.0, 1.0, 0.4], ..block(-half, half) };
