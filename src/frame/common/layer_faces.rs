@@ -14,7 +14,7 @@ pub(crate) enum Faces {
 
 /// Faces from the eye on that have lines, at most: each costs a walk of all rays and a search for changes. Of a ray
 /// that meets more, the farthest one has lines, too.
-pub(crate) const MOST_FACES: u32 = 8;
+pub(crate) const LINED_FACES: u32 = 8;
 
 /// Format of the image of such faces: `glsl/include/layer_words.glsl`.
 pub(crate) const FACES_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;

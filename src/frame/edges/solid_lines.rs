@@ -5,12 +5,12 @@
 //!   what centres see, surfaces' equations ──edge_change──▶ places between centres ──edge_join──▶ each pixel's best line
 //!   solid_layers ─▶ the nearest faces of what is seen through ──the same──▶
 //!                ─▶ the second ones, the third ones, …        ──the same──▶
-//!                ─▶ the farthest ones, if there may be more than MOST_FACES  ──the same──▶
+//!                ─▶ the farthest ones, if there may be more than LINED_FACES  ──the same──▶
 //! ```
 
 use super::{change, join};
 use crate::abi::constants::edges::{LINES_FOLDS, LINES_SHARP, LINES_SMOOTH, LINES_SMOOTH_FULL};
-use crate::frame::common::layer_faces::{FACES_FORMAT, Faces, MOST_FACES};
+use crate::frame::common::layer_faces::{FACES_FORMAT, Faces, LINED_FACES};
 use crate::frame::common::room::{DRAWN_AND_READ, Room};
 use crate::frame::solids::SolidParts;
 use crate::frame::solids::bands::Band;
@@ -45,7 +45,7 @@ impl SeenThrough {
     fn new(device: &Device, data: &SceneData, surfaces: u32) -> Result<Self, GpuError> {
         let pass = |purpose| SolidLayers::new(device, purpose, None, kinds(data, surfaces));
         let most = data.solids.most_clear_faces();
-        let count = most.map_or(MOST_FACES, |most| most.min(MOST_FACES));
+        let count = most.map_or(LINED_FACES, |most| most.min(LINED_FACES));
         Ok(Self {
             nth: pass(For::NthFace)?,
             count,
