@@ -19,14 +19,14 @@ use selvedge_check::drawing::{DrawingSettings, LineImage, judge_lines};
 const LOW: [f64; 3] = [-1.0; 3];
 const HIGH: [f64; 3] = [1.0; 3];
 /// A block within that: of parallel edges of both, no two are nearer than 3 px in the picture.
-const HOLLOW: ([f64; 3], [f64; 3]) = ([-0.6, -0.6, -0.3], [0.6, 0.6, 0.3]);
+const WITHIN: ([f64; 3], [f64; 3]) = ([-0.6, -0.6, -0.3], [0.6, 0.6, 0.3]);
 
 fn glass_block() -> Model {
     model(vec![glass(BLUE, LOW, HIGH)])
 }
 
 fn hollow_block() -> Model {
-    solid("A-B", [(LOW, HIGH), HOLLOW].map(|(low, high)| painted(BLUE, block(low, high))).to_vec())
+    solid("A-B", [(LOW, HIGH), WITHIN].map(|(low, high)| painted(BLUE, block(low, high))).to_vec())
 }
 
 /// The same as a part of six faces.
@@ -72,7 +72,7 @@ fn all_edges_of_a_glass_block_have_lines() {
     let (whole, part) = (glass_block(), glass_part());
     let hollow = hollow_block();
     let [from_afar, parallel] = cameras(&whole);
-    let (outer, both) = (&[(LOW, HIGH)][..], &[(LOW, HIGH), HOLLOW][..]);
+    let (outer, both) = (&[(LOW, HIGH)][..], &[(LOW, HIGH), WITHIN][..]);
     let mut renderer = renderer();
     for (model, (view, camera), blocks, is_part) in [
         (&whole, from_afar, outer, false),
@@ -110,7 +110,7 @@ fn the_programs_judge_finds_no_fault() {
         ("a block with a round hole", solid("A-B", vec![clear(block(LOW, HIGH)), clear(post(0.6, -2.0, 4.0))])),
         // the bottom's edge is behind the near wall of the hole
         ("a block with a blind hole", solid("A-B", vec![clear(block(LOW, HIGH)), clear(post(0.6, -0.3, 2.0))])),
-        ("a hollow block", solid("A-B", vec![clear(block(LOW, HIGH)), clear(block(HOLLOW.0, HOLLOW.1))])),
+        ("a hollow block", solid("A-B", vec![clear(block(LOW, HIGH)), clear(block(WITHIN.0, WITHIN.1))])),
         // the block's bottom runs into the post behind the post's outline, too, where the post hides it
         ("an opaque post through a block", model(vec![glass(BLUE, LOW, HIGH), one(post(0.5, -1.5, 3.0))])),
         ("an opaque ball within a block", model(vec![glass(BLUE, LOW, HIGH), one(ball(0.6, 0.0))])),
