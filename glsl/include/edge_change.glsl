@@ -9,8 +9,10 @@
 // Operands without equations have edges of their own, which pass `edge_line` draws. So have faces and meshes that are
 // of no solid; where a solid meets one of them, the line is drawn here.
 //
-// Of solids that are seen through (SEEN_THROUGH), the nearest faces are looked at, and by themselves the farthest ones
-// in front of what is opaque. Beside the nearest ones, what is opaque counts as it does without them.
+// Of solids that are seen through (SEEN_THROUGH), the faces of one number from the eye on are looked at, and by
+// themselves the farthest ones in front of what is opaque. Where a ray meets fewer faces than that number, what is
+// opaque counts as it does without them. Beside an outline of glass one number is that of another face, without a
+// change of either: neither ends near, so there is no line.
 #ifndef EDGE_CHANGE_GLSL
 #define EDGE_CHANGE_GLSL
 
@@ -162,29 +164,39 @@ uint change(ivec2 at, ivec2 beside, PixelSees seen, PixelSees next) {
     Sheet f = sheets[c.first ? 0 : 1];
     // its edges and folds are drawn by themselves
     if (f.operand != 0u || f.face != uvec2(0u)) return 0u;
+    uint tries = 1u;
 #ifdef SEEN_THROUGH
     if (!(c.first ? seen.is_layer : next.is_layer)) return 0u;
+    // it hides no end of the other one
+    bool has_other = sheets[c.first ? 1 : 0].operand == 0u;
+    if (seen.is_layer && next.is_layer && has_other) tries = 2u;
 #endif
-    float cosine = 0.0;
-    bool cut = false;
-    float end = 2.0;
-    float reach = 1.0; // what is left of the way before a fold
-    if (push.lists != 0u) {
-        vec2 from = c.first ? a : b;
-        vec2 to = c.first ? b : a;
-        if (c.why == CHANGE_FOLD) {
-            reach = c.first ? c.share : 1.0 - c.share;
-            // at the fold itself rounding decides whether the sheet is there
-            to = mix(from, to, max(reach - 1.0 / 256.0, 0.0));
+    for (uint k = 0u; k < tries; ++k) {
+        bool from_a = c.first == (k == 0u);
+        f = sheets[from_a ? 0 : 1];
+        bool folds = k == 0u && c.why == CHANGE_FOLD;
+        float cosine = 0.0;
+        bool cut = false;
+        float end = 2.0;
+        float reach = 1.0; // what is left of the way before a fold
+        if (push.lists != 0u) {
+            vec2 from = from_a ? a : b;
+            vec2 to = from_a ? b : a;
+            if (folds) {
+                reach = from_a ? c.share : 1.0 - c.share;
+                // at the fold itself rounding decides whether the sheet is there
+                to = mix(from, to, max(reach - 1.0 / 256.0, 0.0));
+            }
+            end = end_of(f, from, to, tile_near(from_a ? at : beside), cosine, cut);
         }
-        end = end_of(f, from, to, tile_near(c.first ? at : beside), cosine, cut);
+        if (end <= 1.0) {
+            end *= reach;
+            uint style = (cut || is_cap(f)) && (push.drawn & LINES_SHARP) != 0u ? LINE_BOLD : style_of(cosine);
+            return drawn_as(style, from_a ? end : 1.0 - end);
+        }
+        if (folds && (push.drawn & LINES_FOLDS) != 0u) return drawn_as(LINE_FULL, c.share);
     }
-    if (end <= 1.0) {
-        end *= reach;
-        uint style = (cut || is_cap(f)) && (push.drawn & LINES_SHARP) != 0u ? LINE_BOLD : style_of(cosine);
-        return drawn_as(style, c.first ? end : 1.0 - end);
-    }
-    if (c.why == CHANGE_FOLD) return drawn_as((push.drawn & LINES_FOLDS) != 0u ? LINE_FULL : LINE_NONE, c.share);
+    if (c.why == CHANGE_FOLD) return 0u;
 #ifdef SEEN_THROUGH
     return 0u; // something else hides it
 #endif

@@ -45,16 +45,17 @@ layout(scalar, binding = 21) readonly buffer Triangles { uint triangles[]; };
 layout(scalar, binding = 22) readonly buffer Positions { vec3 positions[]; };
 layout(scalar, binding = 23) readonly buffer Planes { uint planes[]; };
 
-layout(scalar, push_constant) uniform Marks {
+layout(scalar, push_constant) uniform Push {
     vec4 contact;  // linear colour and opacity of pixels whose rays meet coincident faces of two items
     vec4 overlap;  // of pixels whose rays are within two items at once
+    uint nth;      // FOR_NTH: the face's number from the eye on; the nearest has 1
 };
 
 // The output for which the ray is followed.
 const uint FOR_COLOUR = 0u;    // the pixel's colour
 const uint FOR_FIRST = 1u;     // the images of the first face that is not fully transparent
 const uint FOR_THICKNESS = 2u; // its length within solids
-const uint FOR_FRONT = 3u;     // the nearest face that is seen through, packed: layer_words.glsl
+const uint FOR_NTH = 3u;       // the nth face that is seen through, packed: layer_words.glsl
 const uint FOR_BACK = 4u;      // the farthest one in front of what is opaque
 layout(constant_id = 15) const uint FOLLOWED_FOR = FOR_COLOUR;
 // Whether contacts and overlaps are marked; only for colour.
@@ -178,7 +179,7 @@ Layer layer_of_patch(Fragment f, Ray ray) {
 
 float depth_written(float t) { return reversed_depth(frame, t) / (frame.perspective != 0u ? t : 1.0); }
 
-bool packs_faces() { return FOLLOWED_FOR == FOR_FRONT || FOLLOWED_FOR == FOR_BACK; }
+bool packs_faces() { return FOLLOWED_FOR == FOR_NTH || FOLLOWED_FOR == FOR_BACK; }
 
 void main() {
     uint n = tile_in_band(frame, uvec2(gl_FragCoord.xy));
@@ -198,6 +199,7 @@ void main() {
     float first_seen = stop;
     float thickness = 0.0;
     vec4 packed = vec4(0.0); // nothing
+    uint faces_met = 0u;     // of those that lines are drawn for
     bool touches = false;
     bool overlaps = false;
     bool shows = true;    // layers are still drawn
@@ -374,8 +376,10 @@ void main() {
             if (opacity > 0.0 && packs_faces()) {
                 bool is_patch = SOLIDS_HAVE_PATCHES && of_patch;
                 Fragment f = is_patch ? fragment_at(fragments, side) : Fragment(0u, 0.0, side, 0u);
-                packed = pack_layer((is_patch ? SEEN_OPERAND : SEEN_SOLID) | f.what, f.uv, t);
-                shows = FOLLOWED_FOR == FOR_BACK && opacity < 1.0;
+                ++faces_met;
+                bool is_asked = FOLLOWED_FOR == FOR_BACK || faces_met == nth;
+                if (is_asked) packed = pack_layer((is_patch ? SEEN_OPERAND : SEEN_SOLID) | f.what, f.uv, t);
+                shows = opacity < 1.0 && (FOLLOWED_FOR == FOR_BACK || faces_met < nth);
             } else if (opacity > 0.0) {
                 if (first_seen == stop && rest == 1.0) first_seen = t;
                 Lit lit = lit_at(seen.colour.rgb, seen.n, false, ray, t, seen.surface);

@@ -363,7 +363,7 @@ pub mod solid_layers {
     pub const FOR_BACK: u32 = 4;
     pub const FOR_COLOUR: u32 = 0;
     pub const FOR_FIRST: u32 = 1;
-    pub const FOR_FRONT: u32 = 3;
+    pub const FOR_NTH: u32 = 3;
     pub const FOR_THICKNESS: u32 = 2;
     pub const KEPT: u32 = 12;
     pub const NOBODY: u32 = 0xffffffff;

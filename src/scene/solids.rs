@@ -338,6 +338,23 @@ impl SolidData {
         leaves.filter(|(_, leaf)| leaf.flags & abi::LEAF_ELSEWHERE == 0).any(is_one)
     }
 
+    /// Number of faces of solids that are seen through that one ray may meet, at most: both ends of each leaf's span,
+    /// and of its gap. `None` where an operand without equations bounds one.
+    pub(crate) fn most_clear_faces(&self) -> Option<u32> {
+        let leaves = self.leaves[self.followed as usize..].iter().filter(|leaf| leaf.flags & abi::LEAF_ELSEWHERE == 0);
+        leaves.map(|leaf| (leaf.flags & abi::LEAF_BOUNDARY == 0).then(|| if self.has_gap(leaf) { 4 } else { 2 })).sum()
+    }
+
+    /// Whether a ray may be within a leaf with equations twice.
+    fn has_gap(&self, leaf: &abi::Leaf) -> bool {
+        let mut sides = self.leaf_surfaces[leaf.first as usize..][..leaf.count as usize].iter();
+        sides.any(|side| {
+            let surface = self.places[(side.surface >> abi::SIDE_SHIFT) as usize].surface();
+            let is_convex = |s: Surface| !s.is_torus && s.squares.iter().all(|square| *square >= 0.0);
+            surface.is_some_and(|s| !is_convex(s) || side.surface & abi::SIDE_NEGATIVE != 0)
+        })
+    }
+
     /// Whether the leaf of an operand without equations belongs to a solid that is seen through, beside other leaves.
     pub(super) fn is_in_clear_solid(&self, leaf: u32) -> bool {
         let Some(of) = self.leaves.get(leaf as usize).filter(|of| of.flags & abi::LEAF_ELSEWHERE == 0) else {

@@ -109,6 +109,29 @@ mod tests {
         }
     }
 
+    /// Normals across the ray, all around: the outline of a smooth part.
+    #[test]
+    fn outlines_of_grey_parts_are_darker_than_the_gradient() {
+        use glam::DVec3;
+        use selvedge::model::{Bounds, Camera};
+        use selvedge_check::light::{Key, studio};
+        let bounds = Bounds { min: DVec3::NEG_ONE, max: DVec3::ONE };
+        let camera = Camera::around(bounds, DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, (64, 64));
+        let (right, up, _) = camera.axes();
+        let brightest = |grey: f64| {
+            let around = (0..720).map(|k| (f64::from(k) * std::f64::consts::TAU / 720.0).sin_cos());
+            let lights =
+                around.map(|(sin, cos)| studio(DVec3::splat(grey), right * cos + up * sin, &camera, Key::Lamp));
+            lights.map(|light| srgb::encoded(light.y) * 255.0).fold(0.0, f64::max)
+        };
+        // a part without a colour, and sRGB 188
+        let usual = brightest(f64::from(selvedge::model::GREY[0]));
+        assert!(usual + 60.0 < f64::from(BOTTOM[1]), "{usual}");
+        assert!(brightest(0.5) + 20.0 < f64::from(BOTTOM[1]), "{}", brightest(0.5));
+        // as bright as the gradient somewhere: docs/design/light.md, Limits
+        assert!(brightest(0.8) > f64::from(BOTTOM[1]));
+    }
+
     #[test]
     fn a_gradient_shows_where_nothing_hides_it() {
         // nothing of a colour of opacity 0 is seen

@@ -3,13 +3,18 @@
 
 use ash::vk;
 
-/// The faces of what is seen through whose lines are drawn.
+/// The faces along each ray that an image has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Faces {
-    Nearest,
-    /// In front of what is opaque.
+    /// The one of this number from the eye on; the nearest has 1.
+    Nth(u32),
+    /// The last one in front of what is opaque.
     Farthest,
 }
+
+/// Faces from the eye on that have lines, at most: each costs a walk of all rays and a search for changes. Of a ray
+/// that meets more, the farthest one has lines, too.
+pub(crate) const LINED_FACES: u32 = 8;
 
 /// Format of the image of such faces: `glsl/include/layer_words.glsl`.
 pub(crate) const FACES_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;

@@ -4,7 +4,7 @@
 //!   two pixels ─▶ the surfaces that they see ─▶ where both meet, or the nearer one folds or ends ─▶ share of the way, style
 //! ```
 //!
-//! Of solids that are seen through, it looks at the nearest faces, or the farthest ones.
+//! Of solids that are seen through, it looks at the faces of one number from the eye on, or at the farthest ones.
 //!
 //! Reads: everything that `Bindings` names. Writes: an image of two words a pixel: to the right, and below.
 

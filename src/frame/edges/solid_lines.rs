@@ -4,12 +4,13 @@
 //! ```text
 //!   what centres see, surfaces' equations ──edge_change──▶ places between centres ──edge_join──▶ each pixel's best line
 //!   solid_layers ─▶ the nearest faces of what is seen through ──the same──▶
-//!                ─▶ the farthest ones, before what is opaque  ──the same──▶
+//!                ─▶ the second ones, the third ones, …        ──the same──▶
+//!                ─▶ the farthest ones, if there may be more than LINED_FACES  ──the same──▶
 //! ```
 
 use super::{change, join};
 use crate::abi::constants::edges::{LINES_FOLDS, LINES_SHARP, LINES_SMOOTH, LINES_SMOOTH_FULL};
-use crate::frame::common::layer_faces::{FACES_FORMAT, Faces};
+use crate::frame::common::layer_faces::{FACES_FORMAT, Faces, LINED_FACES};
 use crate::frame::common::room::{DRAWN_AND_READ, Room};
 use crate::frame::solids::SolidParts;
 use crate::frame::solids::bands::Band;
@@ -32,18 +33,31 @@ pub(crate) struct Passes {
 
 /// The passes of what is seen through.
 struct SeenThrough {
-    faces: [(Faces, SolidLayers); 2],
+    nth: SolidLayers,
+    /// Faces from the eye on that are looked at.
+    count: u32,
+    /// Where rays may meet more.
+    farthest: Option<SolidLayers>,
     change: change::Change,
 }
 
 impl SeenThrough {
     fn new(device: &Device, data: &SceneData, surfaces: u32) -> Result<Self, GpuError> {
-        let pass =
-            |faces| SolidLayers::new(device, For::Lines(faces), None, kinds(data, surfaces)).map(|pass| (faces, pass));
+        let pass = |purpose| SolidLayers::new(device, purpose, None, kinds(data, surfaces));
+        let most = data.solids.most_clear_faces();
+        let count = most.map_or(LINED_FACES, |most| most.min(LINED_FACES));
         Ok(Self {
-            faces: [pass(Faces::Nearest)?, pass(Faces::Farthest)?],
+            nth: pass(For::NthFace)?,
+            count,
+            farthest: (most != Some(count)).then(|| pass(For::FarthestFace)).transpose()?,
             change: change::Change::new(device, data, (surfaces, true))?,
         })
+    }
+
+    /// All that are looked at, one after another.
+    fn faces(&self) -> impl Iterator<Item = (Faces, &SolidLayers)> {
+        let farthest = self.farthest.iter().map(|pass| (Faces::Farthest, pass));
+        (1..=self.count).map(|number| (Faces::Nth(number), &self.nth)).chain(farthest)
     }
 }
 
@@ -101,10 +115,10 @@ impl Passes {
         self.join.record(cmd, frame.constants, into, half_px);
         let clear = (&self.seen_through, &images.layers, &frame.stages.transparency);
         let (Some(passes), Some(layers), Some(transparency)) = clear else { return };
-        for (faces, pass) in &passes.faces {
-            nearest_or_farthest(frame, cmd, (transparency, pass, &solids), layers);
+        for (faces, pass) in passes.faces() {
+            seen_through(frame, cmd, (transparency, pass, &solids), (layers, faces));
             barrier::images(cmd, &[(best, Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE)]);
-            self.lines(frame, cmd, (&solids, &passes.change), into, Some((layers, *faces)));
+            self.lines(frame, cmd, (&solids, &passes.change), into, Some((layers, faces)));
             self.join.record(cmd, frame.constants, into, half_px);
         }
     }
@@ -159,17 +173,17 @@ impl Passes {
 }
 
 /// Faces of what is seen through, into `layers`.
-fn nearest_or_farthest(
+fn seen_through(
     frame: &Frame<'_>,
     cmd: &Commands<'_>,
     (transparency, pass, solids): (&Transparency, &SolidLayers, &SolidParts<'_>),
-    layers: &Image,
+    (layers, faces): (&Image, Faces),
 ) {
     let (written, read) = (Access::COLOUR_WRITE, Access::FRAGMENT_READ);
     barrier::images(cmd, &[(layers, read.discarded(), written)]);
     each_band(frame, cmd, solids, |band| {
         let into = Attachment { image: layers, load: Load::Discard };
-        transparency.faces(frame, cmd, (pass, solids), (into, band));
+        transparency.faces(frame, cmd, (pass, faces, solids), (into, band));
     });
     barrier::images(cmd, &[(layers, written, read)]);
 }

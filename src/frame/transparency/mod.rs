@@ -10,6 +10,7 @@
 pub(crate) mod solid_layers;
 
 use super::antialiasing::average;
+use super::common::layer_faces::Faces;
 use super::common::room::{DRAWN_AND_READ, Room};
 use super::shading::resolve;
 use super::solids::SolidParts;
@@ -145,18 +146,18 @@ impl Transparency {
         })
     }
 
-    /// Draws the faces whose lines are drawn into a band's rows of `target`. The lists are the band's.
+    /// Draws faces whose lines are drawn into a band's rows of `target`. The lists are the band's.
     pub(super) fn faces(
         &self,
         frame: &Frame<'_>,
         cmd: &Commands<'_>,
-        (pass, solids): (&SolidLayers, &SolidParts<'_>),
+        (pass, faces, solids): (&SolidLayers, Faces, &SolidParts<'_>),
         (target, band): (Attachment<'_>, &Band),
     ) {
         let Some(bindings) = self.bindings(frame, solids) else { return };
         let w = WRITE_TO_READ.0;
         cmd.after(w | Access::INDIRECT_READ, Access::FRAGMENT_WRITE);
-        pass.record(cmd, &bindings, &[target], None, band.rows.clone());
+        pass.record_faces(cmd, &bindings, (faces, target), band.rows.clone());
         cmd.after(Access::FRAGMENT_WRITE, w | Access::INDIRECT_READ);
     }
 

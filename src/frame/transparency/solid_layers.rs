@@ -5,7 +5,7 @@
 //!   leaves of the tile, item by item ────────┴──▶ layers, front to back ──▶ colour, over the colours behind
 //!                                                                        ├─▶ images of the first layer
 //!                                                                        ├─▶ length within solids
-//!                                                                        └─▶ the first face, or the last, for lines
+//!                                                                        └─▶ the nth face, or the last, for lines
 //! ```
 //!
 //! Reads: everything that `Bindings` names. Writes: the targets, and the counters `clamps`, `contacts` and `overlaps`.
@@ -20,6 +20,7 @@ use crate::gpu::{
 };
 use crate::shaders::{self, constant};
 use ash::vk;
+use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
 /// Format of the image of thickness.
@@ -36,8 +37,10 @@ pub(crate) enum For {
     First { colour: vk::Format, aovs: &'static [vk::Format] },
     /// The length within solids, the only target.
     Thickness,
-    /// The faces that [`Faces`] names, the only target.
-    Lines(Faces),
+    /// The face of the number that [`SolidLayers::record_faces`] takes, for lines; the only target.
+    NthFace,
+    /// The farthest face in front of what is opaque, for lines; the only target.
+    FarthestFace,
 }
 
 /// The kinds of surfaces in the scene.
@@ -65,6 +68,13 @@ pub(crate) struct SolidLayers {
     pipeline: Pipeline,
     marks: [[f32; 4]; 2],
     sun: bool,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Params {
+    marks: [[f32; 4]; 2],
+    nth: u32,
 }
 
 /// Its buffers and image, in binding order.
@@ -109,8 +119,8 @@ impl SolidLayers {
                 (1, "first", std::iter::once(target(colour, Blend::Leave)).chain(aovs).collect())
             }
             For::Thickness => (2, "thickness", vec![target(THICKNESS_FORMAT, Blend::Replace)]),
-            For::Lines(Faces::Nearest) => (3, "nearest faces", vec![target(FACES_FORMAT, Blend::Replace)]),
-            For::Lines(Faces::Farthest) => (4, "farthest faces", vec![target(FACES_FORMAT, Blend::Replace)]),
+            For::NthFace => (3, "nth faces", vec![target(FACES_FORMAT, Blend::Replace)]),
+            For::FarthestFace => (4, "farthest faces", vec![target(FACES_FORMAT, Blend::Replace)]),
         };
         // lengths within solids and faces for lines are not lit, and nothing hides them by the host's depth
         let is_lit = number < 2;
@@ -152,6 +162,31 @@ impl SolidLayers {
         depth: Option<Attachment<'_>>,
         rows: Range<u32>,
     ) {
+        self.draw(cmd, b, (colour, depth), (rows, 0));
+    }
+
+    /// The same for lines: these faces of each ray into rows of the only target. The pass is one for them.
+    pub(crate) fn record_faces(
+        &self,
+        cmd: &Commands<'_>,
+        b: &Bindings<'_>,
+        (faces, target): (Faces, Attachment<'_>),
+        rows: Range<u32>,
+    ) {
+        let nth = match faces {
+            Faces::Nth(number) => number,
+            Faces::Farthest => 0, // it is not read
+        };
+        self.draw(cmd, b, (&[target], None), (rows, nth));
+    }
+
+    fn draw(
+        &self,
+        cmd: &Commands<'_>,
+        b: &Bindings<'_>,
+        (colour, depth): (&[Attachment<'_>], Option<Attachment<'_>>),
+        (rows, nth): (Range<u32>, u32),
+    ) {
         // the shader declares these bindings in every scene, and reads them only with boundary operands
         let (starts, counts, fragments) = b.fragments.unwrap_or((b.frame, b.frame, b.tile_leaves));
         let boundary_operands = b.boundary_operands.unwrap_or([b.frame; 4]);
@@ -171,7 +206,7 @@ impl SolidLayers {
             .chain(sun.into_iter().flat_map(|s| s.into_iter().take(SUN_OWN)))
             .collect();
         cmd.rendering_rows((b.behind.size(), rows), colour, depth, || {
-            cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&self.marks));
+            cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&Params { marks: self.marks, nth }));
             cmd.draw(3, 0, 1);
         });
     }

@@ -19,8 +19,9 @@
 //!   of its own, by a cut, or as a facet;
 //! * at meshes that are drawn as meshes.
 //!
-//! A view is looked at up to three times ([`Look`]). Where the farthest faces of what is seen through change because
-//! something opaque begins to hide one, no line is theirs.
+//! A view is looked at once for what is opaque, and once for each number of a face along the rays of what is seen
+//! through ([`Look`]). Beside an outline of glass the faces behind it have other numbers; they change nowhere, so no
+//! line is theirs.
 
 use super::{DrawingSettings, LineKind};
 use crate::model::{Camera, EdgeLimits, Isolated, Model, Primitive, Shape};
@@ -54,10 +55,15 @@ pub(super) const OFF: f64 = 0.5;
 pub(super) enum Look {
     /// The nearest one that is of no solid with layers.
     Opaque,
-    /// The nearest one of all: changes of layers.
-    Nearest,
-    /// The farthest layer in front of what is opaque.
-    Farthest,
+    /// The layer of this number, from 0 on, and where there are fewer, as `Opaque`: changes of layers.
+    Layer(usize),
+}
+
+/// The layers at the beginning of a ray's hits: those in front of what is opaque, and of layers.
+pub(super) fn layers<'h>(tracer: &Tracer, hits: &'h [Hit]) -> &'h [Hit] {
+    let count = hits.iter().take_while(|hit| tracer.is_layer(hit)).count();
+    let clear = hits[..count].iter().take_while(|hit| tracer.is_clear(hit)).count();
+    &hits[..count.min(clear + 1)]
 }
 
 /// A ray through a place of the picture, and the point that counts.
@@ -159,12 +165,10 @@ impl<'a> Changes<'a> {
     pub fn ray(&self, pixel: DVec2, probe: &mut Probe<'_>) -> Ray {
         let hit = match self.look {
             Look::Opaque if self.has_layers => self.stop(pixel, probe),
-            Look::Opaque | Look::Nearest => probe.first(pixel),
-            Look::Farthest => {
-                let hits = probe.hits(pixel);
-                let layers = hits.iter().take_while(|hit| self.tracer.is_layer(hit));
-                let seen = 1 + layers.clone().take_while(|hit| self.tracer.is_clear(hit)).count();
-                layers.take(seen).last().copied()
+            Look::Opaque | Look::Layer(0) => probe.first(pixel),
+            Look::Layer(number) => {
+                let layer = layers(self.tracer, probe.hits(pixel)).get(number).copied();
+                layer.or_else(|| self.stop(pixel, probe))
             }
         };
         Ray { pixel, hit }
@@ -173,6 +177,16 @@ impl<'a> Changes<'a> {
     /// The nearest point of what is opaque along the ray through a place.
     fn stop(&self, pixel: DVec2, probe: &mut Probe<'_>) -> Option<Hit> {
         probe.hits(pixel).iter().find(|hit| !self.tracer.is_layer(hit)).copied()
+    }
+
+    /// Whether the ray through a place meets this face, too, as any of its layers; `close`: how far apart the depths
+    /// may be.
+    fn goes_on(&self, face: &Hit, pixel: DVec2, close: f64, probe: &mut Probe<'_>) -> bool {
+        let primitive = self.tracer.primitive(face);
+        layers(self.tracer, probe.hits(pixel)).iter().any(|hit| {
+            let is_same = self.tracer.primitive(hit) == primitive && hit.surface == face.surface;
+            is_same && (hit.depth - face.depth).abs() <= close
+        })
     }
 
     /// All changes between two rays.
@@ -276,9 +290,7 @@ impl<'a> Changes<'a> {
 
     /// The change between two rays that are [`CLOSE`] to each other.
     fn why(&self, low: &Ray, high: &Ray, probe: &mut Probe<'_>) -> Option<Change> {
-        // of two points that one is seen whose number is less
-        let order = if self.look == Look::Farthest { -1.0 } else { 1.0 };
-        let depth = |ray: &Ray| ray.hit.map_or(f64::INFINITY, |hit| order * hit.depth);
+        let depth = |ray: &Ray| ray.hit.map_or(f64::INFINITY, |hit| hit.depth);
         let (first, other) = if depth(low) <= depth(high) { (low, high) } else { (high, low) };
         let near = first.hit?;
         let [p, q] = [first, other].map(|ray| ray.hit.as_ref().and_then(|hit| self.tracer.primitive(hit)));
@@ -302,11 +314,8 @@ impl<'a> Changes<'a> {
             if self.look != Look::Opaque && !is_layer(p) {
                 return None; // it is looked at without layers
             }
-            let stop = if self.look == Look::Farthest { self.stop(other.pixel, probe) } else { None };
-            match stop.map(|stop| near.depth - stop.depth) {
-                Some(before) if before > jump => return None,
-                Some(before) if before >= -jump => return unsure,
-                _ => {}
+            if self.look != Look::Opaque && self.goes_on(&near, other.pixel, jump, probe) {
+                return None; // as a layer of another number
             }
             // what hides a solid and is none has lines of its own
             let Some(traits) = traits(p) else { return unsure };

@@ -10,15 +10,17 @@
 //!   edges of operands without equations: where the operand is seen beside a point of one, a line may be
 //! ```
 //!
-//! What no pixel's centre sees needs no line.
+//! What no pixel's centre sees needs no line. What is seen through is looked at layer by layer, as many as the ray of
+//! some centre meets.
 
-use super::changes::{Change, Changes, Look, OFF, Ray, Why};
+use super::changes::{Change, Changes, Look, OFF, Ray, Why, layers};
 use super::judge::SPACING;
 use super::path::{LineSource, Path, Spot, View};
 use super::sources::{edge_path, of, segment};
 use super::{DrawingError, DrawingSettings};
 use crate::edges::scale;
 use crate::model::{Camera, Mesh, Model, Part, Primitive, Shape};
+use crate::solids::LayerTracer;
 use crate::{Hit, Probe, Tracer, Visibility};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -65,7 +67,8 @@ pub(super) fn places(
     let (width, height) = (camera.size.0 as usize, camera.size.1 as usize);
     let tops: Vec<usize> = (0..height).step_by(ROWS).collect();
     let mut out = Vec::new();
-    for look in [Look::Opaque, Look::Nearest, Look::Farthest] {
+    let looks = (0..deepest(tracer, camera)).map(Look::Layer);
+    for look in std::iter::once(Look::Opaque).chain(looks) {
         let Some(changes) = Changes::new(model, tracer, (camera, look), settings) else { continue };
         let of_band = |probe: &mut Probe<'_>, top: &usize| {
             let last = (top + ROWS).min(height - 1);
@@ -80,6 +83,18 @@ pub(super) fn places(
         out.extend(operand.places(model.parts.len(), view, camera, settings)?);
     }
     Ok(out)
+}
+
+/// Layers that the centre of a pixel meets, at most.
+fn deepest(tracer: &Tracer, camera: &Camera) -> usize {
+    if !tracer.solids.as_ref().is_some_and(LayerTracer::has_clear) {
+        return 0;
+    }
+    let of_row = |probe: &mut Probe<'_>, y: usize| {
+        (0..camera.size.0 as usize).map(|x| layers(tracer, probe.hits(centre(x, y))).len()).max().unwrap_or(0)
+    };
+    let rows = (0..camera.size.1 as usize).into_par_iter();
+    rows.map_init(|| tracer.probe(camera), of_row).max().unwrap_or(0)
 }
 
 /// Whether a line of this kind has to be there; `None` where it is not drawn.

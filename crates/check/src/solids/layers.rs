@@ -62,6 +62,11 @@ impl LayerTracer {
         &self.all
     }
 
+    /// Some solid is clear.
+    pub fn has_clear(&self) -> bool {
+        !self.clear.is_empty()
+    }
+
     /// The primitive, of [`union`](Self::union), is of a clear solid.
     pub fn is_of_clear(&self, primitive: usize) -> bool {
         self.clear.first().is_some_and(|(_, first)| primitive >= *first as usize)

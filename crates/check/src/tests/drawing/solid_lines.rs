@@ -255,6 +255,60 @@ fn edges_at_the_back_of_glass_have_lines() {
     assert!(missing == 0 && stray > 20, "{missing} {stray}");
 }
 
+/// All edges of a block.
+fn all_edges_of_block(camera: &Camera, low: DVec3, high: DVec3) -> Vec<[DVec2; 2]> {
+    let corner = |k: usize| DVec3::from([0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] }));
+    let begins = (0..8).flat_map(|k| (0..3).filter(move |axis| k >> axis & 1 == 0).map(move |axis| (k, k | 1 << axis)));
+    begins.map(|(a, b)| [a, b].map(|k| pixel(camera, corner(k)))).collect()
+}
+
+/// A hollow block of glass: the edges of the hollow are between the nearest and the farthest faces, and are missed if
+/// they have no lines. Beside the hollow's outline the block's back is the second layer and not the fourth, and has no
+/// line.
+#[test]
+fn edges_in_the_middle_of_glass_have_lines() {
+    let clear = |half: DVec3| Primitive { colour: [1.0, 1.0, 1.0, 0.4], ..block(-half, half) };
+    // in the picture no edge of it lies on another one
+    let hollow = DVec3::new(0.15, 0.25, 0.35);
+    let (model, camera) = (solid("A-B", vec![clear(HALF), clear(hollow)]), isometric());
+    let outer = all_edges_of_block(&camera, -HALF, HALF);
+    let inner = all_edges_of_block(&camera, -hollow, hollow);
+    let off = |p: DVec2| to_segments(&outer, p).min(to_segments(&inner, p));
+    let found = judged(&model, &camera, &DrawingSettings::default(), &image(&camera, off));
+    assert_eq!((found.missing, found.stray, found.unsure), (0, 0, 0), "{found:?}");
+    let (missing, stray) = faults(&model, &camera, &image(&camera, |p| to_segments(&outer, p)));
+    assert!(stray == 0 && missing as f64 > 0.7 * crossed(&inner), "{missing} {stray}");
+    let (missing, stray) = faults(&model, &camera, &image(&camera, |p| to_segments(&inner, p)));
+    assert!(stray == 0 && missing as f64 > 0.7 * crossed(&outer), "{missing} {stray}");
+    // opaque, the hollow is seen by no ray
+    let (model, lines) = (solid("A-B", vec![block(-HALF, HALF), block(-hollow, hollow)]), image(&camera, off));
+    let (_, stray) = faults(&model, &camera, &lines);
+    assert!(stray > 100, "{stray}");
+}
+
+/// The back of a block of glass runs into a plate that is of no solid: there has to be a line.
+#[test]
+fn the_back_of_glass_meets_a_face() {
+    use super::super::shapes::{face, rectangle};
+    let plane = rectangle(DVec3::new(0.2, -9.0, -9.0), DVec3::Y * 18.0, DVec3::Z * 18.0);
+    let part = Part { faces: vec![face(7, plane, Vec::new())], ..Part::default() };
+    // the eye is at high x: the plate hides what is behind it, and the block's low side ends at it
+    let clear = Primitive { colour: [1.0, 1.0, 1.0, 0.4], ..block(-HALF, HALF) };
+    let (model, camera) = (Model { solids: solid("A", vec![clear]).solids, ..alone(part) }, isometric());
+    let edges = all_edges_of_block(&camera, HALF.with_x(0.2) * DVec3::new(1.0, -1.0, -1.0), HALF);
+    let corners =
+        [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)].map(|(y, z)| pixel(&camera, DVec3::new(0.2, y, z)));
+    let met: Vec<[DVec2; 2]> = (0..4).map(|k| [corners[k], corners[(k + 1) % 4]]).collect();
+    let right = image(&camera, |p| to_segments(&edges, p));
+    assert_eq!(faults(&model, &camera, &right), (0, 0));
+    // two of the four are met by faces at the back
+    let is_met = |edge: &[DVec2; 2]| met.iter().any(|m| m.iter().all(|p| edge.iter().any(|q| p.distance(*q) < 1e-6)));
+    let others: Vec<[DVec2; 2]> = edges.iter().copied().filter(|edge| !is_met(edge)).collect();
+    assert_eq!(others.len() + 4, edges.len());
+    let (missing, stray) = faults(&model, &camera, &image(&camera, |p| to_segments(&others, p)));
+    assert!(stray == 0 && missing as f64 > 0.8 * crossed(&met), "{missing} {stray}");
+}
+
 /// Something opaque within glass ends no face of it.
 #[test]
 fn what_is_within_glass_ends_none_of_its_faces() {
