@@ -20,9 +20,9 @@ CLOSE = 10
 def sentences(section):
     """The claims of a section, as --only names it."""
     sizes = {", ".join(f"{width}x{height}" for width, height in sizes) for sizes in FIRST_PICTURE.values()}
-    files = ", ".join(FIRST_PICTURE)
+    pictures = f"{', '.join(FIRST_PICTURE)}; {'; '.join(sizes)}"
     return {
-        "surfaces": [f"first picture, within {FIRST_PICTURE_PX:g} px, beside every viewer: {files}; {'; '.join(sizes)}"],
+        "surfaces": [f"first picture, within {FIRST_PICTURE_PX:g} px, beside every viewer: {pictures}"],
         "zoom": [f"frame, beside a mesh made for the zoom: from {CLOSE} times on"],
         "trims": [
             "trims, beside bisection: every file and zoom",

@@ -189,10 +189,12 @@ class Surfaces(unittest.TestCase):
     def test_the_table_counts_the_rounds_of_each_setting(self):
         case = object.__new__(surfaces.Case)
         case.what, case.stopped = "part.step", {}
-        section, found = Section(1, "", ""), [{0.1: (5.0, 6.0, 7.0, None), 0.5: (1.0, 2.0, 3.0, 0.5)}, {0.5: (2.0, 4.0, None, 0.7)}]
+        first = {0.1: (5.0, 6.0, 7.0, None), 0.5: (1.0, 2.0, 3.0, 0.5)}
+        section, found = Section(1, "", ""), [first, {0.5: (2.0, 4.0, None, 0.7)}]
         case.table(section, {"selvedge": ("ours", found)}, {"boundary": 9, "alone": 0}, {})
         rows = section.tables[0].rows
-        self.assertEqual([row[1:7] for row in rows], [["0.1 px", 5.0, 6.0, 7.0, "", 1], ["0.5 px", 1.5, 3.0, "", 0.6, 2]])
+        figures = [["0.1 px", 5.0, 6.0, 7.0, "", 1], ["0.5 px", 1.5, 3.0, "", 0.6, 2]]
+        self.assertEqual([row[1:7] for row in rows], figures)
 
     def test_a_plot_shows_the_quickest_of_each_error(self):
         self.assertEqual(surfaces.front([(0.5, 3), (0.1, 9), (0.5, 2)]), [(0.1, 9), (0.5, 2)])

@@ -13,7 +13,8 @@ from ..turns import Unmeasurable
 TITLE = "First use"
 TEXT = """\
 The clone has the history of one commit. The build makes the release program without its window and without Rhino files,
-on all cores, from crates that were downloaded before. The sizes are those of the program with both. The library for hosts is built by `tools/report` in a whole run."""
+on all cores, from crates that were downloaded before. The sizes are those of the program with both. The library for
+hosts is built by `tools/report` in a whole run."""
 # what a first picture needs
 BUILD = ["cargo", "build", "--release", "-p", "selvedge-cli", "--no-default-features"]
 NO_LIBRARY = Missing("not built: a whole run of tools/report builds it, and tools/install_c")

@@ -19,9 +19,9 @@ TEXT = """\
 The views are so many times closer to the detail that is nearest to the eye. The *fixed* viewer draws one mesh within a
 thousandth of the diagonal. The other one meshes anew for each view, within half a pixel; its time is that of mesh and
 frame. Open CASCADE makes the meshes, and VTK draws them. Ours is a frame of all passes, with smooth borders and without
-ambient occlusion, as in section 1. The kernel's rays measure the errors where a pixel is much larger than the kernel's tolerance of 1e-7 mm. *By our reference* is the error that the
-project's own reference finds, at every zoom. There are three rounds; a view whose mesh is not done within the limit
-in its row is not meshed again in later rounds."""
+ambient occlusion, as in section 1. The kernel's rays measure the errors where a pixel is much larger than the kernel's
+tolerance of 1e-7 mm. *By our reference* is the error that the project's own reference finds, at every zoom. There are
+three rounds; a view whose mesh is not done within the limit in its row is not meshed again in later rounds."""
 
 
 def measure(context, section):
