@@ -2,8 +2,9 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `ambient_find`: the share of the sky over a pixel's point that other points of the picture, within the radius,
-// hide; of every second pixel, as on the black squares of a chess board. One thread for two pixels. Source: J. Jiménez, X. Wu, A. Pesce, A. Jarabo, Practical Realtime Strategies for
-// Accurate Indirect Occlusion (SIGGRAPH course 2016): the integral over a slice has a closed form.
+// hide; of every second pixel, as on the black squares of a chess board. One thread for two pixels. Source: J. Jiménez,
+// X. Wu, A. Pesce, A. Jarabo, Practical Realtime Strategies for Accurate Indirect Occlusion (SIGGRAPH course 2016): the
+// integral over a slice has a closed form.
 //
 //        h0 ╲     ^ v     ╱ h1        a slice through the ray, in which u is orthogonal to v: surfaces within the
 //            ╲    │    ╱              radius hide the sky below h0 and h1. The hidden share is

@@ -1,10 +1,9 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `ambient_write`: darkens each pixel by the hidden share of its sky. The share is the mean over the eight pixels of
-// a square of 4 x 4 that pass `ambient_find` has looked from, each along other slices. Pixels off the plane through this
-// one have less weight.
-// One thread a pixel.
+// Pass `ambient_write`: darkens each pixel by the hidden share of its sky. The share is the mean over the eight pixels
+// of a square of 4 x 4 that pass `ambient_find` has looked from, each along other slices. Pixels off the plane through
+// this one have less weight. One thread a pixel.
 #include "scene.glsl"
 #include "view.glsl"
 #include "shade.glsl"
