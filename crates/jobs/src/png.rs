@@ -96,8 +96,8 @@ fn deflated(bytes: &[u8], are_last: bool) -> io::Result<Vec<u8>> {
     Ok(take(to.get_mut()))
 }
 
-/// Each row of a stripe, behind the number of its filter: the one that leaves the smallest bytes. `above` is the row above
-/// the stripe, if there is one.
+/// Each row of a stripe, behind the number of its filter: the one that leaves the smallest bytes. `above` is the row
+/// above the stripe, if there is one.
 fn filtered(stripe: &[u8], above: Option<&[u8]>, row: usize) -> Vec<u8> {
     // behind a pixel of zeros, which is to the left of every row
     let (mut before, mut now) = (vec![0; PIXEL + row], vec![0; PIXEL + row]);

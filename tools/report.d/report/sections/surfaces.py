@@ -36,8 +36,8 @@ LEAST_PX = 1 / 16
 QUANTITIES = [("first picture", "s"), ("turning frame", "ms"), ("standing frame", "ms"), ("plain first picture", "s")]
 # the tolerance of the frame that is shown pass by pass, and of the plain picture
 SPENT_PX = 0.5
-# a picture as the others draw theirs
-PLAIN = ["--ao", "none", "--smooth", "none"]
+# a picture as the others draw theirs, trimmed as the one with smooth borders is
+PLAIN = ["--ao", "none", "--smooth", "none", "--trim", "exact"]
 # passes below this share of all are one row
 SMALL_SHARE = 0.02
 # the mesh that the engine draws as a viewer of facets
