@@ -240,7 +240,7 @@ mod tests {
     /// Of all bytes, by RFC 1950: 1 and the sum, and the sum of the sums, both modulo 65521.
     #[test]
     fn checksums_are_continued() {
-        let bytes: Vec<u8> = (0..200_000_u32).map(|n| (n * n >> 3) as u8).collect();
+        let bytes: Vec<u8> = (0..200_000_u64).map(|n| (n * n >> 3) as u8).collect();
         let whole = bytes.iter().fold((1, 0), |(low, high), &byte| {
             let low = (low + u32::from(byte)) % 65_521;
             (low, (high + low) % 65_521)
