@@ -3,16 +3,15 @@
 #ifndef AMBIENT_GLSL
 #define AMBIENT_GLSL
 
-#include "eye_ray.glsl"
 #include "in_picture.glsl"
 
 // Depth of a pixel; UNSEEN outside the picture.
 float depth_beside(ivec2 at) { return is_in_picture(at) ? depth_at(at) : UNSEEN; }
 
-// The point visible in a pixel, in model axes.
+// The point visible in a pixel, relative to the eye: to the right, down, along the view axis.
 vec3 point_at(ivec2 at, float depth) {
-    Ray ray = eye_ray(frame, vec2(at) + 0.5);
-    return ray.o + depth * ray.d;
+    vec2 across = (vec2(at) + 0.5 + frame.offset - frame.principal_px) / frame.focal_px;
+    return vec3(frame.perspective != 0u ? depth * across : across, depth);
 }
 
 // A function of the depth that is linear in the picture along a plane.

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `ambient_write`: darkens each pixel by the hidden share of its sky. The share is the mean over a square of 4 x 4
-// pixels, which holds each slice of pass `ambient_find` once. Pixels off the plane through this one have less weight.
-// One thread a pixel.
+// Pass `ambient_write`: darkens each pixel by the hidden share of its sky. The share is the mean over the eight pixels
+// of a square of 4 x 4 that pass `ambient_find` has looked from, each along other slices. Pixels off the plane through
+// this one have less weight. One thread a pixel.
 #include "scene.glsl"
 #include "view.glsl"
 #include "shade.glsl"
@@ -39,8 +39,9 @@ void main() {
     vec2 slopes = vec2(slope(at, ivec2(1, 0), own.y), slope(at, ivec2(0, 1), own.y));
     float sum = 0.0;
     float weights = 0.0;
-    for (int i = 0; i < 16; ++i) {
-        ivec2 way = ivec2(i & 3, i >> 2) - 2;
+    for (int i = 0; i < 8; ++i) {
+        ivec2 way = ivec2(i & 3, i >> 2 << 1) - 2;
+        way.y += (at.x + at.y + way.x + way.y) & 1; // column and row of the pixel have an even sum
         if (!is_in_picture(at + way)) continue;
         vec2 there = imageLoad(ambient, at + way).xy;
         float off = abs(there.y - own.y - dot(slopes, vec2(way)));
@@ -48,6 +49,7 @@ void main() {
         sum += weight * there.x;
         weights += weight;
     }
+    if (weights == 0.0) return; // a sliver between them
     vec4 seen = imageLoad(resolved, at);
     imageStore(resolved, at, vec4(seen.rgb * (1.0 - STRENGTH * sum / weights), seen.a));
 }

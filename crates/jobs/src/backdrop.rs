@@ -6,6 +6,7 @@
 //!   frame on a colour ──▶ opaque ──▶ PNG                                          a colour
 //! ```
 
+use rayon::prelude::*;
 use selvedge::model::{Colour, srgb};
 use std::str::FromStr;
 
@@ -38,15 +39,14 @@ impl Backdrop {
         if self != Self::Gradient {
             return;
         }
-        let rows = pixels.chunks_exact_mut(width as usize);
-        for (y, row) in rows.enumerate() {
+        pixels.par_chunks_exact_mut(width as usize).enumerate().for_each(|(y, row)| {
             let ground = gradient((y as f64 + 0.5) / f64::from(height));
             // most pixels of most pictures: worked out once a row
             let bare = over([0; 4], ground);
             for pixel in row.iter_mut().filter(|pixel| pixel[3] < u8::MAX) {
                 *pixel = if pixel[3] == 0 { bare } else { over(*pixel, ground) };
             }
-        }
+        });
     }
 }
 

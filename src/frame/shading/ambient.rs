@@ -1,7 +1,7 @@
 //! Passes `ambient_find` and `ambient_write`: less of the sky's light reaches points near other surfaces.
 //!
 //! ```text
-//!   resolved ──find──▶ ambient: the hidden share of each pixel's slices ──write──▶ mean of 4 x 4 pixels ──▶ resolved
+//!   resolved ──find──▶ ambient: hidden share of every second pixel ──write──▶ mean within 4 x 4 pixels ──▶ resolved
 //! ```
 //!
 //! `find` reads `frame` and `resolved`, and writes `ambient`. `write` reads `frame`, `ambient` and `resolved`, and
@@ -15,7 +15,7 @@ use ash::vk;
 /// Hidden share of the sky, and depth.
 pub(crate) const AMBIENT_FORMAT: vk::Format = vk::Format::R32G32_SFLOAT;
 
-/// Pixels of a workgroup, both ways.
+/// Threads of a workgroup, both ways.
 const GROUP: u32 = 8;
 
 /// Both passes.
@@ -40,20 +40,21 @@ impl Ambient {
         })
     }
 
-    /// One thread a pixel. Points farther than `radius`, in model units, hide nothing.
+    /// One thread for two pixels of a row. Points farther than `radius`, in model units, hide nothing.
     pub(crate) fn find(&self, cmd: &Commands<'_>, b: &Bindings<'_>, radius: f32) {
         self.find.bind(cmd, &[b.frame.into(), b.resolved.into(), b.ambient.into()], bytemuck::bytes_of(&radius));
-        cmd.dispatch_grid(groups(b.resolved));
+        cmd.dispatch_grid(groups(b.resolved, 2));
     }
 
     /// One thread a pixel.
     pub(crate) fn write(&self, cmd: &Commands<'_>, b: &Bindings<'_>, radius: f32) {
         self.write.bind(cmd, &[b.frame.into(), b.ambient.into(), b.resolved.into()], bytemuck::bytes_of(&radius));
-        cmd.dispatch_grid(groups(b.resolved));
+        cmd.dispatch_grid(groups(b.resolved, 1));
     }
 }
 
-fn groups(image: &Image) -> [u32; 3] {
+/// `columns`: of a thread.
+fn groups(image: &Image, columns: u32) -> [u32; 3] {
     let (width, height) = image.size();
-    [width.div_ceil(GROUP), height.div_ceil(GROUP), 1]
+    [width.div_ceil(columns * GROUP), height.div_ceil(GROUP), 1]
 }

@@ -1,6 +1,7 @@
 """The time of each section: what it is given, and what is left of it.
 
-The shares of a whole run are 85 minutes together, those of a quick one 9. A section orders its cases, the most telling
+The shares of a whole run are 85 minutes together, those of a quick one 9. Sections that are measured without the others
+share the time of all: each takes what it needs of that. A section orders its cases, the most telling
 ones first, and divides what is left among those to come. A case that has no time left stays in the report as a row
 with that reason, and so does one whose process was ended for the section's time.
 """
@@ -56,9 +57,11 @@ class Budget:
         return limit_s, Late if limit_s < most_s else Overdue
 
 
-def of(section, quick):
-    """The time of a section."""
-    return Budget(SECONDS[section][0 if quick else 1])
+def of(section, quick, measured=SECONDS):
+    """The time of a section among those that are measured."""
+    together = lambda names: sum(SECONDS[name][0 if quick else 1] for name in names)
+    share = together([section]) / max(together(measured), 1)
+    return Budget(share * together(SECONDS))
 
 
 def cases(budget, weights):

@@ -156,6 +156,21 @@ CASES = [
     ),
     Case("tangent loops", "two loops share a point", trimmed(disc(0.35, 0.5, 0.15), disc(0.65, 0.5, 0.15))),
     Case("nested loops", "an inner one undoes the outer one", trimmed(*(disc(0.5, 0.5, r) for r in (0.4, 0.25, 0.1)))),
+    Case(
+        "loops that share a side",
+        "a gap or a bridge between two holes",
+        trimmed(
+            '"left"',
+            '"right"',
+            curves=polygon("left", [(0.2, 0.2), (0.5, 0.2), (0.5, 0.8), (0.2, 0.8)])
+            + polygon("right", [(0.5, 0.2), (0.8, 0.2), (0.8, 0.8), (0.5, 0.8)]),
+        ),
+    ),
+    Case(
+        "sliver of 2e-6",
+        "a loop a few digits of a float wide",
+        trimmed('"thin"', curves=polygon("thin", [(0.1, 0.5), (0.9, 0.5), (0.9, 0.500002), (0.1, 0.500002)])),
+    ),
     Case("loop along the border", "a loop touches the domain's edge", trimmed(disc(0.5, 0.25, 0.25))),
     Case("holes of 0.3 pixels", "lost or grown", trimmed(*grid(12, 0.00075))),
     Case(

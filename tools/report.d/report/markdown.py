@@ -1,5 +1,6 @@
 """The report as Markdown: losses first, then claims, then missing measurements, then the sections."""
 
+from . import claims as claimed
 from .noise import median
 from .rows import Missing
 
@@ -140,9 +141,10 @@ def tally(contests):
 
 
 def claims(report):
-    """The claims by quantity; in the sections' tables each is marked."""
+    """The claims by quantity, and in which cases; in the sections' tables each is marked."""
     short = tally((s, c) for s, c in report.contests() if c.claim == "ahead")
-    return short or "Nothing in these sections."
+    lines = [f"* {s.number}. {sentence}" for s in report.sections for sentence in claimed.sentences(s.name)]
+    return "\n\n".join(part for part in (short, "\n".join(lines)) if part) or "Nothing in these sections."
 
 
 def loss(section, contest):

@@ -52,7 +52,7 @@ def run(quick, speed=1.0):
         scratch = Path(on.enter_context(tempfile.TemporaryDirectory()))
         for name in FILES:
             (scratch / name).parent.mkdir(exist_ok=True)
-            (scratch / name).write_bytes(bytes(surfaces.CLAIMED_BYTES if Path(name).name not in pretend.LIGHT else 9))
+            (scratch / name).write_bytes(bytes(surfaces.LARGE_BYTES if Path(name).name not in pretend.LIGHT else 9))
         on.enter_context(mock.patch("time.monotonic", clock))
         on.enter_context(mock.patch.object(first_use, "run", built))
         on.enter_context(mock.patch.object(packages, "run", drawn))
@@ -75,6 +75,16 @@ class Shares(unittest.TestCase):
         quick, whole = (sum(of[k] for of in budget.SECONDS.values()) for k in (0, 1))
         self.assertLessEqual(quick, 9 * 60)
         self.assertLessEqual(whole, 85 * 60)
+
+    def test_sections_without_the_others_share_the_time_of_all(self):
+        whole = sum(seconds for _, seconds in budget.SECONDS.values())
+        given = lambda *names: [budget.of(name, False, names).seconds for name in names]
+        self.assertEqual(given("zoom"), [whole])
+        both = given("zoom", "trims")
+        self.assertAlmostEqual(sum(both), whole)
+        self.assertAlmostEqual(both[0] / both[1], budget.SECONDS["zoom"][1] / budget.SECONDS["trims"][1])
+        self.assertAlmostEqual(budget.of("zoom", False).seconds, budget.SECONDS["zoom"][1])
+        self.assertEqual(budget.of("packages", True, ["packages"]).seconds, 0)
 
     def test_a_case_gets_its_share_of_what_is_left(self):
         clock = pretend.Clock()

@@ -111,6 +111,9 @@ class Written(unittest.TestCase):
         row = "| 1. first picture | 1 | {} | 1 | 1 | 0.33 [0.32, 0.39], Viewer |"
         self.assertIn(row.format(1), lose)
         self.assertIn(row.format(0), claim)
+        named = report(WON)
+        named.sections[0].name = "reading"
+        self.assertIn("\n* 1. reading, beside Open CASCADE: every file", markdown.text(named, {}))
         nothing = markdown.text(report(contest(WON.ours, WON.theirs, "open")), {})
         self.assertIn("## What we claim\n\nNothing in these sections.", nothing)
 

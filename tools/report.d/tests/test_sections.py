@@ -9,7 +9,7 @@ import unittest
 from pathlib import Path
 from unittest import mock
 
-from report import budget, moving
+from report import budget, claims, moving
 from report.machine import ROOT
 from report.rows import Contest, Missing, Section
 from report.sections import packages, stability, surfaces, trims, zoom
@@ -55,9 +55,9 @@ class Surfaces(unittest.TestCase):
 
     ERRORS = {"ours 0.5": 0.2, "mesh 0.01": 0.9, "mesh 0.0001": 0.1}
 
-    def contest(self, error, errors=None, bytes_=2_000_000, stopped=None):
+    def contest(self, error, errors=None, file="nist_pmi_2.stp", size=surfaces.MIDDLE, stopped=None):
         case = object.__new__(surfaces.Case)
-        case.model, case.what, case.stopped = Sized(bytes_), "part.step", stopped or {}
+        case.model, case.size, case.what, case.stopped = Path(file), size, "part.step", stopped or {}
         errors = {name: {"p999_px": off} for name, off in (errors or self.ERRORS).items()}
         ours = [{0.5: (1.0 + k / 10, 20.0, 9.0)} for k in range(3)]
         theirs = [{0.01: (0.1, 5.0, 5.0), 0.0001: (3.0 + k / 10, 9.0, 9.0)} for k in range(3)]
@@ -68,10 +68,24 @@ class Surfaces(unittest.TestCase):
         self.assertEqual((fine.theirs, fine.verdict(), fine.claim), ([3.0, 3.1, 3.2], "ahead", "ahead"))
         self.assertEqual((coarse.theirs, coarse.verdict(), coarse.claim), ([0.1] * 3, "behind", "open"))
 
-    def test_a_large_file_that_is_slower_within_half_a_pixel_is_lost(self):
+    def test_a_claimed_file_and_size_that_is_slower_within_half_a_pixel_is_lost(self):
         right = self.ERRORS | {"mesh 0.01": 0.3}
         self.assertTrue(self.contest(0.5, right).lost())
-        self.assertFalse(self.contest(0.5, right, bytes_=1000).lost())
+        for other in ({"file": "part.step"}, {"size": surfaces.LARGE}):
+            found = self.contest(0.5, right, **other)
+            self.assertEqual((found.verdict(), found.claim, found.lost()), ("behind", "open", False))
+
+    def test_claims_are_of_files_and_sizes_that_are_measured(self):
+        names = {Path(name).name for name in surfaces.FILES}
+        self.assertLessEqual(set(claims.FIRST_PICTURE), names)
+        for sizes in claims.FIRST_PICTURE.values():
+            self.assertLessEqual(set(sizes), set(surfaces.WEIGHTS))
+
+    def test_every_rule_has_its_sentence(self):
+        self.assertEqual([len(claims.sentences(name)) for name in ("surfaces", "zoom", "trims", "scale")], [1, 1, 2, 0])
+        (first,) = claims.sentences("surfaces")
+        for words in ("within 0.5 px", "nist_pmi_2.stp, ", "960x540, 1920x1080"):
+            self.assertIn(words, first)
 
     def test_an_error_that_no_setting_reaches(self):
         self.assertIsNone(self.contest(0.125))
@@ -109,7 +123,7 @@ class Surfaces(unittest.TestCase):
         case = object.__new__(surfaces.Case)
         case.what, case.stopped, case.context = "part.step", {}, mock.Mock()
         case.why("meshed", [1e-2, 1e-5, 1e-6], [{"mesh_s": 1.0}, {"stopped": "the mesh before took 9 s"}])
-        section, found = Section(1, "", ""), [{1e-2: (1.0, 2.0, 3.0)}] * 3
+        section, found = Section(1, "", ""), [{1e-2: (1.0, 2.0, 3.0, 1.0)}] * 3
         competitors = {"VTK": ("mesh", found)}
         case.table(section, competitors, {"boundary": 9, "alone": 0}, {})
         cells = [row[1:3] for row in section.tables[0].rows]
@@ -133,13 +147,19 @@ class Surfaces(unittest.TestCase):
         case.begun, case.model, case.camera, case.context = set(), None, None, mock.MagicMock()
         case.tolerances, case.bench = [0.1, 0.5, 1.0, 4.0], lambda tolerance: {surfaces.WALL: 9.0}
         case.benches = {}
-        self.assertEqual(list(case.ours()), [0.1, 0.5, 1.0, 4.0])
+        drawn = []
+        case.first = lambda tolerance, *options: drawn.append((tolerance, *options)) or (1.0 if options else 2.0)
+        first = case.ours()
+        self.assertEqual(list(first), [0.1, 0.5, 1.0, 4.0])
+        self.assertEqual([drawn.count((t, *surfaces.PLAIN)) for t in first], [0, 1, 0, 0])
+        self.assertEqual((first[0.5], first[1.0]), ((2.0, 9.0, None, 1.0), (2.0, 9.0, None, None)))
         self.assertEqual(list(case.ours()), [0.5, 1.0])
 
     def once(self, error, mine, theirs, errors):
         """A claim whose sides have these first pictures, by round and setting."""
         case = object.__new__(surfaces.Case)
-        case.model, case.what, case.stopped = Sized(2_000_000), "part.step", {}
+        case.model, case.size = Path("nist_pmi_2.stp"), surfaces.MIDDLE
+        case.what, case.stopped = "part.step", {}
         errors = {name: {"p999_px": off} for name, off in errors.items()}
         ours, found = ([{s: (t, 9.0, 9.0) for s, t in one.items()} for one in side] for side in (mine, theirs))
         return case.contest("first picture", "VTK", "s", "mesh", ours, found, errors, 0, error)
@@ -169,10 +189,12 @@ class Surfaces(unittest.TestCase):
     def test_the_table_counts_the_rounds_of_each_setting(self):
         case = object.__new__(surfaces.Case)
         case.what, case.stopped = "part.step", {}
-        section, found = Section(1, "", ""), [{0.1: (5.0, 6.0, 7.0), 0.5: (1.0, 2.0, 3.0)}, {0.5: (2.0, 4.0, None)}]
+        first = {0.1: (5.0, 6.0, 7.0, None), 0.5: (1.0, 2.0, 3.0, 0.5)}
+        section, found = Section(1, "", ""), [first, {0.5: (2.0, 4.0, None, 0.7)}]
         case.table(section, {"selvedge": ("ours", found)}, {"boundary": 9, "alone": 0}, {})
         rows = section.tables[0].rows
-        self.assertEqual([row[1:6] for row in rows], [["0.1 px", 5.0, 6.0, 7.0, 1], ["0.5 px", 1.5, 3.0, "", 2]])
+        figures = [["0.1 px", 5.0, 6.0, 7.0, "", 1], ["0.5 px", 1.5, 3.0, "", 0.6, 2]]
+        self.assertEqual([row[1:7] for row in rows], figures)
 
     def test_a_plot_shows_the_quickest_of_each_error(self):
         self.assertEqual(surfaces.front([(0.5, 3), (0.1, 9), (0.5, 2)]), [(0.1, 9), (0.5, 2)])
@@ -199,18 +221,6 @@ class Surfaces(unittest.TestCase):
     def test_pixels_beyond_the_tolerance_are_counted(self):
         error = {"distances_px": [0.1, 0.5, 0.75, 1.0, 16.0]}
         self.assertEqual([surfaces.beyond(error, tolerance) for tolerance in (0.1, 0.5, 4.0)], [4, 3, 1])
-
-
-class Sized:
-    """Takes the place of a file."""
-
-    name = "part.step"
-
-    def __init__(self, bytes_):
-        self.bytes = bytes_
-
-    def stat(self):
-        return type("Stat", (), {"st_size": self.bytes})
 
 
 class Packages(unittest.TestCase):

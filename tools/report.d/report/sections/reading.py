@@ -1,5 +1,6 @@
 """10. Reading files, beside Open CASCADE."""
 
+from .. import claims
 from ..noise import median
 from ..rows import Contest, Promise
 from ..turns import Unmeasurable, rounds
@@ -57,7 +58,7 @@ def measure(context, section):
         else:
             many = min(map(len, results.values()))
             mine, other = ([one[k] for one in results[who][:many]] for who in ("ours", "theirs"))
-            section.contests.append(Contest(what, "Open CASCADE", "ms", mine, other, "ahead"))
+            section.contests.append(Contest(what, "Open CASCADE", "ms", mine, other, claims.READING))
     wide = [name for k, name in enumerate(there) if median([one[k] for one in shares]) > MOST_BOX]
     what = f"the box of a file takes at most {MOST_BOX:.0%} of reading it"
     section.promises.append(Promise(": ".join([what, *wide]), len(wide), len(there)))

@@ -2,7 +2,7 @@
 
 import statistics
 
-from .. import bumpy, floor, scenes, views
+from .. import bumpy, claims, floor, scenes, views
 from ..budget import cases
 from ..rows import Contest, Missing, Promise, Table, error_cells
 from ..turns import Late, Overdue, Unmeasurable, rounds
@@ -26,7 +26,8 @@ TEXT = """\
 The scenes have the numbers of primitives of the models of J. Hable and J. Rossignac, *Blister*, SIGGRAPH 2005, which
 are not public. *First picture* is the whole process of ours, OpenSCAD and POV-Ray, from the file to a PNG. Of Manifold
 it is evaluation and VTK's window and first frame, without the start of its process. *Turning* is a frame of a turn by
-three degrees each; OpenSCAD and POV-Ray draw no turn. Errors are those of the outline, by rays through the primitives'
+three degrees each; OpenSCAD and POV-Ray draw no turn. Ours have smooth borders, and the first picture ambient
+occlusion; the others have neither. Errors are those of the outline, by rays through the primitives'
 own equations. The number beside OpenSCAD and Manifold is that of facets around a round primitive. A blank OpenSCAD
 preview (a cube) and our plane show what the start of each process takes."""
 
@@ -224,11 +225,8 @@ class Case:
         best = lambda one, k: one["selvedge, events"][k]
         for way in WAYS[1:]:
             theirs = [one[f"selvedge, {way}"][1] for one in ours]
-            section.contests.append(
-                Contest(
-                    f"turning frame, {self.name}", f"way {way}", "ms", [best(one, 1) for one in ours], theirs, "ahead"
-                )
-            )
+            mine, what = [best(one, 1) for one in ours], f"turning frame, {self.name}"
+            section.contests.append(Contest(what, f"way {way}", "ms", mine, theirs, claims.WAY_EVENTS))
         for name, found in results.items():
             if name == "selvedge":
                 continue

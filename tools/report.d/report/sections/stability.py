@@ -20,7 +20,7 @@ Each case is a scene file, which `selvedge check` draws and judges: it compares 
 in double precision. *In doubt* counts the rays that the reference gave up. *Wrong* pixels are right nowhere within half
 a pixel. The seed of a random case is its number. Random cases go on until their goals are reached or half of the time
 that is left is used up. Trims that change from frame to frame, first frames and lists that overflow have no scene
-file; tests/frame and tests/parity have these cases."""
+file; tests/frame and tests/parity have these cases. Scene files with loops that cross are refused."""
 
 
 def measure(context, section):

@@ -3,6 +3,7 @@ all ways to trim."""
 
 import statistics
 
+from .. import claims
 from ..budget import cases
 from ..rows import Contest, Line, Missing, Plot, Promise, Table
 from ..turns import Late, Unmeasurable, rounds
@@ -177,9 +178,9 @@ def contests(section, model, found, size):
         other = lambda way, at=at: (model, way, at[2], at[3])
         what = f"{model}, {int(at[2])} times"
         ours, theirs = ([cost(one, ats) for one in found] for ats in ([other(way) for way in OURS], [at]))
-        section.contests.append(contest(f"trims, {what}", "bisection", "ms", ours, theirs, "ahead"))
+        section.contests.append(contest(f"trims, {what}", "bisection", "ms", ours, theirs, claims.TRIMS))
         # for the accuracy of the closest view a texture needs a texel a pixel
-        claim = "ahead" if at[2] >= 10 else "open"
+        claim = claims.memory_beside_a_texture(at[2])
         least = min(filter(None, (values(found[:1], other(way), "trim_bytes") for way in OURS)), default=[])
         texture = values(found[:1], other("texture"), "trim_bytes")
         memory = contest(f"memory, {what}", "a trim texture", "bytes", least, texture, claim, exact=True)
