@@ -9,6 +9,7 @@ pub mod ambient_find {
     pub const HORIZON_STEPS: i32 = 4;
     pub const MOST_HEIGHT: f32 = 0.2;
     pub const PI: f32 = 3.14159265;
+    pub const PIXELS: i32 = 8;
     pub const SLICES: i32 = 2;
 }
 pub mod ambient_write {
