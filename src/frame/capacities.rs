@@ -211,7 +211,8 @@ mod tests {
         assert_eq!(
             over.to_string(),
             "100000000 patches are too many: at most 8388608 can be drawn, because they want 1600000000 bytes in one \
-             buffer, and this device binds 134217728; draw fewer parts at once, or place fewer copies"
+             buffer, and this device binds 134217728 (maxStorageBufferRange, maxTexelBufferElements); draw fewer parts \
+             at once, or place fewer copies, or take a device or driver that binds more"
         );
         let over = grown(RANGE).unwrap_err();
         assert_eq!((over.what, over.most, over.bytes), ("scan lines", RANGE / 8, Some((800_000_000, RANGE.into()))));
