@@ -24,8 +24,8 @@ impl Capacities {
         Self { candidates: u32::from(counts.trim.is_some()) * (1 << 14) }
     }
 
-    /// At least one candidate for every [`PIXELS_OF_A_CANDIDATE`] pixels of a band, as far as a storage buffer of `range`
-    /// bytes holds them. That is most often enough.
+    /// At least one candidate for every [`PIXELS_OF_A_CANDIDATE`] pixels of a band, as far as a storage buffer of
+    /// `range` bytes holds them. That is most often enough.
     pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), range: u32) -> Self {
         let some = if counts.trim.is_some() { band_pixels(size, range) / PIXELS_OF_A_CANDIDATE } else { 0 };
         Self { candidates: self.candidates.max(some).min(range / BYTES as u32) }

@@ -117,8 +117,8 @@ impl GapFill {
         })
     }
 
-    /// Lists the gap candidates of some rows. Only a band that ends with the picture may have another number of rows than
-    /// a multiple of those of [`PART`].
+    /// Lists the gap candidates of some rows. Unless they end with the picture, their number is a multiple of the rows
+    /// of [`PART`].
     pub(crate) fn find(&self, cmd: &Commands<'_>, b: &FindBindings<'_>, list: ListBindings<'_>, rows: &Range<u32>) {
         let width = b.visibility.size().0;
         let resources = [
