@@ -77,6 +77,28 @@ fn a_failed_test_is_named() {
     assert_eq!(embed["result"], "a \"quoted\"\ttab \\ [0m");
 }
 
+/// A sweep of nets of their own takes so many milliseconds, one of copies of a net 4.8.
+fn with_nets_of_their_own(name: &str, ms: f64) -> (Option<i32>, String) {
+    let bundle = Bundle::new(name, "echo 'test result: ok. 3 passed; 0 failed'");
+    let device = "[[ $1 != devices ]] || { [[ ${2:-} == --json ]] && echo '[]' || echo a; exit; }";
+    let table = format!(
+        "ms=4.8 && [[ \" $* \" != *' --distinct '* ]] || ms={ms}\n[[ $1 != sweep ]] || \
+        for ((i = 1; i <= $#; i++)); do [[ ${{!i}} != --out ]] || {{ i=$((i + 1)); \
+        printf 'model,all_ms,width\\nsheet,%s,640\\n' $ms >\"${{!i}}\"; }}; done\necho ran"
+    );
+    bundle.script("bin/selvedge", &format!("{device}\n{table}"));
+    let (status, report) = bundle.run(&["-s"]);
+    let of_ratio = |step: &&serde_json::Value| step["name"] == "262144-patches-own-over-one";
+    let step = report["steps"].as_array().unwrap().iter().find(of_ratio).expect("the step is reported");
+    (status, step["result"].as_str().unwrap_or_default().to_owned())
+}
+
+#[test]
+fn nets_of_their_own_take_at_most_two_and_a_half_times_one_net() {
+    assert_eq!(with_nets_of_their_own("quick", 5.424), (Some(0), "1.13 times".to_owned()));
+    assert_eq!(with_nets_of_their_own("slow", 26.9), (Some(1), "5.60 times".to_owned()));
+}
+
 #[test]
 fn a_missing_model_or_device_is_told_by_the_status() {
     let bundle = Bundle::new("missing", "true");

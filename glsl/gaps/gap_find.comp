@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `gap_find`: the list of gap candidates: what is seen is a candidate itself, or a skirt lies
+// Pass `gap_find`: the list of gap candidates of a band of rows: what is seen is a candidate itself, or a skirt lies
 // before it, or nothing is seen between patches. All of them get the mark. One thread a column of 30 pixels, whose
 // neighbours' columns it learns from the threads beside it; the first and the last of a workgroup do nothing else.
 //
@@ -22,12 +22,13 @@ layout(scalar, binding = 0) uniform Frames { Frame frame; };
 #include "grid.glsl"
 layout(binding = 1, rg32ui) uniform uimage2D visibility;
 layout(scalar, binding = 2) writeonly buffer GapCandidates { GapCandidate candidates[]; };
-layout(scalar, binding = 3) buffer Dispatch { uvec3 dispatch; }; // of the second step; zero before
+layout(scalar, binding = 3) buffer Bands { GapBand band_list; }; // zero before
 layout(scalar, binding = 4) buffer CountersBuffer { Counters counters; };
 layout(binding = 5) uniform sampler2D depth; // reversed
 layout(binding = 6) uniform usampler2D border_depths; // the bits of depths
+layout(scalar, push_constant) uniform Rows { uint first_row; }; // of the band
 
-const uint GROUP = 64u; // threads of a workgroup of the second step
+const uint GROUP = 64u; // threads of a workgroup of the next steps
 const int LANES = 64;
 const int ROWS = 30;
 const int BAND = int(WIDE_BAND_PX);
@@ -71,7 +72,7 @@ uint between(uint left, uint own, uint right) {
 void main() {
     int lane = int(gl_LocalInvocationID.x);
     int column = int(gl_WorkGroupID.x) * (LANES - 2) + lane - 1;
-    int top = int(gl_WorkGroupID.y) * ROWS - 1;
+    int top = int(first_row) + int(gl_WorkGroupID.y) * ROWS - 1;
     ivec2 size = ivec2(frame.size);
     uint candidate = 0u;
     uint nothing = 0u;
@@ -80,7 +81,7 @@ void main() {
     uint patch_seen = 0u;
     if (lane == 0) full_columns = 0u;
     barrier();
-    // other threads may write marks meanwhile: no bit below depends on them
+    // other threads may write marks meanwhile, and earlier bands have: no bit below depends on them
     if (column >= 0 && column < size.x) {
         int first = max(top, 0);
         int last = min(top + ROWS + 1, size.y - 1);
@@ -121,6 +122,14 @@ void main() {
     uint front = patch_seen & between_backs & ~(candidate | border_before);
     candidate &= ~unasked;
     uint listed = (candidate | border_before | isolated | front) & own;
+    if (listed == 0u) return;
+    uint count = uint(bitCount(listed));
+    uint at = atomicAdd(band_list.count, count);
+    atomicAdd(counters.gap_candidates, count);
+    atomicMax(counters.band_gap_candidates, at + count);
+    if (at + count > frame.gap_candidate_capacity) atomicOr(counters.failed, FAILED_GAP_CANDIDATES);
+    uvec3 grid = grid_of((min(at + count, frame.gap_candidate_capacity) + GROUP - 1u) / GROUP);
+    for (uint axis = 0u; axis < 3u; ++axis) atomicMax(band_list.grid[axis], grid[axis]);
     for (uint left_over = listed; left_over != 0u; left_over &= left_over - 1u) {
         uint k = uint(findLSB(left_over));
         ivec2 pixel = ivec2(column, top + int(k));
@@ -132,13 +141,7 @@ void main() {
             uvec2 seen = imageLoad(visibility, pixel).xy;
             imageStore(visibility, pixel, uvec4(seen.x | GAP_CANDIDATE, seen.y, 0u, 0u));
         }
-        uint at = atomicAdd(counters.gap_candidates, 1u);
-        if (at >= frame.gap_candidate_capacity) {
-            atomicOr(counters.failed, FAILED_GAP_CANDIDATES);
-            continue;
-        }
-        candidates[at].pixel = uint(pixel.x) | uint(pixel.y) << 16 | flags;
-        uvec3 grid = grid_of(at / GROUP + 1u);
-        for (uint axis = 0u; axis < 3u; ++axis) atomicMax(dispatch[axis], grid[axis]);
+        if (at < frame.gap_candidate_capacity) candidates[at].pixel = uint(pixel.x) | uint(pixel.y) << 16 | flags;
+        ++at;
     }
 }

@@ -11,10 +11,10 @@ layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1, rg32ui) writeonly uniform uimage2D visibility;
 layout(scalar, binding = 2) readonly buffer GapCandidates { GapCandidate candidates[]; };
-layout(scalar, binding = 3) readonly buffer CountersBuffer { Counters counters; };
+layout(scalar, binding = 3) readonly buffer Bands { GapBand band_list; };
 
 void main() {
     uint n = thread_number();
-    if (n >= min(counters.gap_candidates, frame.gap_candidate_capacity)) return;
+    if (n >= min(band_list.count, frame.gap_candidate_capacity)) return;
     imageStore(visibility, candidate_pixel(candidates[n].pixel), uvec4(candidates[n].word, 0u, 0u));
 }

@@ -14,7 +14,7 @@ layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
 layout(scalar, binding = 8) buffer GapCandidates { GapCandidate candidates[]; };
-layout(scalar, binding = 9) readonly buffer CountersBuffer { Counters counters; };
+layout(scalar, binding = 9) readonly buffer Bands { GapBand band_list; };
 layout(binding = 11, rg32ui) readonly uniform uimage2D meshes_and_solids;
 layout(scalar, binding = 12) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
 layout(scalar, binding = 13) readonly buffer Triangles { uint triangles[]; };
@@ -43,7 +43,7 @@ layout(scalar, binding = 14) readonly buffer Positions { vec3 positions[]; };
 
 void main() {
     uint n = thread_number();
-    if (n >= min(counters.gap_candidates, frame.gap_candidate_capacity)) return;
+    if (n >= min(band_list.count, frame.gap_candidate_capacity)) return;
     uint listed = candidates[n].pixel;
     ivec2 at = candidate_pixel(listed);
     vec2 pixel = vec2(at) + 0.5;

@@ -223,6 +223,7 @@ struct Counters {
     uint wanted_rows;  // rows before they were cut to the capacity
     uint intercepts;
     uint gap_candidates;       // pixels for pass gap_fill
+    uint band_gap_candidates;  // the most in one band of rows
     uint block_leaves; // leaves of Boolean solids in all blocks of tiles, and in all tiles
     uint tile_leaves;
     uint band_tile_leaves; // the most in one band, or more than can be counted; in one row of tiles
@@ -281,6 +282,12 @@ struct SubPatch {
 struct GapCandidate {
     uint pixel;    // column | row << 16 | BORDER_BEFORE | ISOLATED (visible.glsl)
     uvec2 word;  // the visible surface
+};
+
+// The list of gap candidates of a band of rows.
+struct GapBand {
+    uvec3 grid; // of passes with a thread a candidate
+    uint count; // of candidates, also of those that the list has no room for
 };
 
 const uint MAX_FACTOR = 64u;   // the hardware's tessellation factor

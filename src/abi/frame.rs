@@ -101,6 +101,7 @@ pub struct Counters {
     pub wanted_rows: u32,
     pub intercepts: u32,
     pub gap_candidates: u32,
+    pub band_gap_candidates: u32,
     pub block_leaves: u32,
     pub tile_leaves: u32,
     pub band_tile_leaves: u32,
@@ -139,6 +140,14 @@ pub struct Factors {
 pub struct GapCandidate {
     pub pixel: u32,
     pub word: [u32; 2],
+}
+
+/// The list of gap candidates of a band of rows: the grid of passes over it, and its length.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct GapBand {
+    pub grid: [u32; 3],
+    pub count: u32,
 }
 
 /// A run of consecutive patch instances in sight: its first one, and the place of that among all in sight.

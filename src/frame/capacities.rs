@@ -81,7 +81,7 @@ impl Capacities {
         Ok(Self {
             tessellation: self.tessellation.grown(c, range)?,
             trim: self.trim.grown(c, counts, ranges.pairs)?,
-            gaps: self.gaps.grown(c, range)?,
+            gaps: self.gaps.grown(c, size, range)?,
             solids: self.solids.grown(c, counts, size, range)?,
             edges: self.edges.grown(c, range)?,
             antialiasing: self.antialiasing.grown(c, range)?,
@@ -182,7 +182,8 @@ mod tests {
                 Capacities::first(counts, u32::MAX).for_picture(counts, size, both(RANGE)).unwrap();
             (gaps.candidates, antialiasing.followed)
         };
-        assert_eq!((of((640, 480)), of((16384, 16384))), ((38_400, 19_200), (RANGE / 12, RANGE / 12)));
+        // a band of the larger picture has 660 rows, and room for one candidate in eight pixels
+        assert_eq!((of((640, 480)), of((16384, 16384))), ((38_400, 19_200), (660 * 2048, RANGE / 12)));
     }
 
     #[test]
@@ -210,7 +211,8 @@ mod tests {
         assert_eq!(
             over.to_string(),
             "100000000 patches are too many: at most 8388608 can be drawn, because they want 1600000000 bytes in one \
-             buffer, and this device binds 134217728; draw fewer parts at once, or place fewer copies"
+             buffer, and this device binds 134217728 (maxStorageBufferRange, maxTexelBufferElements); draw fewer parts \
+             at once, or place fewer copies, or take a device or driver that binds more"
         );
         let over = grown(RANGE).unwrap_err();
         assert_eq!((over.what, over.most, over.bytes), ("scan lines", RANGE / 8, Some((800_000_000, RANGE.into()))));
@@ -218,7 +220,7 @@ mod tests {
         let more = Counters { plain: RANGE / 8 + 1, failed: 1, ..Default::default() };
         let over = first().grown(&more, counts, (640, 480), both(RANGE)).unwrap_err();
         assert_eq!((over.what, over.most), ("parts of patches", RANGE / 8));
-        let more = Counters { gap_candidates: RANGE / 12 + 1, failed: 16, ..Default::default() };
+        let more = Counters { band_gap_candidates: RANGE / 12 + 1, failed: 16, ..Default::default() };
         let over = first().grown(&more, counts, (640, 480), both(RANGE)).unwrap_err();
         assert_eq!((over.what, over.most), ("pixels at gaps", RANGE / 12));
         let more = Counters { followed_points: RANGE / 12 + 1, failed: 2048, ..Default::default() };

@@ -199,7 +199,7 @@ impl Counts {
 
 /// The model, or one view of it, exceeds the engine's numbers or the device's buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{count} {what} are too many: at most {most} can be drawn{}; {help}", Why(.bytes))]
+#[error("{count} {what} are too many: at most {most} can be drawn{}; {help}{}", Why(.bytes), Where(.bytes))]
 #[non_exhaustive]
 pub struct TooMany {
     /// The kind of thing of which there are too many.
@@ -221,10 +221,20 @@ impl fmt::Display for Why<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
             Some((wanted, most)) => {
-                write!(f, ", because they want {wanted} bytes in one buffer, and this device binds {most}")
+                write!(f, ", because they want {wanted} bytes in one buffer, and this device binds {most}")?;
+                write!(f, " (maxStorageBufferRange, maxTexelBufferElements)")
             }
             None => Ok(()),
         }
+    }
+}
+
+/// The devices that draw it, as part of the message of [`TooMany`].
+struct Where<'a>(&'a Option<(u64, u64)>);
+
+impl fmt::Display for Where<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_some() { f.write_str(", or take a device or driver that binds more") } else { Ok(()) }
     }
 }
 

@@ -19,6 +19,7 @@ mod edges;
 mod errors;
 mod every_shape;
 mod fold_lines;
+mod gap_bands;
 mod hard;
 mod hard_solids;
 mod hard_trims;

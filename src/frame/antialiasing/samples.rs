@@ -152,6 +152,7 @@ fn begin_again(frame: &Frame<'_>, cmd: &Commands<'_>, colour: &Image) {
     frame.wait(cmd);
     let counted = [
         offset_of!(Counters, gap_candidates),
+        offset_of!(Counters, band_gap_candidates),
         offset_of!(Counters, contacts),
         offset_of!(Counters, overlaps),
         offset_of!(Counters, tile_leaves),

@@ -10,18 +10,24 @@
 //!        └───┴───┴───┘
 //! ```
 //!
-//! Reads: everything that the bindings name but what it writes. Writes: `find`: `candidates`, `dispatch`, `counters`,
-//! and the mark in the visibility image; `fill`: `candidates`; `write`: the visibility image. All of them at gap
-//! candidates only.
+//! Each step runs once for each band of rows, which has a list of its own. Reads: everything that the bindings name but
+//! what it writes. Writes: `find`: `candidates`, `band`, `counters`, and the mark in the visibility image; `fill`:
+//! `candidates`; `write`: the visibility image. All of them at gap candidates only.
 
+use crate::abi::GapBand;
+use crate::abi::constants::gap_find::{LANES, ROWS};
 use crate::bindings::{Placed, Primitives};
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource, Sampler, TexelBuffer};
 use crate::shaders::{self, TrimTest, constant};
 use ash::vk;
+use std::mem::offset_of;
+use std::ops::Range;
 
-/// Columns and rows of the picture that a workgroup of the first step looks for gap candidates in.
-const PART: [u32; 2] = [62, 30];
+/// Columns and rows of the picture that a workgroup of the first step looks for gap candidates in. Its first and its
+/// last lane are there for the others.
+pub(super) const PART: [u32; 2] = [LANES as u32 - 2, ROWS as u32];
+
 /// The pass, in its three steps.
 pub(crate) struct GapFill {
     find: Kernel,
@@ -30,25 +36,36 @@ pub(crate) struct GapFill {
     nearest: Sampler,
 }
 
-/// Of the first step, in binding order.
+/// The list of a band.
+#[derive(Clone, Copy)]
+pub(crate) struct ListBindings<'a> {
+    /// [`GapCandidate`](crate::abi::GapCandidate)s.
+    pub candidates: &'a Buffer,
+    /// [`GapBand`]; zero before.
+    pub band: &'a Buffer,
+}
+
+impl<'a> ListBindings<'a> {
+    /// The arguments of a thread a candidate.
+    fn grid(&self) -> (&'a Buffer, u64) {
+        (self.band, offset_of!(GapBand, grid) as u64)
+    }
+}
+
+/// Of the first step, in binding order; the list stands before `counters`.
 pub(crate) struct FindBindings<'a> {
     pub frame: &'a Buffer,
     pub visibility: &'a Image,
-    pub candidates: &'a Buffer,
-    /// Of the second step; zero before.
-    pub dispatch: &'a Buffer,
     pub counters: &'a Buffer,
     pub depth: &'a Image,
     pub border_depths: &'a Image,
 }
 
-/// Of the second step, in binding order, and its dispatch.
+/// Of the second step, in binding order; the list stands behind `visibility`.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub placed: Placed<'a>,
     pub visibility: &'a Image,
-    pub candidates: &'a Buffer,
-    pub counters: &'a Buffer,
     pub instances: &'a TexelBuffer,
     /// What is no patch; `None` where the scene has nothing else.
     pub meshes_and_solids: Option<MeshesAndSolids<'a>>,
@@ -56,7 +73,6 @@ pub(crate) struct Bindings<'a> {
     pub trim: &'a [Resource<'a>],
     /// The volume that trims the scene; `None` where there is none.
     pub volume: Option<Primitives<'a>>,
-    pub dispatch: &'a Buffer,
 }
 
 /// What is no patch, in binding order.
@@ -101,31 +117,33 @@ impl GapFill {
         })
     }
 
-    /// Lists the gap candidates.
-    pub(crate) fn find(&self, cmd: &Commands<'_>, b: &FindBindings<'_>) {
-        let (width, height) = b.visibility.size();
+    /// Lists the gap candidates of some rows. Unless they end with the picture, their number is a multiple of the rows
+    /// of [`PART`].
+    pub(crate) fn find(&self, cmd: &Commands<'_>, b: &FindBindings<'_>, list: ListBindings<'_>, rows: &Range<u32>) {
+        let width = b.visibility.size().0;
         let resources = [
             b.frame.into(),
             b.visibility.into(),
-            b.candidates.into(),
-            b.dispatch.into(),
+            list.candidates.into(),
+            list.band.into(),
             b.counters.into(),
             Resource::Sampled(b.depth, &self.nearest),
             Resource::Sampled(b.border_depths, &self.nearest),
         ];
-        self.find.record_grid(cmd, &resources, [width.div_ceil(PART[0]), height.div_ceil(PART[1]), 1]);
+        self.find.bind(cmd, &resources, bytemuck::bytes_of(&rows.start));
+        cmd.dispatch_grid([width.div_ceil(PART[0]), (rows.end - rows.start).div_ceil(PART[1]), 1]);
     }
 
-    /// One thread a gap candidate.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
+    /// One thread a gap candidate of a list.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, list: ListBindings<'_>) {
         // the shader has these bindings in every scene, and reads them only where there are others
         let seen = b.meshes_and_solids.as_ref().map_or(b.visibility, |o| o.seen);
         let none = Meshes { instances: b.frame, triangles: b.frame, positions: b.frame };
         let meshes = b.meshes_and_solids.as_ref().and_then(|o| o.meshes.as_ref()).unwrap_or(&none);
         let resources = [
             b.visibility.into(),
-            b.candidates.into(),
-            b.counters.into(),
+            list.candidates.into(),
+            list.band.into(),
             b.instances.into(),
             seen.into(),
             meshes.instances.into(),
@@ -141,15 +159,12 @@ impl GapFill {
             .chain(trim)
             .chain(volume)
             .collect();
-        self.fill.record_indirect(cmd, &resources, (b.dispatch, 0));
+        self.fill.record_indirect(cmd, &resources, list.grid());
     }
 
-    /// One thread a gap candidate, as in the second step, whose bindings these are.
-    pub(crate) fn show(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
-        self.write.record_indirect(
-            cmd,
-            &[b.frame.into(), b.visibility.into(), b.candidates.into(), b.counters.into()],
-            (b.dispatch, 0),
-        );
+    /// One thread a gap candidate of a list, as in the second step, whose bindings these are.
+    pub(crate) fn show(&self, cmd: &Commands<'_>, b: &Bindings<'_>, list: ListBindings<'_>) {
+        let resources = [b.frame.into(), b.visibility.into(), list.candidates.into(), list.band.into()];
+        self.write.record_indirect(cmd, &resources, list.grid());
     }
 }
