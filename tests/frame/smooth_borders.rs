@@ -184,8 +184,8 @@ fn bands_make_the_same_picture() {
     let solid = shapes::solids::holes(2);
     let mesh = shapes::whole_mesh("torus", shapes::torus_mesh(24));
     let mut unlimited = renderer();
-    // `bytes` hold 40 rows, and a band takes 32 of them, or 16 where points follow surfaces. At least `least` pixels
-    // are mixed: the spline torus has fewer, because it has outlines alone.
+    // `bytes` hold 40 rows, and a band takes 32 of them. At least `least` pixels are mixed: the spline torus has fewer,
+    // because it has outlines alone.
     for (model, bytes, least) in [
         (shapes::plate(), 12 * 500 * 40, 200),
         (shapes::torus(), 12 * 500 * 40, 100),

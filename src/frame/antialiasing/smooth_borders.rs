@@ -12,8 +12,7 @@
 //!
 //! A list has room for every pixel of its band. A band reads the rows beside it as no pass has mixed them yet, so means
 //! are written a band later: there are two lists then. The list of points that follow surfaces grows with what frames
-//! want; where it is too short, the frame is drawn again. A band has so few pixels that the device binds a list of all
-//! their points.
+//! want; where it is too short, the frame is drawn again.
 
 use super::border_follow::{self, BorderFollow};
 use super::border_mean::{self, BorderMean};
@@ -144,26 +143,19 @@ impl Followed {
     }
 }
 
-/// Rows of a band, on a device that binds `range` bytes: if even the least band does not fit, making its list is an
-/// error. `has_points`: what each point sees is stored. `follows`: points may follow surfaces.
-fn band_rows((width, height): (u32, u32), range: u32, has_points: bool, follows: bool) -> u32 {
-    let of_points = |bytes: usize| u64::from(POINTS) * bytes as u64;
-    let (most, bytes) = if has_points {
-        (BAND_PIXELS_WITH_POINTS, of_points(size_of::<BorderPoint>()))
-    } else {
-        (BAND_PIXELS, size_of::<BorderPixel>() as u64)
-    };
-    let bytes = if follows { bytes.max(of_points(size_of::<FollowedPoint>())) } else { bytes };
-    let most = most.min(u64::from(range) / bytes);
-    let rows = (most / u64::from(width)) as u32 / LEAST_ROWS * LEAST_ROWS;
-    rows.max(LEAST_ROWS).min(height)
-}
-
 impl SmoothBorders {
     pub(crate) fn new(room: &Room<'_>, passes: &Arc<Passes>) -> Result<Self, GpuError> {
         let (width, height) = room.size;
-        let range = room.device.limits().max_storage_buffer_range;
-        let rows = band_rows(room.size, range, passes.mean.is_some(), passes.follow.is_some());
+        let points = size_of::<BorderPoint>() as u64 * u64::from(POINTS);
+        let (most, bytes) = if passes.mean.is_some() {
+            (BAND_PIXELS_WITH_POINTS, points)
+        } else {
+            (BAND_PIXELS, size_of::<BorderPixel>() as u64)
+        };
+        // what a device binds may be less: a list that does not fit even so is an error of its own
+        let most = most.min(u64::from(room.device.limits().max_storage_buffer_range) / bytes);
+        let rows = (most / u64::from(width)) as u32 / LEAST_ROWS * LEAST_ROWS;
+        let rows = rows.max(LEAST_ROWS).min(height);
         let list = |_| {
             Ok(List {
                 pixels: room.structs::<BorderPixel>("border pixels", width * rows)?,
@@ -366,28 +358,5 @@ impl SmoothBorders {
     fn write(&self, frame: &Frame<'_>, cmd: &Commands<'_>, resolved: &Image, list: &List) {
         barrier::images(cmd, &[(resolved, Access::COMPUTE_READ, Access::COMPUTE_WRITE)]);
         self.passes.mix.write(cmd, frame.constants, list.bindings(), resolved);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The storage buffer that every device binds.
-    const RANGE: u32 = 1 << 27;
-
-    /// A pixel takes 12 bytes, what its sixteen points see 128, and the points that follow surfaces 192.
-    #[test]
-    fn every_list_of_a_band_fits() {
-        let rows = |size, range| {
-            [(false, false), (true, false), (false, true), (true, true)]
-                .map(|(points, follows)| band_rows(size, range, points, follows))
-        };
-        assert_eq!(rows((960, 540), RANGE), [540, 272, 540, 272]);
-        assert_eq!(rows((1920, 1080), RANGE), [1080, 128, 352, 128]);
-        assert_eq!(rows((16384, 16384), RANGE), [256, 16, 32, 16]);
-        assert_eq!(rows((1920, 1080), u32::MAX), [1080, 128, 1080, 128]);
-        // the least band
-        assert_eq!(rows((500, 80), 12 * 500 * 40), [32, 16, 16, 16]);
     }
 }
