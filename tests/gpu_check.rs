@@ -97,6 +97,9 @@ fn with_nets_of_their_own(name: &str, ms: f64) -> (Option<i32>, String) {
 fn nets_of_their_own_take_at_most_two_and_a_half_times_one_net() {
     assert_eq!(with_nets_of_their_own("quick", 5.424), (Some(0), "1.13 times".to_owned()));
     assert_eq!(with_nets_of_their_own("slow", 26.9), (Some(1), "5.60 times".to_owned()));
+    // 896 microseconds: with a zero before them they are a number by tens still
+    assert_eq!(with_nets_of_their_own("very-quick", 0.896), (Some(0), "0.18 times".to_owned()));
+    assert_eq!(with_nets_of_their_own("not-measured", 0.0), (Some(1), String::new()));
 }
 
 #[test]
