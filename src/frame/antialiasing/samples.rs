@@ -146,13 +146,13 @@ fn draw(
 }
 
 /// Before the view is drawn once more, into `colour` again: what one drawing counts is cleared, what the patches
-/// and the trim table are stays.
+/// and the trim table are stays. So do the lengths of the longest lists of bands, for which the next frame has room: the
+/// list of any drawing may be the longest one.
 fn begin_again(frame: &Frame<'_>, cmd: &Commands<'_>, colour: &Image) {
     let counters = &frame.stages.common.counters;
     frame.wait(cmd);
     let counted = [
         offset_of!(Counters, gap_candidates),
-        offset_of!(Counters, band_gap_candidates),
         offset_of!(Counters, contacts),
         offset_of!(Counters, overlaps),
         offset_of!(Counters, tile_leaves),
