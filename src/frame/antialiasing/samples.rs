@@ -146,8 +146,8 @@ fn draw(
 }
 
 /// Before the view is drawn once more, into `colour` again: what one drawing counts is cleared, what the patches
-/// and the trim table are stays. So do the lengths of the longest lists of bands, for which the next frame has room: the
-/// list of any drawing may be the longest one.
+/// and the trim table are stays. So do the lengths of the longest lists of bands, by which capacities grow: the list of
+/// any drawing may be the longest one.
 fn begin_again(frame: &Frame<'_>, cmd: &Commands<'_>, colour: &Image) {
     let counters = &frame.stages.common.counters;
     frame.wait(cmd);
