@@ -1,4 +1,5 @@
-//! Work beside the frames: measuring and judging in threads, pictures to files and to the clipboard.
+//! Work beside the frames: measuring and judging in threads, settings and pictures to files, pictures and texts to the
+//! clipboard.
 
 use super::Failure;
 use super::app::{App, Event, Opened};
