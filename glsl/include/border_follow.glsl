@@ -102,6 +102,8 @@ float exact_depth_at(ivec2 from, vec2 pixel) {
         if (ends) break; // only here: see refine.glsl
     }
     bool is = there.q.w > 0.0 && length(there.miss) <= ON_PIXEL_PX;
+    // a patch whose neighbour does not reach the point, since it folds before, may go on to it
+    is = is && !goes_on(fi, face, found, there.uv);
     is = is && is_in_face(fi, face, found, patch_, there.uv);
 #ifdef WITHIN_VOLUME
     is = is && in_volume(there.q, ON_PX);

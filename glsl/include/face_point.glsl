@@ -35,6 +35,14 @@ bool is_there(FaceInstance fi, Face face, uint patch_instance, Patch patch_, vec
     return trim_inside(fi, face, at);
 }
 
+// Whether another patch of the face goes on at (u, v) of a patch. There the patch's own continuation is not the surface.
+bool goes_on(FaceInstance fi, Face face, uint patch_instance, vec2 uv) {
+    ivec2 count = ivec2(face.count_u, face.count_v);
+    ivec2 place = place_of(face, int(patch_instance - fi.first_patch_instance));
+    ivec2 next = clamp(place + way_beyond(uv, BEYOND), ivec2(0), count - 1);
+    return next != place && side_of(patch_at(patch_in(face, next)).shape) != SIDE_OUTSIDE;
+}
+
 // Like `refine`, but continues in the next patch of the face if the point lies beyond a side. `patch_instance` becomes
 // the last patch.
 Sample refine_across(FaceInstance fi, Face face, View view, inout uint patch_instance, vec2 uv, vec2 pixel) {

@@ -310,7 +310,7 @@ pub fn placed(transform: DAffine3, colour: Option<Colour>) -> Instance {
     Instance { part: 0, transform, colour, name: String::new() }
 }
 
-fn face(id: u32, kind: SurfaceKind, surface: Surface) -> Face {
+pub fn face(id: u32, kind: SurfaceKind, surface: Surface) -> Face {
     Face { id, kind, surface, loops: Vec::new(), same_sense: true, colour: None }
 }
 
