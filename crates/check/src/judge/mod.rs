@@ -79,8 +79,8 @@ pub struct JudgeOptions<'a> {
     /// faces of different instances.
     pub tie: f64,
     /// Pixels that may be searched for a shift, and as many again for a fold; the rest count as
-    /// `unsearched`. A search costs up to some thousand rays, and a picture with more errors than this
-    /// is wrong anyway.
+    /// `unsearched`. A search costs up to some thousand rays, fifty thousand at a limit of 2 px or more, and
+    /// a picture with more errors than this is wrong anyway.
     pub searches: usize,
     /// Wrong pixels listed, the worst first.
     pub listed: usize,
