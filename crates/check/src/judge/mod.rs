@@ -4,7 +4,7 @@
 //!   drawn id = true id at the pixel centre ................................ agree
 //!   drawn face within `tie` of the true depth, there or up to limit_px away  tie
 //!   the same within TOUCHING ties, where faces of two instances touch ..... tie
-//!   true id = drawn id at an offset of s <= 2 px, s the smallest .......... shift s
+//!   true id = drawn id at an offset of s <= 2 px or limit_px, s the smallest  shift s
 //!   none of these ......................................................... gross
 //! ```
 //!
@@ -42,6 +42,8 @@ use report::Tally;
 use search::{Reach, Search, Wanted};
 use std::f64::consts::FRAC_PI_4;
 
+/// Shifts are searched for this far, pixels, and as far as a larger limit.
+const LEAST_REACH_PX: f64 = 2.0;
 /// Below this cosine between normal and ray a pixel is grazing: 84.3°, a slope of 10.
 pub const GRAZING_COSINE: f64 = 0.1;
 /// Largest depth error where the surface is regular, sides of a pixel.
@@ -77,8 +79,8 @@ pub struct JudgeOptions<'a> {
     /// faces of different instances.
     pub tie: f64,
     /// Pixels that may be searched for a shift, and as many again for a fold; the rest count as
-    /// `unsearched`. A search costs up to some thousand rays, and a picture with more errors than this
-    /// is wrong anyway.
+    /// `unsearched`. A search costs up to some thousand rays, fifty thousand at a limit of 2 px or more, and
+    /// a picture with more errors than this is wrong anyway.
     pub searches: usize,
     /// Wrong pixels listed, the worst first.
     pub listed: usize,
@@ -137,7 +139,7 @@ pub fn judge(tracer: &Tracer, camera: &Camera, picture: &Images<'_>, options: &J
             (tally, suspects)
         })
         .collect();
-    let mut judgement = Judgement::new(picture.size, sampled.len() as u64);
+    let mut judgement = Judgement::new(picture.size, sampled.len() as u64, options.limit_px);
     let mut tally = Tally::default();
     let mut suspects = Vec::new();
     for (t, s) in parts {
@@ -145,7 +147,7 @@ pub fn judge(tracer: &Tracer, camera: &Camera, picture: &Images<'_>, options: &J
         suspects.extend(s);
     }
     ration(&mut suspects, options.searches);
-    let reach = Reach::new(tracer, camera, suspects.iter().map(|s| s.wanted.face));
+    let reach = Reach::new(tracer, camera, options.limit_px, suspects.iter().map(|s| s.wanted.face));
     let search = |probe: &mut Probe, s: &Suspect| {
         let centre = bench.centre(s.index);
         if !reach.near(s.wanted.face, centre) {
@@ -210,7 +212,7 @@ impl Bench<'_> {
             let depth = f64::from(depth);
             let error = (depth - hit.depth).abs();
             let pixel = pixel_size(self.camera, hit.depth);
-            let fold = error.is_nan() || error > fold_depth(self.camera, &hit, direction);
+            let fold = error.is_nan() || error > fold_depth(self.camera, &hit, direction, reach_px(self.limit));
             tally.depth(index, error, pixel, regular && !fold);
             off[0] = Some(error / pixel);
             let wanted = Wanted { face: drawn_id, depth: Some(depth), fold };
@@ -267,7 +269,7 @@ impl Bench<'_> {
                 (h.face, h.instance) == (hit.face, hit.instance)
                     && cosine >= GRAZING_COSINE
                     && angle_between(h.normal, hit.normal) <= TURN
-                    && apart <= fold_depth(self.camera, hit, direction)
+                    && apart <= fold_depth(self.camera, hit, direction, LEAST_REACH_PX)
             })
         })
     }
@@ -289,12 +291,17 @@ fn pixel_size(camera: &Camera, depth: f64) -> f64 {
     if camera.is_perspective() { depth / focal } else { 1.0 / focal }
 }
 
-/// The depth error that a shift of two pixels explains on the hit's tangent plane (at least one
-/// pixel's side): `2 px tan(angle of normal and ray)`.
-fn fold_depth(camera: &Camera, hit: &Hit, direction: DVec3) -> f64 {
+/// How far around a pixel's centre shifts are searched for, pixels.
+fn reach_px(limit: f64) -> f64 {
+    limit.max(LEAST_REACH_PX)
+}
+
+/// The depth error that a shift of so many pixels explains on the hit's tangent plane (at least one
+/// pixel's side): `shift_px tan(angle of normal and ray)`.
+fn fold_depth(camera: &Camera, hit: &Hit, direction: DVec3, shift_px: f64) -> f64 {
     let cosine = hit.normal.dot(direction).abs().max(1e-6);
     let slope = (1.0 - cosine * cosine).max(0.0).sqrt() / cosine;
-    pixel_size(camera, hit.depth) * (2.0 * slope).max(1.0)
+    pixel_size(camera, hit.depth) * (shift_px * slope).max(1.0)
 }
 
 /// The pixels to examine, in raster order: about so many, and those beside which a value of `image` changes.

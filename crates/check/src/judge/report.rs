@@ -1,9 +1,10 @@
 //! The result of a judgement: counts, the largest errors and their places, and a picture of them.
 
+use super::{LEAST_REACH_PX, reach_px};
 use serde::Serialize;
 
-/// Upper ends of the shift histogram, pixels.
-const BINS: [f64; 9] = [0.0625, 0.125, 0.1875, 0.25, 0.375, 0.5, 1.0, 1.5, 2.0];
+/// Upper ends of the shift histogram, pixels. A larger limit is one more.
+const BINS: [f64; 9] = [0.0625, 0.125, 0.1875, 0.25, 0.375, 0.5, 1.0, 1.5, LEAST_REACH_PX];
 
 /// The verdict on one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,9 +24,9 @@ pub enum Class {
     Far(f64),
     /// The right face; its drawn depth is right at this distance in pixels.
     Fold(f64),
-    /// The right face at a depth that it has nowhere within 2 px.
+    /// The right face at a depth that it has nowhere within 2 px or a larger limit.
     WrongDepth,
-    /// The drawn face is not within 2 px.
+    /// The drawn face is not within 2 px or a larger limit.
     Gross,
     /// Wrong at its centre; there were too many to search for the distance.
     Unsearched,
@@ -60,7 +61,7 @@ pub struct Folds {
     pub shifted: u64,
     /// Right, but farther away.
     pub beyond: u64,
-    /// The drawn depth occurs nowhere within 2 px.
+    /// The drawn depth occurs nowhere within 2 px or a larger limit.
     pub wrong_depth: u64,
     /// Not searched: more than `searches`.
     pub unsearched: u64,
@@ -102,7 +103,7 @@ pub struct Mismatch {
     pub truth: u32,
     /// Distance at which the drawn id is right, pixels; `None` when it is not known.
     pub shift_px: Option<f64>,
-    /// There is no such distance within 2 px; `false` with `shift_px` unknown: not searched for.
+    /// There is no such distance within 2 px or a larger limit; `false` with `shift_px` unknown: not searched for.
     pub gross: bool,
 }
 
@@ -119,7 +120,7 @@ pub struct Judgement {
     pub ties: u64,
     /// Shifts of the others.
     pub shifts: Vec<Bin>,
-    /// Pixels whose drawn id is not right within 2 px.
+    /// Pixels whose drawn id is not right within 2 px or a larger limit.
     pub gross: u64,
     /// Pixels with another id that were not searched: more errors than `searches`.
     pub unsearched: u64,
@@ -226,13 +227,15 @@ fn place(index: usize, width: u32) -> [u32; 2] {
 }
 
 impl Judgement {
-    pub(super) fn new(size: (u32, u32), sampled: u64) -> Self {
+    pub(super) fn new(size: (u32, u32), sampled: u64, limit: f64) -> Self {
+        let reach = reach_px(limit);
+        let wider = (reach > LEAST_REACH_PX).then_some(reach);
         Self {
             size,
             sampled,
             agree: 0,
             ties: 0,
-            shifts: BINS.map(|up_to_px| Bin { up_to_px, pixels: 0 }).to_vec(),
+            shifts: BINS.into_iter().chain(wider).map(|up_to_px| Bin { up_to_px, pixels: 0 }).collect(),
             gross: 0,
             unsearched: 0,
             wrong: 0,

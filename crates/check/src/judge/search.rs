@@ -1,34 +1,39 @@
 //! The smallest offset from a pixel centre at which the reference shows the drawn face.
 //!
 //! ```text
-//!        · · ·         1. rings of 32 directions, from 1/32 to 2 px, until one answers yes
+//!        · · ·         1. rings of 32 directions, from 1/32 px to 2 px or a larger limit_px, until one answers yes
 //!      ·   ·   ·       2. between neighbours of a ring, and between rings, whose answers differ:
 //!     ·  · + ·  ·         bisection, which runs into any face too thin for the rings
-//!      ·   ·   ·       3. before the rings beyond limit_px: a grid of 1/64 px within it, for faces
-//!        · · ·            between equal answers
+//!      ·   ·   ·       3. after the rings within limit_px: a grid of 1/64 px, or limit_px / 128, within it, for
+//!        · · ·            faces between equal answers
 //!                      4. the offset found is pulled in along its ray, then turned to either side
 //! ```
 //!
 //! The result is an upper bound: the reference was checked at that very offset. One error can be missed, and is then
-//! called gross: a gap thinner than 1/64 px with the same face on both sides.
+//! called gross: a gap thinner than the grid's spacing with the same face on both sides.
 //!
 //! Where a face lies within another part's face, the bisections run into the rim of the contact, too.
 
 use super::super::{Probe, Tracer};
-use super::{Class, TOUCHING, fold_depth};
+use super::{Class, LEAST_REACH_PX, TOUCHING, fold_depth, reach_px};
 use crate::model::Camera;
 use glam::{DVec2, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
-/// Radii of the rings in pixels.
-const RINGS: [f64; 14] = [0.03125, 0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.4375, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0];
+/// Radii of the rings within the least reach, pixels.
+const RINGS: [f64; 14] =
+    [0.03125, 0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.4375, 0.5, 0.75, 1.0, 1.25, 1.5, LEAST_REACH_PX];
+/// Each ring beyond these is at most so many times as wide as the one before.
+const GROWTH: f64 = 1.25;
 /// Directions of a ring.
 const DIRECTIONS: usize = 32;
 /// Bisections between two answers: down to 0.5 px / 2¹² = 1e-4 px.
 const SLIVER_STEPS: u32 = 12;
-/// Spacing of the grid.
+/// Least spacing of the grid.
 const GRID_PX: f64 = 1.0 / 64.0;
+/// Most places of the grid along a radius: at larger limits the grid is wider, and its rays cost the same.
+const GRID_STEPS: f64 = LEAST_REACH_PX / GRID_PX;
 /// A shift is pulled in until it is known to this, pixels.
 const RESOLUTION_PX: f64 = 1.0 / 256.0;
 
@@ -55,6 +60,12 @@ enum Answer {
     No(u32, usize),
 }
 
+/// The answers of a ring.
+struct Ring {
+    radius: f64,
+    answers: [Answer; DIRECTIONS],
+}
+
 /// One pixel's search.
 pub(super) struct Search<'s, 'p> {
     pub probe: &'s mut Probe<'p>,
@@ -79,67 +90,75 @@ impl Search<'_, '_> {
     }
 
     fn nearest(&mut self) -> Class {
-        let fold = self.wanted.fold;
-        let shift = |s: f64| if fold { Class::Fold(s) } else { Class::Shift(s) };
         let start = self.ask(DVec2::ZERO);
         if start == Answer::Tie {
             return Class::Tie;
         }
         // a face that begins at the very centre is the nearest hit there or not, by rounding
         if start == Answer::Yes {
-            return shift(0.0);
+            return self.right_at(0.0);
         }
-        let mut inner = 0.0;
-        let mut before = [start; DIRECTIONS];
-        let mut beyond = false;
-        for radius in RINGS {
+        let radii = radii(self.limit);
+        let (within, beyond) = radii.split_at(radii.partition_point(|radius| *radius <= self.limit));
+        let mut last = Ring { radius: 0.0, answers: [start; DIRECTIONS] };
+        self.on_rings(within, &mut last)
+            .or_else(|| self.on_grid())
+            .or_else(|| self.on_rings(beyond, &mut last))
+            .unwrap_or(if self.wanted.fold { Class::WrongDepth } else { Class::Gross })
+    }
+
+    /// The class of a pixel that is right at this distance.
+    fn right_at(&self, shift: f64) -> Class {
+        if self.wanted.fold { Class::Fold(shift) } else { Class::Shift(shift) }
+    }
+
+    /// The first class that rings of these radii give, each wider than the last one; none where the face touches
+    /// another part.
+    fn on_rings(&mut self, radii: &[f64], last: &mut Ring) -> Option<Class> {
+        for &radius in radii {
             if self.touches {
                 break;
-            }
-            if radius > self.limit && !beyond {
-                beyond = true;
-                if let Some(offset) = self.on_grid() {
-                    return shift(self.turned(offset).length());
-                }
             }
             let offset = |k: usize| DVec2::from_angle(k as f64 * TAU / DIRECTIONS as f64) * radius;
             let answers: [Answer; DIRECTIONS] = std::array::from_fn(|k| self.ask(offset(k)));
             let yes = (0..DIRECTIONS).filter(|&k| answers[k] == Answer::Yes).map(offset);
-            if let Some(nearest) = yes.map(|o| self.pulled_in(o, inner)).reduce(nearer) {
-                return shift(self.turned(nearest).length());
+            if let Some(nearest) = yes.map(|o| self.pulled_in(o, last.radius)).reduce(nearer) {
+                let shift = self.turned(nearest).length();
+                return Some(self.right_at(shift));
             }
             if radius <= self.limit && answers.contains(&Answer::Tie) {
-                return Class::Tie;
+                return Some(Class::Tie);
             }
             let mut best: Option<DVec2> = None;
             for k in 0..DIRECTIONS {
                 let next = (k + 1) % DIRECTIONS;
-                let spoke = offset(k) * (inner / radius);
+                let spoke = offset(k) * (last.radius / radius);
                 for found in [
                     self.between((offset(k), answers[k]), (offset(next), answers[next])),
-                    self.between((spoke, before[k]), (offset(k), answers[k])),
+                    self.between((spoke, last.answers[k]), (offset(k), answers[k])),
                 ] {
                     best = [best, found].into_iter().flatten().reduce(nearer);
                 }
             }
             if let Some(offset) = best {
-                return shift(self.turned(offset).length());
+                let shift = self.turned(offset).length();
+                return Some(self.right_at(shift));
             }
-            (inner, before) = (radius, answers);
+            *last = Ring { radius, answers };
         }
-        if fold { Class::WrongDepth } else { Class::Gross }
+        None
     }
 
     fn ask(&mut self, offset: DVec2) -> Answer {
         let pixel = self.centre + offset;
-        let camera = self.probe.camera();
+        let (camera, reach) = (self.probe.camera(), reach_px(self.limit));
         let touching = TOUCHING * self.slack;
         let hits = self.probe.within(pixel, touching);
         let Some(first) = hits.first() else {
             return if self.wanted.face == 0 { Answer::Yes } else { Answer::No(0, 0) };
         };
         let near = |h: &super::Hit| {
-            self.wanted.depth.is_none_or(|d| (d - h.depth).abs() <= fold_depth(camera, h, camera.ray(pixel).1))
+            self.wanted.depth.is_none_or(|d| (d - h.depth).abs() <= fold_depth(camera, h, camera.ray(pixel).1, reach))
         };
         let matches = |h: &&super::Hit| h.face == self.wanted.face && (!self.wanted.fold || near(h));
         if matches(&first) {
@@ -174,14 +193,20 @@ impl Search<'_, '_> {
         None
     }
 
-    /// Nearest place of the grid that answers yes.
-    fn on_grid(&mut self) -> Option<DVec2> {
-        let n = (self.limit.min(RINGS[RINGS.len() - 1]) / GRID_PX).floor() as i32;
+    /// The class that the nearest place of the grid that answers yes gives; none where the face touches another part.
+    fn on_grid(&mut self) -> Option<Class> {
+        if self.touches {
+            return None;
+        }
+        let spacing = GRID_PX.max(self.limit / GRID_STEPS);
+        let n = (self.limit / spacing).floor() as i32;
         let mut places: Vec<(i32, i32)> =
             (-n..=n).flat_map(|j| (-n..=n).map(move |i| (i, j))).filter(|(i, j)| i * i + j * j <= n * n).collect();
         places.sort_by_key(|(i, j)| i * i + j * j);
-        let offset = |(i, j): (i32, i32)| DVec2::new(f64::from(i), f64::from(j)) * GRID_PX;
-        places.into_iter().map(offset).find(|&o| self.ask(o) == Answer::Yes)
+        let offset = |(i, j): (i32, i32)| DVec2::new(f64::from(i), f64::from(j)) * spacing;
+        let found = places.into_iter().map(offset).find(|&o| self.ask(o) == Answer::Yes)?;
+        let shift = self.turned(found).length();
+        Some(self.right_at(shift))
     }
 
     /// Moved towards the centre, but not inside the radius `inner`, as far as the answer stays yes.
@@ -216,16 +241,24 @@ fn nearer(a: DVec2, b: DVec2) -> DVec2 {
     if a.length() <= b.length() { a } else { b }
 }
 
-/// The part of the picture in which the faces can lie at all, with 2 px of margin.
+/// The radii of the rings, ascending: [`RINGS`], and wider ones up to a larger limit.
+fn radii(limit: f64) -> Vec<f64> {
+    let reach = reach_px(limit);
+    let wider = std::iter::successors(Some(LEAST_REACH_PX), |r| (*r < reach).then(|| (r * GROWTH).min(reach))).skip(1);
+    RINGS.into_iter().chain(wider).collect()
+}
+
+/// The part of the picture in which the faces can lie at all, with a margin of the search's reach.
 pub(super) struct Reach {
+    margin: DVec2,
     boxes: HashMap<u32, Vec<(DVec2, DVec2)>>,
 }
 
 impl Reach {
     /// Projects the boxes of the leaves, meshes and primitives of `faces`.
-    pub fn new(tracer: &Tracer, camera: &Camera, faces: impl Iterator<Item = u32>) -> Self {
+    pub fn new(tracer: &Tracer, camera: &Camera, limit: f64, faces: impl Iterator<Item = u32>) -> Self {
         let wanted: HashSet<u32> = faces.collect();
-        let mut reach = Self { boxes: HashMap::new() };
+        let mut reach = Self { margin: DVec2::splat(reach_px(limit)), boxes: HashMap::new() };
         if wanted.is_empty() {
             return reach;
         }
@@ -256,7 +289,6 @@ impl Reach {
     }
 
     fn add(&mut self, id: u32, camera: &Camera, corners: &[DVec3]) {
-        let margin = DVec2::splat(RINGS[RINGS.len() - 1]);
         let corners: Vec<_> = corners.iter().map(|c| camera.project(*c)).collect();
         let everywhere = (DVec2::NEG_INFINITY, DVec2::INFINITY);
         let rectangle = if corners.iter().any(Option::is_none) {
@@ -265,10 +297,10 @@ impl Reach {
             let seen = corners.iter().flatten();
             seen.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), (p, _)| (lo.min(*p), hi.max(*p)))
         };
-        self.boxes.entry(id).or_default().push((rectangle.0 - margin, rectangle.1 + margin));
+        self.boxes.entry(id).or_default().push((rectangle.0 - self.margin, rectangle.1 + self.margin));
     }
 
-    /// `face` may be seen within 2 px of `pixel`. Background can be anywhere.
+    /// `face` may be seen within the search's reach of `pixel`. Background can be anywhere.
     pub fn near(&self, face: u32, pixel: DVec2) -> bool {
         let holds = |(lo, hi): &(DVec2, DVec2)| lo.cmple(pixel).all() && hi.cmpge(pixel).all();
         face == 0 || self.boxes.get(&face).is_some_and(|boxes| boxes.iter().any(holds))

@@ -156,8 +156,9 @@ fn coincident_faces_tie() {
 }
 
 /// Two sheets with a strip between them, all facing the eye; the strip is `width` pixels wide and `behind`
-/// the sheets. A renderer with an error of half a pixel may draw it two pixels wide: the worst shift.
-fn strip(ids: [u32; 3], width: f64, behind: f64) -> Judgement {
+/// the sheets. A renderer with an error of `limit_px` may draw it two pixels wide, and `aside` pixels to the right of
+/// its place: the worst shift is nearly `aside + 1` pixels.
+fn strip(ids: [u32; 3], width: f64, behind: f64, aside: usize, limit_px: f64) -> Judgement {
     let mut camera = parallel(DVec3::new(0.0, 0.0, 3.0));
     camera.up = DVec3::Y;
     let wide = width * 3.0 / 80.0;
@@ -174,23 +175,57 @@ fn strip(ids: [u32; 3], width: f64, behind: f64) -> Judgement {
         // the middle of the strip leans: x = 0.025 (z = 0 plane) at y = 0
         let height = (39.5 - f64::from(y)) * 3.0 / 80.0;
         let centre = (0.025 * (1.0 + height) + wide * 0.5) * 80.0 / 3.0 + 50.0;
-        let left = (centre - 0.5).floor() as usize;
+        let left = (centre - 0.5).floor() as usize + aside;
         picture.face[y as usize * 100 + left] = ids[1];
         picture.face[y as usize * 100 + left + 1] = ids[1];
     }
-    judge(&tracer, &camera, &picture.images(), &JudgeOptions { limit_px: 1.0, ..Default::default() })
+    judge(&tracer, &camera, &picture.images(), &JudgeOptions { limit_px, ..Default::default() })
 }
 
 #[test]
 fn slivers_and_slits_are_found() {
-    // a face of 1/1000 px between two others, and a slit of 1/40 px in one face with another behind it
-    for (ids, width, behind) in [([1, 2, 3], 0.001, 0.0), ([1, 2, 1], 0.025, 0.5)] {
-        let j = strip(ids, width, behind);
+    // a face of 1/1000 px between two others, and a slit of 1/40 px in one face with another behind it; the same with a
+    // slit of 1/10 px that is drawn beyond the least reach of the search
+    for (ids, width, behind, aside) in
+        [([1, 2, 3], 0.001, 0.0, 0), ([1, 2, 1], 0.025, 0.5, 0), ([1, 2, 1], 0.1, 0.5, 3)]
+    {
+        let most = aside as f64 + 1.0;
+        let j = strip(ids, width, behind, aside, most);
         assert_eq!((j.wrong, j.gross, total(&j)), (0, 0, 8000), "{ids:?}");
         let shifted: u64 = j.shifts.iter().map(|b| b.pixels).sum();
         assert!((70..=80).contains(&shifted), "{shifted} of 80 pixels are off the strip");
-        assert!(j.worst_shift_px > 0.8 && j.worst_shift_px <= 1.0, "{}", j.worst_shift_px);
+        assert!(j.worst_shift_px > most - 0.2 && j.worst_shift_px <= most, "{}", j.worst_shift_px);
     }
+}
+
+/// Two sheets that meet at 50.3 px; the right one is drawn four columns too wide. The centres of these columns are 0.8,
+/// 1.8, 2.8 and 3.8 px from the border.
+#[test]
+fn a_larger_limit_is_searched_as_far() {
+    let mut camera = parallel(DVec3::new(0.0, 0.0, 3.0));
+    camera.up = DVec3::Y;
+    let sheet = |x: f64| rectangle(DVec3::new(x, -1.0, 0.0), DVec3::X, DVec3::Y * 2.0);
+    let border = 0.3 * 3.0 / 80.0;
+    let faces = vec![face(1, sheet(border - 1.0), vec![]), face(2, sheet(border), vec![])];
+    let tracer = Tracer::new(&model(faces, &[DAffine3::IDENTITY]));
+    let mut picture = tracer.picture(&camera, &|_| {});
+    for y in 20..60 {
+        picture.face[y * 100 + 46..y * 100 + 50].fill(2);
+    }
+    let judged =
+        |limit_px| judge(&tracer, &camera, &picture.images(), &JudgeOptions { limit_px, ..Default::default() });
+    let j = judged(4.0);
+    assert_eq!((j.agree, j.wrong, j.gross, total(&j)), (8000 - 160, 0, 0, 8000));
+    assert!((j.worst_shift_px - 3.8).abs() < 0.01, "{}", j.worst_shift_px);
+    assert_eq!(
+        j.shifts.iter().filter(|b| b.up_to_px > 2.0).map(|b| (b.up_to_px, b.pixels)).collect::<Vec<_>>(),
+        [(4.0, 80)]
+    );
+    // the fourth column is beyond this limit, and the last two beyond the reach of a small one
+    let j = judged(3.0);
+    assert_eq!((j.wrong, j.gross, total(&j)), (40, 40, 8000));
+    let j = judged(0.4);
+    assert_eq!((j.wrong, j.gross, total(&j)), (160, 80, 8000));
 }
 
 #[test]
