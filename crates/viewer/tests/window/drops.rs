@@ -74,19 +74,19 @@ fn a_dropped_file_stands_beside_the_open_one() {
     let display = &screen.display;
     let (folder, mut program, first) = opened(display, "bracket.step");
     let path = |name: &str| folder.path().join(name);
-    std::fs::copy(sample("assembly.step"), path("assembly.step")).expect("copied");
-    let dropped = path("assembly.step").canonicalize().expect("a file");
+    std::fs::copy(sample("panel.step"), path("panel.step")).expect("copied");
+    let dropped = path("panel.step").canonicalize().expect("a file");
     let eye = first.camera_of(&program.command(display)).eye;
     drop_file(display, &program.id, &dropped);
     program.wait(&format!("read {}", dropped.display()));
     program.wait("uploaded");
     program.rest();
     let title = display.xdotool(&format!("getwindowname {}", program.id));
-    assert_eq!(title, "bracket.step, assembly.step - selvedge");
+    assert_eq!(title, "bracket.step, panel.step - selvedge");
     assert_eq!(first.camera_of(&program.command(display)).eye, eye, "the view stays");
 
     // both are in one scene: parts of either are picked in it
-    let mut both = Scene::of(&[path("bracket.step"), path("assembly.step")], &program.last("view of "));
+    let mut both = Scene::of(&[path("bracket.step"), path("panel.step")], &program.last("view of "));
     assert!(both.world.model.instances.len() > first.world.model.instances.len());
     program.after(|| display.key("Home"));
     both.camera = both.camera_of(&program.command(display));
