@@ -33,7 +33,7 @@ const ROUNDED: f64 = 1e-12;
 #[derive(Debug)]
 pub(super) struct Piece {
     /// Number of the cell.
-    cell: usize,
+    pub cell: usize,
     /// Homogeneous, in the patch's unit square.
     curve: Vec<DVec3>,
     /// The same in space.

@@ -98,12 +98,13 @@ impl Powers {
         let scaled = |value: fn(f64, f64) -> f64| -> Vec<f64> {
             curve.iter().zip(&scales).map(|(p, scale)| scale * value(p[axis], p.z)).collect()
         };
-        let (below, above) = (powers(&scaled(|x, z| z - x), n), powers(&scaled(|x, _| x), n));
         let stride = m * n + 1;
+        let (below, above) = (powers(&scaled(|x, z| z - x), n, stride), powers(&scaled(|x, _| x), n, stride));
         let mut all = vec![0.0; (n + 1) * stride];
         let choose = binomials(n);
         for (i, (all, choose)) in all.chunks_exact_mut(stride).zip(choose).enumerate() {
-            add_product(all, &below[n - i], &above[i]);
+            let (below, above) = (&below[(n - i) * stride..], &above[i * stride..]);
+            add_product(all, &below[..m * (n - i) + 1], &above[..m * i + 1]);
             all.iter_mut().for_each(|x| *x *= choose);
         }
         Self { all, stride }
@@ -118,13 +119,14 @@ impl Powers {
     }
 }
 
-/// A polynomial to the powers from 0 to `n`.
-fn powers(of: &[f64], n: usize) -> Vec<Vec<f64>> {
-    let mut all = vec![vec![1.0]];
+/// A polynomial to the powers from 0 to `n`, each at a multiple of `stride`.
+fn powers(of: &[f64], n: usize, stride: usize) -> Vec<f64> {
+    let mut all = vec![0.0; (n + 1) * stride];
+    all[0] = 1.0;
     for i in 0..n {
-        let mut next = vec![0.0; all[i].len() + of.len() - 1];
-        add_product(&mut next, &all[i], of);
-        all.push(next);
+        let (known, next) = all.split_at_mut((i + 1) * stride);
+        let len = (of.len() - 1) * i + 1;
+        add_product(next, &known[i * stride..][..len], of);
     }
     all
 }

@@ -72,7 +72,7 @@ impl<'a> Curves<'a> {
             }
             loops.push(this.run(first, this.all.len()));
         }
-        this.root = (!loops.is_empty()).then(|| this.several(&loops));
+        this.root = (!loops.is_empty()).then(|| this.several(&mut loops));
         let degree = this.all.iter().map(|curve| curve.points.len()).max().unwrap_or(0);
         if let Some(root) = this.root {
             // Horner's scheme rounds by two units a degree; the cuts add as much again
@@ -101,12 +101,18 @@ impl<'a> Curves<'a> {
         self.pair(a, b, (self.nodes[a].ends.0, self.nodes[b].ends.1))
     }
 
-    /// The node of whole loops.
-    fn several(&mut self, loops: &[usize]) -> usize {
+    /// The node of whole loops, halved at the median of their middles along the longer side.
+    fn several(&mut self, loops: &mut [usize]) -> usize {
         if let [only] = loops {
             return *only;
         }
-        let (a, b) = loops.split_at(loops.len() / 2);
+        let middle = |node: &usize| self.nodes[*node].lo + self.nodes[*node].hi;
+        let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let (lo, hi) = loops.iter().map(middle).fold(none, |(lo, hi), p| (lo.min(p), hi.max(p)));
+        let axis = usize::from(hi.y - lo.y > hi.x - lo.x);
+        let half = loops.len() / 2;
+        loops.select_nth_unstable_by(half, |a, b| middle(a)[axis].total_cmp(&middle(b)[axis]).then(a.cmp(b)));
+        let (a, b) = loops.split_at_mut(half);
         let (a, b) = (self.several(a), self.several(b));
         self.pair(a, b, (0.0, 0.0))
     }
@@ -175,7 +181,8 @@ impl<'a> Curves<'a> {
         if lo.cmpgt(rect.1).any() || hi.cmplt(rect.0).any() {
             return false;
         }
-        if lo.cmpge(rect.0).all() && hi.cmple(rect.1).all() {
+        // straight curves of no length are not there
+        if lo != hi && lo.cmpge(rect.0).all() && hi.cmple(rect.1).all() {
             return true;
         }
         match *link {

@@ -10,7 +10,7 @@
 //! Patches of a face that is nowhere higher than its trim curves ([`Carried::is_ruled`]) are searched only if a piece is
 //! left out, because the face is not beside it at the places where that is tested.
 
-use super::carried::{Carried, Reached};
+use super::carried::{Carried, Piece, Reached};
 use super::curves::Link;
 use super::height::{Height, ROUNDING, Up, quotient};
 use crate::model::{Bounds, Face, Mesh};
@@ -113,17 +113,17 @@ enum What {
         face: usize,
         node: usize,
     },
-    /// A piece of a trim curve, as high as its part of the patch, or as its control points in space.
+    /// A piece of a trim curve.
     Piece {
         face: usize,
         curve: usize,
         piece: usize,
-        in_space: bool,
+        bound: Bound,
     },
     /// A part of such a piece.
     Curve {
         face: usize,
-        height: Height,
+        height: Box<Height>,
         halvings: u32,
     },
     /// A knot span of a face's surface, as high as its control points.
@@ -132,7 +132,18 @@ enum What {
         cell: usize,
     },
     /// A rectangle of a face's domain within one patch, or a line of it.
-    Area(Area),
+    Area(Box<Area>),
+}
+
+/// What a piece is as high as.
+#[derive(Clone, Copy)]
+enum Bound {
+    /// The control points of its cell.
+    Cell,
+    /// The part of the patch under its box.
+    Part,
+    /// Its control points in space.
+    Space,
 }
 
 struct Area {
@@ -256,8 +267,8 @@ impl<'s, 'a> Search<'s, 'a> {
             | What::Run { face, .. }
             | What::Piece { face, .. }
             | What::Curve { face, .. }
-            | What::Cell { face, .. }
-            | What::Area(Area { face, .. }) => *face,
+            | What::Cell { face, .. } => *face,
+            What::Area(area) => area.face,
         };
         if self.bodies[self.placed[of.placed].1].faces[face].face.kind.is_elementary() {
             tolerance.analytic
@@ -283,6 +294,7 @@ impl<'s, 'a> Search<'s, 'a> {
         let on = |face: usize| On { placed, up, face, carried: body.carried(face) };
         match what {
             What::Body => {
+                self.heap.reserve(body.faces.len());
                 for (i, item) in body.faces.iter().enumerate() {
                     self.push(placed, up.of_box(item.around), What::Face(i));
                 }
@@ -310,19 +322,21 @@ impl<'s, 'a> Search<'s, 'a> {
                     Link::Curve(curve) => self.pieces(on, upper, curve),
                 }
             }
-            What::Piece { face, curve, piece, in_space: false } => {
-                self.in_space(on(face), upper, curve, piece);
+            What::Piece { face, curve, piece, bound: Bound::Cell } => {
+                let upper = body.carried(face).upper_of_piece(curve, piece, up).min(upper);
+                self.push(placed, upper, What::Piece { face, curve, piece, bound: Bound::Part });
             }
-            What::Piece { face, curve, piece, in_space: true } => {
+            What::Piece { face, curve, piece, bound: Bound::Part } => self.in_space(on(face), upper, curve, piece),
+            What::Piece { face, curve, piece, bound: Bound::Space } => {
                 // the test beside the curve costs more than its bound, so that only the highest pieces are tested
                 let carried = body.carried(face);
                 if carried.is_beside(curve, piece) {
                     self.curve(placed, upper, face, up.of_curve(carried.in_space(curve, piece)), 0);
                 } else if carried.is_ruled && self.inside.insert((placed, face)) {
-                    self.cells(on(face), upper);
+                    self.cells(on(face), f64::INFINITY);
                 }
             }
-            What::Curve { face, height, halvings } => self.curve(placed, upper, face, height, halvings),
+            What::Curve { face, height, halvings } => self.curve(placed, upper, face, *height, halvings),
             What::Cell { face, cell } => {
                 let carried = body.carried(face);
                 let (lo, hi) = carried.rectangle(cell);
@@ -331,12 +345,12 @@ impl<'s, 'a> Search<'s, 'a> {
                     let height = up.of_patch(carried.patch(cell));
                     let (upper, inside) = (height.upper().min(upper), side == RectSide::Inside);
                     let area = Area { face, height, lo, hi, inside, whole: true, halvings: 0 };
-                    self.push(placed, upper, What::Area(area));
+                    self.push(placed, upper, What::Area(Box::new(area)));
                 }
             }
             What::Area(area) => {
                 let carried = body.carried(area.face);
-                self.area(placed, upper, area, carried);
+                self.area(placed, upper, *area, carried);
             }
         }
     }
@@ -349,7 +363,7 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         for half in height.halves_u() {
             let upper = half.upper().min(upper);
-            self.push(placed, upper, What::Curve { face, height: half, halvings: halvings + 1 });
+            self.push(placed, upper, What::Curve { face, height: Box::new(half), halvings: halvings + 1 });
         }
     }
 
@@ -375,21 +389,21 @@ impl<'s, 'a> Search<'s, 'a> {
 
     fn pieces(&mut self, on: On<'_, 'a>, upper: f64, curve: usize) {
         let On { placed, up, face, carried } = on;
-        let count = carried.pieces(curve).len();
-        for piece in 0..count {
-            if count == 1 {
-                // as high as its run
-                self.in_space(on, upper, curve, piece);
-            } else {
-                let upper = carried.upper_of_piece(curve, piece, up).min(upper);
-                self.push(placed, upper, What::Piece { face, curve, piece, in_space: false });
+        match carried.pieces(curve) {
+            // as high as its run
+            [_] => self.in_space(on, upper, curve, 0),
+            all => {
+                for (piece, Piece { cell, .. }) in all.iter().enumerate() {
+                    let upper = up.of_box(carried.hulls[*cell]).min(upper);
+                    self.push(placed, upper, What::Piece { face, curve, piece, bound: Bound::Cell });
+                }
             }
         }
     }
 
     fn in_space(&mut self, On { placed, up, face, carried }: On<'_, 'a>, upper: f64, curve: usize, piece: usize) {
         let upper = up.upper_of(carried.in_space(curve, piece)).min(upper);
-        self.push(placed, upper, What::Piece { face, curve, piece, in_space: true });
+        self.push(placed, upper, What::Piece { face, curve, piece, bound: Bound::Space });
     }
 
     fn area(&mut self, placed: usize, upper: f64, area: Area, carried: &Carried<'_>) {
@@ -409,7 +423,7 @@ impl<'s, 'a> Search<'s, 'a> {
                 let along_u = (height.side_v(last), DVec2::new(lo.x, v), DVec2::new(hi.x, v));
                 for (height, lo, hi) in [along_v, along_u] {
                     let area = Area { face, height, lo, hi, inside, whole: false, halvings };
-                    self.push(placed, area.height.upper(), What::Area(area));
+                    self.push(placed, area.height.upper(), What::Area(Box::new(area)));
                 }
             }
         }
@@ -436,7 +450,8 @@ impl<'s, 'a> Search<'s, 'a> {
             };
         for (height, (lo, hi)) in halves.into_iter().zip([(lo, first_hi), (second_lo, hi)]) {
             let upper = height.upper().min(upper);
-            self.push(placed, upper, What::Area(Area { face, height, lo, hi, inside, whole: false, halvings }));
+            let area = Area { face, height, lo, hi, inside, whole: false, halvings };
+            self.push(placed, upper, What::Area(Box::new(area)));
         }
     }
 
