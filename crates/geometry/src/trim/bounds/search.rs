@@ -17,7 +17,7 @@ use crate::model::{Bounds, Face, Mesh};
 use crate::trim::RectSide;
 use glam::{DAffine3, DVec2, DVec3};
 use std::cell::OnceCell;
-use std::cmp::Ordering;
+use std::cmp::{Ordering, Reverse};
 use std::collections::{BinaryHeap, HashMap, HashSet};
 
 /// Steps of one search; after them each candidate counts as high as its bound.
@@ -159,9 +159,15 @@ struct Area {
 }
 
 impl What {
-    /// The order among equal bounds: trim curves raise the mark at once, areas need a test against the loops.
-    fn rank(&self) -> u8 {
-        u8::from(!matches!(self, Self::Area(_) | Self::Cell { .. }))
+    /// The order among equal bounds: what is nearest to a point of the model, which raises the mark, is first. Areas need
+    /// a test against the loops. The parts of a run have smaller numbers than it.
+    fn rank(&self) -> (u8, Reverse<usize>) {
+        match self {
+            Self::Area(_) | Self::Cell { .. } => (0, Reverse(0)),
+            Self::Body | Self::Face(_) | Self::Mesh(_) => (1, Reverse(0)),
+            Self::Run { node, .. } => (2, Reverse(*node)),
+            Self::Piece { .. } | Self::Curve { .. } => (3, Reverse(0)),
+        }
     }
 }
 
