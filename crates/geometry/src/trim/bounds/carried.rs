@@ -2,11 +2,11 @@
 //! search reaches them.
 //!
 //! ```text
-//!   cells of the domain       ┌─────┬─────┐      a cell is as high as the control points of its knot span, then as those
-//!   between knots             │   ╭─┼─╮   │      of its patch
-//!                             ├───┼─┼─┼───┤
-//!   runs of trim curves       │   ╰─┼─╯   │      a run is as high as the cells under its box, or as the part of the
-//!                             └─────┴─────┘      patch under it; a curve is cut where it passes from cell to cell
+//!   cells of the domain    ┌─────┬─────┐     a cell is as high as the control points of its knot span, then as those
+//!   between knots          │   ╭─┼─╮   │     of its patch
+//!                          ├───┼─┼─┼───┤
+//!   runs of trim curves    │   ╰─┼─╯   │     a run is as high as the cells under its box, or as the part of the
+//!                          └─────┴─────┘     patch under it; a curve is cut where it passes from cell to cell
 //! ```
 
 use super::compose::{compose, in_unit_square, rectangle};

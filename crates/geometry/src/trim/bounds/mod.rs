@@ -18,8 +18,8 @@
 //! loops. The search is over when no bound is above the mark by more than the tolerance, so parts and faces away from
 //! the border of the model are never examined.
 //!
-//! *Work.* A face is first as high as its control points, then as those of the knot spans that its loops reach. Its trim
-//! curves are halved in runs ([`curves`]): a run is as high as the part of the patch under its box, which costs a
+//! *Work.* A face is first as high as its control points, then as those of the knot spans that its loops reach. Its
+//! trim curves are halved in runs ([`curves`]): a run is as high as the part of the patch under its box, which costs a
 //! fraction of a curve in space. Only the highest curves are cut and composed with their patches, once for all
 //! directions. Patches are cut out of the surface where a search reaches them. The face beside a piece is tested last,
 //! when no other candidate is higher.

@@ -1,7 +1,7 @@
 //! The largest height of placed faces and meshes, by branch and bound.
 //!
 //! ```text
-//!   body ──▶ face ──┬─▶ run of trim curves ──▶ its halves …                      the heap, the highest bound first
+//!   body ──▶ face ──┬─▶ run of trim curves ──▶ its halves …                    the heap, the highest bound first
 //!     │             │     └─▶ piece over one patch ──▶ in space ──▶ its halves …
 //!     │             └─▶ cell ──▶ its patch ──┬─▶ its halves, inside or across the loops …
 //!     └────▶ mesh                            └─▶ its four sides ──▶ their halves …
@@ -159,8 +159,8 @@ struct Area {
 }
 
 impl What {
-    /// The order among equal bounds: what is nearest to a point of the model, which raises the mark, is first. Areas need
-    /// a test against the loops. The parts of a run have smaller numbers than it.
+    /// The order among equal bounds: what is nearest to a point of the model, which raises the mark, is first. Areas
+    /// need a test against the loops. The parts of a run have smaller numbers than it.
     fn rank(&self) -> (u8, Reverse<usize>) {
         match self {
             Self::Area(_) | Self::Cell { .. } => (0, Reverse(0)),
