@@ -201,6 +201,11 @@ impl TrimLoop {
         self.curves.iter().map(|points| Bezier { points: points.clone() })
     }
 
+    /// The homogeneous control points of each curve.
+    pub(crate) fn control_points(&self) -> impl DoubleEndedIterator<Item = &[DVec3]> {
+        self.curves.iter().map(Vec::as_slice)
+    }
+
     /// The loop with one control point moved to `to` in `(u, v)`; its weight stays. The last one of a curve is
     /// the first of the next: both move.
     ///

@@ -6,6 +6,7 @@ use super::{Jet, Patch};
 use glam::{DVec2, DVec3, DVec4};
 #[cfg(feature = "serde")]
 use serde::Deserialize;
+use std::ops::Range;
 
 /// A rational B-spline surface `S(u, v) = Σ N_i(u) N_j(v) P_ij`, over the domain of its knot vectors.
 ///
@@ -186,23 +187,25 @@ impl Surface {
         self.patches().within(self.degrees(), u, v)
     }
 
-    /// The knots and control points of the spans that a rectangle meets, clamped to the domain; `None` where these are
-    /// all. Its patches are those of the whole surface.
-    pub(crate) fn spans_over(&self, lo: DVec2, hi: DVec2) -> Option<Self> {
-        let ((nu, nv), ((u0, u1), (v0, v1))) = (self.counts(), self.domain());
+    /// The control points, along `u` and along `v`, of the knot spans that a rectangle meets, clamped to the domain.
+    pub(crate) fn points_over(&self, lo: DVec2, hi: DVec2) -> [Range<usize>; 2] {
+        let ((nu, nv), (domain_u, domain_v)) = (self.counts(), self.domain());
         let along = |degree: usize, knots: &[f64], count: usize, (a, b): (f64, f64), domain: (f64, f64)| {
             let span = |t: f64| find_span(degree, knots, count, t.clamp(domain.0, domain.1));
             span(a) - degree..span(b) + 1
         };
-        let u = along(self.degree_u, &self.knots_u, nu, (lo.x, hi.x), (u0, u1));
-        let v = along(self.degree_v, &self.knots_v, nv, (lo.y, hi.y), (v0, v1));
-        if (u.len(), v.len()) == (nu, nv) {
-            return None;
-        }
+        let u = along(self.degree_u, &self.knots_u, nu, (lo.x, hi.x), domain_u);
+        let v = along(self.degree_v, &self.knots_v, nv, (lo.y, hi.y), domain_v);
+        [u, v]
+    }
+
+    /// The surface over the knot spans that these control points make, along `u` and along `v`.
+    pub(crate) fn part(&self, [u, v]: [Range<usize>; 2]) -> Self {
+        let nu = self.counts().0;
         let knots_u = &self.knots_u[u.start..u.end + self.degree_u + 1];
         let knots_v = &self.knots_v[v.start..v.end + self.degree_v + 1];
         let points = v.flat_map(|j| &self.points[j * nu..][u.clone()]).copied().collect();
-        Some(Self::with_net(self.degrees(), (knots_u, knots_v), points))
+        Self::with_net(self.degrees(), (knots_u, knots_v), points)
     }
 
     /// Point and first derivatives at `(u, v)`, clamped to the domain.

@@ -62,7 +62,8 @@ impl LoopIndex {
     }
 }
 
-fn piece_meets(piece: &Piece, curve: &Bezier<DVec3>, rect: (DVec2, DVec2)) -> bool {
+/// Whether a piece meets a rectangle that meets its box.
+pub(super) fn piece_meets(piece: &Piece, curve: &Bezier<DVec3>, rect: (DVec2, DVec2)) -> bool {
     if piece.straight {
         // boxes overlap: only the line itself can still separate two convex shapes
         let (lo, hi) = rect;

@@ -23,6 +23,41 @@ pub(super) fn in_unit_square(points: &[DVec3], u: (f64, f64), v: (f64, f64)) -> 
     points.iter().map(local).collect()
 }
 
+/// The control points of a part of a patch. In contrast to [`Patch::rectangle`] all is done in one place.
+pub(super) fn rectangle(patch: &Patch, u: (f64, f64), v: (f64, f64)) -> Vec<DVec4> {
+    let mut points = patch.points.clone();
+    let (n, k) = (patch.degree_u + 1, patch.degree_v + 1);
+    (0..k).for_each(|j| segment(&mut points[j * n..][..n], 1, u));
+    (0..n).for_each(|i| segment(&mut points[i..], n, v));
+    points
+}
+
+/// De Casteljau's algorithm at both ends of a part of `[0, 1]`, on the curve of each `stride`-th point.
+fn segment(points: &mut [DVec4], stride: usize, (a, b): (f64, f64)) {
+    let last = (points.len() - 1) / stride;
+    let mut after = |t: f64| {
+        for round in 0..last {
+            for i in 0..last - round {
+                points[i * stride] = points[i * stride].lerp(points[(i + 1) * stride], t);
+            }
+        }
+    };
+    if a > 0.0 {
+        after(a);
+    }
+    let mut before = |t: f64| {
+        for round in 1..=last {
+            for i in (round..=last).rev() {
+                points[i * stride] = points[(i - 1) * stride].lerp(points[i * stride], t);
+            }
+        }
+    };
+    if b < 1.0 {
+        // what is left of it begins at `a`
+        before(if a < 1.0 { (b - a) / (1.0 - a) } else { 1.0 });
+    }
+}
+
 /// The control points, homogeneous, of a patch along a curve in its unit square, which is homogeneous too.
 pub(super) fn compose(patch: &Patch, curve: &[DVec3]) -> Vec<DVec4> {
     let level = |axis: usize| {
@@ -60,25 +95,17 @@ impl Powers {
     fn new(curve: &[DVec3], axis: usize, n: usize) -> Self {
         let m = curve.len() - 1;
         let scales = binomials(m);
-        let below: Vec<f64> = curve.iter().zip(&scales).map(|(p, scale)| scale * (p.z - p[axis])).collect();
-        let above: Vec<f64> = curve.iter().zip(&scales).map(|(p, scale)| scale * p[axis]).collect();
+        let scaled = |value: fn(f64, f64) -> f64| -> Vec<f64> {
+            curve.iter().zip(&scales).map(|(p, scale)| scale * value(p[axis], p.z)).collect()
+        };
         let stride = m * n + 1;
-        let (mut all, mut next) = (vec![0.0; (n + 1) * stride], vec![0.0; stride]);
-        all[0] = 1.0;
-        // those of the next degree, by Pascal's rule: each is a sum of two, the last first
-        for degree in 0..n {
-            let len = m * degree + 1;
-            let next = &mut next[..len + m];
-            for i in (0..=degree + 1).rev() {
-                next.fill(0.0);
-                if i <= degree {
-                    add_product(next, &all[i * stride..][..len], &below);
-                }
-                if i > 0 {
-                    add_product(next, &all[(i - 1) * stride..][..len], &above);
-                }
-                all[i * stride..][..len + m].copy_from_slice(next);
-            }
+        let (below, above) = (powers(&scaled(|x, z| z - x), n, stride), powers(&scaled(|x, _| x), n, stride));
+        let mut all = vec![0.0; (n + 1) * stride];
+        let choose = binomials(n);
+        for (i, (all, choose)) in all.chunks_exact_mut(stride).zip(choose).enumerate() {
+            let (below, above) = (&below[(n - i) * stride..], &above[i * stride..]);
+            add_product(all, &below[..m * (n - i) + 1], &above[..m * i + 1]);
+            all.iter_mut().for_each(|x| *x *= choose);
         }
         Self { all, stride }
     }
@@ -90,6 +117,18 @@ impl Powers {
         }
         sum
     }
+}
+
+/// A polynomial to the powers from 0 to `n`, each at a multiple of `stride`.
+fn powers(of: &[f64], n: usize, stride: usize) -> Vec<f64> {
+    let mut all = vec![0.0; (n + 1) * stride];
+    all[0] = 1.0;
+    for i in 0..n {
+        let (known, next) = all.split_at_mut((i + 1) * stride);
+        let len = (of.len() - 1) * i + 1;
+        add_product(next, &known[i * stride..][..len], of);
+    }
+    all
 }
 
 /// Adds `a * b`.

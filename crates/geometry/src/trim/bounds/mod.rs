@@ -10,7 +10,7 @@
 //! ```
 //!
 //! *Method.* Each of the six sides is a search for the highest point along a direction. Its candidates are in a heap,
-//! the highest bound first: placed parts, their faces, pieces of trim curves (many in groups), patches and their sides.
+//! the highest bound first: placed parts, their faces, trim curves and runs of them, patches and their sides.
 //! Bounds come from boxes, then from control values. A piece of a trim curve over one patch is a rational curve in
 //! space ([`compose`]), and is halved until the bound is met. A patch is halved likewise, and dropped where the loops
 //! leave nothing of it or where it is nowhere level. Trimmed planes, cylinders, cones and other ruled faces are highest
@@ -18,9 +18,11 @@
 //! loops. The search is over when no bound is above the mark by more than the tolerance, so parts and faces away from
 //! the border of the model are never examined.
 //!
-//! *Work.* A face is first as high as its control points, then as those of the knot spans that its loops reach. Only
-//! then it is cut into patches. A piece is composed with its patch once for all directions. The face beside a piece is
-//! tested last, when no other candidate is higher.
+//! *Work.* A face is first as high as its control points, then as those of the knot spans that its loops reach. Its
+//! trim curves are halved in runs ([`curves`]): a run is as high as the part of the patch under its box, which costs a
+//! fraction of a curve in space. Only the highest curves are cut and composed with their patches, once for all
+//! directions. Patches are cut out of the surface where a search reaches them. The face beside a piece is tested last,
+//! when no other candidate is higher.
 //!
 //! *Accuracy.* Each side touches a point of the model, and no point is beyond it by more than [`ANALYTIC`] of the box's
 //! diagonal, or [`OTHER`] of it for faces without an equation, plus some roundings of the largest coordinate. The faces
@@ -42,6 +44,7 @@
 mod carried;
 mod compose;
 mod convex;
+mod curves;
 mod framing;
 mod height;
 mod polyhedron;

@@ -1,24 +1,23 @@
 //! The largest height of placed faces and meshes, by branch and bound.
 //!
 //! ```text
-//!   body ──▶ face ──┬─▶ piece of a trim curve ──▶ in space ──▶ its halves …      the heap, the highest bound first
-//!     │             │     ▲
-//!     │             ├─▶ group of many pieces ──▶ its halves …
-//!     │             └─▶ patch ──┬─▶ its halves, inside or across the loops …
-//!     └────▶ mesh               └─▶ its four sides ──▶ their halves …
+//!   body ──▶ face ──┬─▶ run of trim curves ──▶ its halves …                    the heap, the highest bound first
+//!     │             │     └─▶ piece over one patch ──▶ in space ──▶ its halves …
+//!     │             └─▶ cell ──▶ its patch ──┬─▶ its halves, inside or across the loops …
+//!     └────▶ mesh                            └─▶ its four sides ──▶ their halves …
 //! ```
 //!
 //! Patches of a face that is nowhere higher than its trim curves ([`Carried::is_ruled`]) are searched only if a piece is
 //! left out, because the face is not beside it at the places where that is tested.
 
-use super::carried::{Carried, Parts, Reached};
+use super::carried::{Carried, Piece, Reached};
+use super::curves::Link;
 use super::height::{Height, ROUNDING, Up, quotient};
 use crate::model::{Bounds, Face, Mesh};
-use crate::spline::SurfacePatch;
 use crate::trim::RectSide;
 use glam::{DAffine3, DVec2, DVec3};
 use std::cell::OnceCell;
-use std::cmp::Ordering;
+use std::cmp::{Ordering, Reverse};
 use std::collections::{BinaryHeap, HashMap, HashSet};
 
 /// Steps of one search; after them each candidate counts as high as its bound.
@@ -39,7 +38,7 @@ struct Item<'a> {
     face: &'a Face,
     /// Box of all control points.
     around: Bounds,
-    reached: OnceCell<Reached<'a>>,
+    reached: OnceCell<Reached>,
     carried: OnceCell<Carried<'a>>,
 }
 
@@ -56,13 +55,14 @@ impl<'a> Body<'a> {
         Self { faces, meshes, around }
     }
 
-    fn reached(&self, face: usize) -> &Reached<'a> {
+    fn reached(&self, face: usize) -> &Reached {
         let Item { face, reached, .. } = &self.faces[face];
         reached.get_or_init(|| Reached::new(face))
     }
 
     fn carried(&self, face: usize) -> &Carried<'a> {
-        self.faces[face].carried.get_or_init(|| Carried::new(self.reached(face)))
+        let item = &self.faces[face];
+        item.carried.get_or_init(|| Carried::new(item.face, self.reached(face)))
     }
 }
 
@@ -73,6 +73,7 @@ pub(super) struct Work {
     pub faces: usize,
     pub patches: usize,
     pub pieces_tested: usize,
+    pub pieces_in_space: usize,
 }
 
 #[cfg(test)]
@@ -81,7 +82,8 @@ impl Body<'_> {
         self.faces.iter().filter_map(|item| item.carried.get()).fold(Work::default(), |all, carried| Work {
             faces: all.faces + 1,
             patches: all.patches + carried.hulls.len(),
-            pieces_tested: all.pieces_tested + carried.pieces_tested(),
+            pieces_tested: all.pieces_tested + carried.pieces_done().0,
+            pieces_in_space: all.pieces_in_space + carried.pieces_done().1,
         })
     }
 }
@@ -106,30 +108,42 @@ enum What {
     Body,
     Face(usize),
     Mesh(usize),
-    /// Several pieces of trim curves over one patch.
-    Group {
+    /// A node of a face's trim curves.
+    Run {
         face: usize,
-        group: usize,
+        node: usize,
     },
-    /// A piece of a trim curve, as high as its patch or group, or as its control points in space.
+    /// A piece of a trim curve.
     Piece {
         face: usize,
+        curve: usize,
         piece: usize,
-        in_space: bool,
+        bound: Bound,
     },
     /// A part of such a piece.
     Curve {
         face: usize,
-        height: Height,
+        height: Box<Height>,
         halvings: u32,
     },
-    /// A whole patch.
-    Patch {
+    /// A knot span of a face's surface, as high as its control points.
+    Cell {
         face: usize,
-        patch: usize,
+        cell: usize,
     },
     /// A rectangle of a face's domain within one patch, or a line of it.
-    Area(Area),
+    Area(Box<Area>),
+}
+
+/// What a piece is as high as.
+#[derive(Clone, Copy)]
+enum Bound {
+    /// The control points of its cell.
+    Cell,
+    /// The part of the patch under its box.
+    Part,
+    /// Its control points in space.
+    Space,
 }
 
 struct Area {
@@ -145,9 +159,15 @@ struct Area {
 }
 
 impl What {
-    /// The order among equal bounds: trim curves raise the mark at once, areas need a test against the loops.
-    fn rank(&self) -> u8 {
-        u8::from(!matches!(self, Self::Area(_) | Self::Patch { .. }))
+    /// The order among equal bounds: what is nearest to a point of the model, which raises the mark, is first. Areas
+    /// need a test against the loops. The parts of a run have smaller numbers than it.
+    fn rank(&self) -> (u8, Reverse<usize>) {
+        match self {
+            Self::Area(_) | Self::Cell { .. } => (0, Reverse(0)),
+            Self::Body | Self::Face(_) | Self::Mesh(_) => (1, Reverse(0)),
+            Self::Run { node, .. } => (2, Reverse(*node)),
+            Self::Piece { .. } | Self::Curve { .. } => (3, Reverse(0)),
+        }
     }
 }
 
@@ -166,6 +186,15 @@ impl Ord for Candidate {
     fn cmp(&self, other: &Self) -> Ordering {
         self.upper.total_cmp(&other.upper).then(self.what.rank().cmp(&other.what.rank()))
     }
+}
+
+/// A face of a placed body.
+#[derive(Clone, Copy)]
+struct On<'c, 'a> {
+    placed: usize,
+    up: Up,
+    face: usize,
+    carried: &'c Carried<'a>,
 }
 
 /// The search along one direction.
@@ -241,11 +270,11 @@ impl<'s, 'a> Search<'s, 'a> {
         let face = match &of.what {
             What::Body | What::Mesh(_) => return tolerance.analytic,
             What::Face(face)
-            | What::Group { face, .. }
+            | What::Run { face, .. }
             | What::Piece { face, .. }
             | What::Curve { face, .. }
-            | What::Patch { face, .. }
-            | What::Area(Area { face, .. }) => *face,
+            | What::Cell { face, .. } => *face,
+            What::Area(area) => area.face,
         };
         if self.bodies[self.placed[of.placed].1].faces[face].face.kind.is_elementary() {
             tolerance.analytic
@@ -268,8 +297,10 @@ impl<'s, 'a> Search<'s, 'a> {
         let bodies = self.bodies;
         let (up, body) = self.placed[placed];
         let body = &bodies[body];
+        let on = |face: usize| On { placed, up, face, carried: body.carried(face) };
         match what {
             What::Body => {
+                self.heap.reserve(body.faces.len());
                 for (i, item) in body.faces.iter().enumerate() {
                     self.push(placed, up.of_box(item.around), What::Face(i));
                 }
@@ -287,54 +318,47 @@ impl<'s, 'a> Search<'s, 'a> {
                 if least < upper {
                     self.push(placed, least, What::Face(face));
                 } else {
-                    self.face(placed, up, face, body.carried(face));
+                    self.face(on(face), upper);
                 }
             }
-            What::Group { face, group } => {
-                let carried = body.carried(face);
-                match &carried.groups[group].parts {
-                    Parts::Pieces(pieces) => {
-                        pieces.clone().for_each(|piece| self.piece(placed, upper, face, piece));
-                    }
-                    Parts::Groups(halves) => {
-                        for &group in halves {
-                            let upper = carried.upper_of(group, up).min(upper);
-                            self.push(placed, upper, What::Group { face, group });
-                        }
-                    }
+            What::Run { face, node } => {
+                let on = on(face);
+                match on.carried.curves.nodes[node].link {
+                    Link::Pair(a, b) => [a, b].into_iter().for_each(|node| self.run(on, upper, node)),
+                    Link::Curve(curve) => self.pieces(on, upper, curve),
                 }
             }
-            What::Piece { face, piece, in_space: false } => {
-                let upper = up.upper_of(body.carried(face).in_space(piece)).min(upper);
-                self.push(placed, upper, What::Piece { face, piece, in_space: true });
+            What::Piece { face, curve, piece, bound: Bound::Cell } => {
+                let upper = body.carried(face).upper_of_piece(curve, piece, up).min(upper);
+                self.push(placed, upper, What::Piece { face, curve, piece, bound: Bound::Part });
             }
-            What::Piece { face, piece, in_space: true } => {
+            What::Piece { face, curve, piece, bound: Bound::Part } => self.in_space(on(face), upper, curve, piece),
+            What::Piece { face, curve, piece, bound: Bound::Space } => {
                 // the test beside the curve costs more than its bound, so that only the highest pieces are tested
                 let carried = body.carried(face);
-                if carried.is_beside(piece) {
-                    self.curve(placed, upper, face, up.of_curve(carried.in_space(piece)), 0);
+                if carried.is_beside(curve, piece) {
+                    self.curve(placed, upper, face, up.of_curve(carried.in_space(curve, piece)), 0);
                 } else if carried.is_ruled && self.inside.insert((placed, face)) {
-                    self.patches(placed, up, face, carried);
+                    self.cells(on(face), f64::INFINITY);
                 }
             }
-            What::Curve { face, height, halvings } => self.curve(placed, upper, face, height, halvings),
-            What::Patch { face, patch } => {
+            What::Curve { face, height, halvings } => self.curve(placed, upper, face, *height, halvings),
+            What::Cell { face, cell } => {
                 let carried = body.carried(face);
-                let SurfacePatch { u, v, patch } = &carried.grid.patches[patch];
-                let (lo, hi) = (DVec2::new(u.0, v.0), DVec2::new(u.1, v.1));
-                let height = up.of_patch(patch);
-                let area = Area { face, height, lo, hi, inside: false, whole: true, halvings: 0 };
-                self.area(placed, upper, area, carried);
+                let (lo, hi) = carried.rectangle(cell);
+                let side = carried.classify(lo, hi);
+                if side != RectSide::Outside {
+                    let height = up.of_patch(carried.patch(cell));
+                    let (upper, inside) = (height.upper().min(upper), side == RectSide::Inside);
+                    let area = Area { face, height, lo, hi, inside, whole: true, halvings: 0 };
+                    self.push(placed, upper, What::Area(Box::new(area)));
+                }
             }
             What::Area(area) => {
                 let carried = body.carried(area.face);
-                self.area(placed, upper, area, carried);
+                self.area(placed, upper, *area, carried);
             }
         }
-    }
-
-    fn piece(&mut self, placed: usize, upper: f64, face: usize, piece: usize) {
-        self.push(placed, upper, What::Piece { face, piece, in_space: false });
     }
 
     fn curve(&mut self, placed: usize, upper: f64, face: usize, height: Height, halvings: u32) {
@@ -345,41 +369,51 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         for half in height.halves_u() {
             let upper = half.upper().min(upper);
-            self.push(placed, upper, What::Curve { face, height: half, halvings: halvings + 1 });
+            self.push(placed, upper, What::Curve { face, height: Box::new(half), halvings: halvings + 1 });
         }
     }
 
-    fn face(&mut self, placed: usize, up: Up, face: usize, carried: &Carried<'_>) {
-        let uppers: Vec<f64> =
-            (0..carried.hulls.len()).map(|patch| carried.upper_of_patch(patch, up, self.low)).collect();
-        for &(patch, group) in &carried.tops {
-            self.push(placed, uppers[patch], What::Group { face, group });
+    fn face(&mut self, on: On<'_, 'a>, upper: f64) {
+        if let Some(root) = on.carried.curves.root {
+            self.push(on.placed, upper, What::Run { face: on.face, node: root });
         }
-        if carried.tops.is_empty() {
-            for (number, piece) in carried.pieces.iter().enumerate() {
-                self.piece(placed, uppers[piece.patch], face, number);
-            }
+        if !on.carried.is_ruled {
+            self.cells(on, upper);
         }
-        if !carried.is_ruled {
-            for (patch, upper) in uppers.into_iter().enumerate() {
-                self.push(placed, upper, What::Patch { face, patch });
+    }
+
+    fn cells(&mut self, On { placed, up, face, carried }: On<'_, 'a>, upper: f64) {
+        for (cell, hull) in carried.hulls.iter().enumerate() {
+            self.push(placed, up.of_box(*hull).min(upper), What::Cell { face, cell });
+        }
+    }
+
+    fn run(&mut self, On { placed, up, face, carried }: On<'_, 'a>, upper: f64, node: usize) {
+        let upper = carried.upper_of(node, up, self.low).min(upper);
+        self.push(placed, upper, What::Run { face, node });
+    }
+
+    fn pieces(&mut self, on: On<'_, 'a>, upper: f64, curve: usize) {
+        let On { placed, up, face, carried } = on;
+        match carried.pieces(curve) {
+            // as high as its run
+            [_] => self.in_space(on, upper, curve, 0),
+            all => {
+                for (piece, Piece { cell, .. }) in all.iter().enumerate() {
+                    let upper = up.of_box(carried.hulls[*cell]).min(upper);
+                    self.push(placed, upper, What::Piece { face, curve, piece, bound: Bound::Cell });
+                }
             }
         }
     }
 
-    /// The patches of a face, whole.
-    fn patches(&mut self, placed: usize, up: Up, face: usize, carried: &Carried<'_>) {
-        for patch in 0..carried.hulls.len() {
-            let upper = carried.upper_of_patch(patch, up, self.low);
-            self.push(placed, upper, What::Patch { face, patch });
-        }
+    fn in_space(&mut self, On { placed, up, face, carried }: On<'_, 'a>, upper: f64, curve: usize, piece: usize) {
+        let upper = up.upper_of(carried.in_space(curve, piece)).min(upper);
+        self.push(placed, upper, What::Piece { face, curve, piece, bound: Bound::Space });
     }
 
     fn area(&mut self, placed: usize, upper: f64, area: Area, carried: &Carried<'_>) {
         let Area { face, height, lo, hi, inside, whole, halvings } = area;
-        if !carried.may_meet(lo, hi) {
-            return;
-        }
         for (i, j) in [(0, 0), (height.n, 0), (0, height.k), (height.n, height.k)] {
             let top = quotient(height.at(i, j));
             let corner = DVec2::new(if i == 0 { lo.x } else { hi.x }, if j == 0 { lo.y } else { hi.y });
@@ -395,7 +429,7 @@ impl<'s, 'a> Search<'s, 'a> {
                 let along_u = (height.side_v(last), DVec2::new(lo.x, v), DVec2::new(hi.x, v));
                 for (height, lo, hi) in [along_v, along_u] {
                     let area = Area { face, height, lo, hi, inside, whole: false, halvings };
-                    self.push(placed, area.height.upper(), What::Area(area));
+                    self.push(placed, area.height.upper(), What::Area(Box::new(area)));
                 }
             }
         }
@@ -422,7 +456,8 @@ impl<'s, 'a> Search<'s, 'a> {
             };
         for (height, (lo, hi)) in halves.into_iter().zip([(lo, first_hi), (second_lo, hi)]) {
             let upper = height.upper().min(upper);
-            self.push(placed, upper, What::Area(Area { face, height, lo, hi, inside, whole: false, halvings }));
+            let area = Area { face, height, lo, hi, inside, whole: false, halvings };
+            self.push(placed, upper, What::Area(Box::new(area)));
         }
     }
 

@@ -1,10 +1,12 @@
 //! How much a search prepares: what is extreme, and little else.
 
-use super::compose::compose;
+use super::compose::{compose, rectangle as part};
+use super::curves::Curves;
 use super::search::{Body, Work};
 use super::{OTHER, of};
 use crate::model::{Bounds, Face, SurfaceKind, TrimLoop};
 use crate::spline::{Bezier, Control, Patch, Surface};
+use crate::trim::RectSide;
 use glam::{DAffine3, DVec2, DVec3, DVec4};
 use std::f64::consts::TAU;
 
@@ -78,17 +80,60 @@ fn only_the_highest_pieces_are_tested_for_the_face_beside_them() {
     let expected = Bounds { min: DVec3::new(-1.0, -1.0, 3.0), max: DVec3::new(1.0, 1.0, 3.0) };
     let work = work(&[face(SurfaceKind::Plane, square(2.0, 3.0), vec![disc])], expected);
     assert!(work.pieces_tested <= 4 * 2 + 2, "{work:?}");
+    assert!(work.pieces_in_space <= 4 * 2 + 2, "{work:?}");
 }
 
-/// A rational patch along rational curves: one that bends, and lines along either parameter.
+fn circle(radius: f64) -> TrimLoop {
+    let quarter = |k: usize| {
+        let turned = |x: f64, y: f64, w: f64| {
+            let turn = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y][k];
+            DVec3::from_point(radius * turn.rotate(DVec2::new(x, y)), w)
+        };
+        let points = vec![turned(1.0, 0.0, 1.0), turned(1.0, 1.0, 0.5f64.sqrt()), turned(0.0, 1.0, 1.0)];
+        Bezier { points }
+    };
+    TrimLoop::new((0..4).map(quarter).collect(), DVec2::ZERO).unwrap()
+}
+
+/// Between two circles about the origin.
 #[test]
-fn a_composed_curve_is_the_patch_at_the_points_of_the_curve() {
+fn curves_are_cut_where_tests_reach_them() {
+    let ring = face(SurfaceKind::Plane, square(3.0, 0.0), vec![circle(2.0), circle(1.0).reversed()]);
+    let curves = Curves::new(&ring);
+    let at = DVec2::new;
+    // whole loops, curves beside the scan line, and the sides of boxes need no cut
+    assert!(!curves.contains(at(-2.5, 0.3)) && !curves.contains(at(2.5, 0.3)) && !curves.contains(at(0.3, 2.5)));
+    assert_eq!(curves.classify(at(-2.5, -2.5), at(2.5, 2.5)), RectSide::Boundary);
+    assert_eq!(curves.classify(at(2.1, -1.0), at(2.5, 1.0)), RectSide::Outside);
+    assert_eq!(curves.curves_cut(), 0);
+    assert_eq!(curves.classify(at(1.9, 1.9), at(2.0, 2.0)), RectSide::Outside);
+    assert_eq!(curves.curves_cut(), 1);
+    assert_eq!(curves.classify(at(1.2, -0.1), at(1.8, 0.1)), RectSide::Inside);
+    assert_eq!(curves.classify(at(1.9, -0.1), at(2.1, 0.1)), RectSide::Boundary);
+    for k in 0..1000 {
+        let (angle, radius) = (f64::from(k) * 2.4, 0.0025 * f64::from(k) + 1e-9);
+        let p = radius * DVec2::from_angle(angle);
+        assert_eq!(curves.contains(p), radius > 1.0 && radius < 2.0, "{p}");
+    }
+}
+
+/// Of a rational patch: over rectangles, one of them a line and one a side; along rational curves, one that bends, and
+/// lines along either parameter.
+#[test]
+fn parts_and_composed_curves_are_the_patch_at_their_points() {
     let point = |i: usize, j: usize| {
         let (u, v) = (i as f64, j as f64);
         DVec4::from_point(DVec3::new(u + 0.2 * v, v * v - 0.3 * u, u * v), 1.0 + 0.4 * ((i + 2 * j) % 3) as f64)
     };
     let points = (0..12).map(|k| point(k % 3, k / 3)).collect();
     let patch = Patch { degree_u: 2, degree_v: 3, points };
+    for (u, v) in [((0.2, 0.7), (0.0, 1.0)), ((0.0, 0.4), (0.3, 0.3)), ((0.5, 1.0), (1.0, 1.0))] {
+        let part = Patch { points: part(&patch, u, v), ..patch.clone() };
+        for (s, t) in [(0.0, 1.0), (0.3, 0.6), (1.0, 0.0)] {
+            let expected = patch.point(u.0 + s * (u.1 - u.0), v.0 + t * (v.1 - v.0));
+            assert!(part.point(s, t).distance(expected) < 1e-13, "{expected}");
+        }
+    }
     let at = |u: f64, v: f64, w: f64| DVec3::from_point(DVec2::new(u, v), w);
     let curves = [
         vec![at(0.1, 0.2, 1.0), at(0.9, 0.3, 2.0), at(0.4, 0.8, 0.7)],
