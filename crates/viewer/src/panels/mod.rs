@@ -57,8 +57,6 @@ pub struct Ui {
     pub messages: Vec<String>,
     /// Commands for the window.
     pub commands: Vec<Command>,
-    /// The pointer is over a panel, or held by one.
-    pub pointer_taken: bool,
     /// The window is to be closed.
     pub quit: bool,
     /// The tree scrolls to the selection once.
@@ -137,7 +135,6 @@ impl Default for Ui {
             warnings: false,
             messages: Vec::new(),
             commands: Vec::new(),
-            pointer_taken: false,
             quit: false,
             show_selection: false,
             pointed: None,
@@ -329,7 +326,6 @@ pub fn show(
     overlay::show(ctx, rect, ui, session, facts);
     status::loading(ctx, ui, facts);
     status::windows(ctx, ui, session, settings, facts);
-    ui.pointer_taken = ctx.is_using_pointer() || ctx.is_pointer_over_area();
     rect
 }
 

@@ -256,13 +256,18 @@ impl App {
         self.flight.is_none() && !self.due && !self.again
     }
 
-    /// The cursor in pixels of the view, where it is over it and not over a panel.
+    /// The cursor in pixels of the view, where it is over it and nothing of the panels is above. It is asked for each
+    /// event, because the cursor may have come from a panel since the last frame.
     pub fn over_view(&self) -> Option<DVec2> {
         let cursor = self.cursor?;
+        let points = cursor.as_vec2() / self.context.pixels_per_point();
+        let layer = self.context.layer_id_at(egui::pos2(points.x, points.y));
+        let is_taken =
+            self.context.is_using_pointer() || layer.is_some_and(|layer| layer.order != egui::Order::Background);
         let ViewRect { x, y, width, height } = self.rect;
         let at = cursor - DVec2::new(f64::from(x), f64::from(y));
         let inside = at.min_element() >= 0.0 && at.x < f64::from(width) && at.y < f64::from(height);
-        (inside && !self.ui.pointer_taken).then_some(at)
+        (inside && !is_taken).then_some(at)
     }
 
     /// One frame; none while one is in flight, or while the program is suspended.

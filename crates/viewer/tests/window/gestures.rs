@@ -42,6 +42,22 @@ fn a_gesture_holds_the_point_under_the_cursor() {
     program.close(display);
 }
 
+/// As a tap does, and a hand that is quicker than a frame.
+#[test]
+fn a_click_counts_where_the_cursor_has_just_come_from_a_panel() {
+    let Some(screen) = Screen::open((900, 560)) else { return };
+    let display = &screen.display;
+    let (_folder, mut program, scene) = opened(display, "bracket.step");
+    let (at, face) = scene.cylinder();
+    let panel = DVec2::new(0.5 * scene.corner.x, at.y);
+    program.after(|| display.move_to(panel));
+    display.click(at);
+    let selected = program.wait("selected ");
+    assert!(selected.contains(&format!("cylinder #{}", face.id)), "{selected}");
+    program.rest();
+    program.close(display);
+}
+
 #[test]
 fn two_fingers_move_the_view_sideways() {
     let Some(screen) = Screen::open((900, 560)) else { return };
