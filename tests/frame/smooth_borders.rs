@@ -98,36 +98,35 @@ fn borders_are_as_the_frame_sixteen_times_as_large() {
     assert_silent(renderer);
 }
 
-/// A grip: a cubic profile of five pieces, turned, with a pole at its end.
+/// A grip: a cubic profile of four pieces, turned, with a pole at its end.
 fn grip() -> Model {
-    let corners =
-        [(3.0, 6.0), (5.0, 9.0), (8.0, 18.0), (9.0, 27.0), (8.5, 34.0), (5.0, 39.0), (2.5, 40.0), (0.0, 40.0)];
-    let knots = vec![0.0, 0.0, 0.0, 0.0, 9.0, 21.0, 32.0, 37.0, 44.0, 44.0, 44.0, 44.0];
+    let corners = [(3.0, 6.0), (6.57, 6.71), (6.66, 15.9), (9.69, 25.1), (6.36, 35.5), (4.35, 40.0), (0.0, 40.0)];
+    let knots = vec![0.0, 0.0, 0.0, 0.0, 8.9, 21.0, 31.3, 38.6, 38.6, 38.6, 38.6];
     let points = corners.map(|(radius, height)| DVec3::new(radius, height, 1.0)).to_vec();
     let profile = BSpline::new(3, knots, points).expect("a profile");
     let surface = lathe(&profile, TAU).expect("a surface");
     shapes::one("grip", false, vec![shapes::face(1, SurfaceKind::Revolution, surface)])
 }
 
-/// Where one patch of a face folds, the patch before it may go on beyond the fold: that is not the face.
+/// Where one patch of a face folds, the patch before it may go on beyond the fold: that is not the face. If it counted,
+/// the worst errors of these views would be 0.83 and 0.69, and 0.15 and 0.17 in the mean.
 #[test]
 fn a_patch_is_not_followed_into_the_next_one() {
     let model = grip();
     let mut renderer = renderer();
-    let mut worst = 0.0_f64;
-    for (x, z) in [(0.9, 0.5), (0.7, 0.8), (0.4, 1.0)] {
-        let camera = Camera::around(model.control_bounds(), DVec3::new(x, 0.3, z), DVec3::Z, 0.6, SIZE);
+    let target = DVec3::new(0.0, 0.0, 23.0);
+    for from in [DVec3::new(-0.4752, -0.044, 0.8787), DVec3::new(0.3002, -0.2279, 0.9263)] {
+        let mut camera = Camera { eye: target + 80.0 * from, target, ..perspective(&model, SIZE) };
+        camera.fit_depth(model.control_bounds());
         renderer.upload_with(&model, settings(Smooth::None, TrimWay::Auto)).unwrap();
         let blocks = blocks(&mut renderer, &camera, Outputs::ALL);
         let smooth = render_next(&mut renderer, &model, settings(Smooth::Borders, TrimWay::Auto), &camera);
         let errors = contrast_errors(&smooth, &blocks);
-        let far = errors.iter().copied().fold(0.0, f64::max);
-        println!("from {x}, {z}: {far:.3}, {:.3} of {} pixels", root_mean_square(&errors), errors.len());
-        assert!(errors.len() > 50);
-        worst = worst.max(far);
+        let (worst, mean) = (errors.iter().copied().fold(0.0, f64::max), root_mean_square(&errors));
+        println!("from {from}: {worst:.3}, {mean:.3} in the mean of {} pixels", errors.len());
+        // sixteen points measure a straight line to 0.14 at worst, and each may be off by an eighth of a pixel
+        assert!(errors.len() > 50 && worst <= 0.4 && mean <= 0.1, "from {from}: {worst}, {mean}");
     }
-    // sixteen points measure a straight line to 0.14 at worst, and the outline bends
-    assert!(worst <= 0.3, "{worst}");
     assert_silent(renderer);
 }
 
