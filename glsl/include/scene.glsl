@@ -287,7 +287,7 @@ struct GapCandidate {
 // The list of gap candidates of a band of rows.
 struct GapBand {
     uvec3 grid; // of passes with a thread a candidate
-    uint count; // of candidates, also of those that the list has no room for
+    uint count; // all candidates of the band; the list may have room for fewer
 };
 
 const uint MAX_FACTOR = 64u;   // the hardware's tessellation factor

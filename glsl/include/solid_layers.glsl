@@ -199,7 +199,7 @@ void main() {
     float first_seen = stop;
     float thickness = 0.0;
     vec4 packed = vec4(0.0); // nothing
-    uint faces_met = 0u;     // of those that lines are drawn for
+    uint faces_met = 0u;     // faces so far that may have lines
     bool touches = false;
     bool overlaps = false;
     bool shows = true;    // layers are still drawn

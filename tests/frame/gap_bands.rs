@@ -50,7 +50,7 @@ fn a_picture_has_more_candidates_than_a_buffer_holds() {
     assert_silent(unlimited);
 }
 
-/// Real gaps, with one sample and with several, each of which is a drawing of its own.
+/// The scene has real gaps. Of several samples each is drawn by itself, so each fills the lists anew.
 #[test]
 fn gaps_are_filled_the_same_in_bands() {
     let model = crowd();

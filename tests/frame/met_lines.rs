@@ -71,7 +71,7 @@ fn circle(camera: &Camera) -> Vec<(DVec2, f64)> {
     (0..4000).map(point).map(|p| (camera.project(p).unwrap().0, p.dot(to_eye) / RADIUS)).collect()
 }
 
-/// `selvedge check --edges` asks for these lines, too, and reports those that are missing.
+/// `selvedge check --edges` looks for these lines, too, and counts the missing ones.
 #[test]
 fn lines_are_where_solids_meet_faces() {
     let mut renderer = renderer();

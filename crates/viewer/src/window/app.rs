@@ -256,8 +256,8 @@ impl App {
         self.flight.is_none() && !self.due && !self.again
     }
 
-    /// The cursor in pixels of the view, where it is over it and nothing of the panels is above. It is asked for each
-    /// event, because the cursor may have come from a panel since the last frame.
+    /// The cursor in pixels of the view; `None` beside the view, and where a panel covers it. Each event asks anew: the
+    /// cursor may have come from a panel since the last frame.
     pub fn over_view(&self) -> Option<DVec2> {
         let cursor = self.cursor?;
         let points = cursor.as_vec2() / self.context.pixels_per_point();

@@ -174,7 +174,7 @@ impl Engine {
         self.upload = Some(Upload { thread, from, stop });
     }
 
-    /// Ends an upload whose picture nobody waits for.
+    /// Ends the upload. Nobody waits for its picture.
     fn end_upload(&self, wanted: &World) {
         let is_void = self.asked.as_ref().is_some_and(|asked| is_void(&asked.world, wanted));
         if let Some(upload) = self.upload.as_ref().filter(|_| is_void) {

@@ -54,7 +54,7 @@ fn faces_within_the_box_of_others_are_not_cut() {
     assert_eq!(work(&faces, expected).faces, 2);
 }
 
-/// `(u, v, u v)` in 1600 patches, of which loops leave the middle of two by two.
+/// The surface `(u, v, u v)` has 1600 patches. Its loop reaches four of them.
 #[test]
 fn patches_that_loops_do_not_reach_are_not_cut() {
     const ACROSS: i32 = 40;
