@@ -67,6 +67,8 @@ bool find_fold(Face face, int n, View view, vec2 uv, vec2 pixel, out Sample s, o
         Patch there = patch_at(patch_in(face, next));
         if (next == place || side_of(there.shape) == SIDE_OUTSIDE) continue;
         uv = (patch_.domain.xy + uv * patch_.domain.zw - there.domain.xy) / there.domain.zw;
+        // a quarter of a wide patch may be many narrow ones: far beyond its sides a patch is not the surface
+        uv = mix(uv, clamp(uv, 0.0, 1.0), notEqual(next, place));
         patch_ = there;
         place = next;
     }
