@@ -20,6 +20,8 @@ const float FOLD_COSINE = 0.2;
 // A longer step ends the search: no fold is within reach. Near a fold the distance in the picture is the square of the
 // distance on the surface, so a step is twice as long as the way that is left.
 const float FOLD_FAR_PX = 16.0;
+// A step is no longer than a quarter of a patch; than a whole one where that is no longer than this.
+const float FOLD_NARROW_PX = 1.0;
 
 // Where a face ends in a fold, rounding decides on which side of its end the fold is. So the place is tested that is a
 // hundredth of a pixel before it. This is the share of the way back; in the picture that way is the share's square.
@@ -36,12 +38,12 @@ bool find_fold(Face face, int n, View view, vec2 uv, vec2 pixel, out Sample s, o
     ivec2 count = ivec2(face.count_u, face.count_v);
     ivec2 place = place_of(face, n);
     Patch patch_ = patch_at(patch_in(face, place));
-    vec2 moved = vec2(1e9);
+    float way = 1e9; // that is left, and not a step of it: a quarter of a narrow patch may be shorter than ARRIVED_PX
     bool lost = false; // tested by the loop's condition, not by a `break`: see refine.glsl
     for (uint i = 0u; i <= FOLD_STEPS && !lost; ++i) {
         Net net = net_of(patch_);
         s = sample_at(patch_, net, view, uv, pixel);
-        if (dot(moved, moved) < ARRIVED_PX * ARRIVED_PX || i == FOLD_STEPS) break;
+        if (way < ARRIVED_PX || i == FOLD_STEPS) break;
         float g = fold_at(s, view);
         Sample beside = sample_at(patch_, net, view, uv + vec2(FOLD_DIFFERENCE, 0.0), pixel);
         float gu = (fold_at(beside, view) - g) / FOLD_DIFFERENCE;
@@ -57,11 +59,11 @@ bool find_fold(Face face, int n, View view, vec2 uv, vec2 pixel, out Sample s, o
         vec2 run = along * fold;
         float runs = dot(run, run);
         if (runs > 0.0) to -= dot(s.miss + along * to, run) / runs * fold;
-        vec2 far = along * to;
-        lost = dot(far, far) > FOLD_FAR_PX * FOLD_FAR_PX;
-        vec2 steps = abs(to) / MAX_STEP;
-        to /= max(max(steps.x, steps.y), 1.0);
-        moved = along * to;
+        way = length(along * to);
+        lost = way > FOLD_FAR_PX;
+        vec2 size = abs(to);
+        float patches = max(size.x, size.y);
+        to /= max(min(patches / MAX_STEP, max(patches, way / FOLD_NARROW_PX)), 1.0);
         uv += to;
         ivec2 next = clamp(place + way_beyond(uv, 0.0), ivec2(0), count - 1);
         Patch there = patch_at(patch_in(face, next));
@@ -78,7 +80,7 @@ bool find_fold(Face face, int n, View view, vec2 uv, vec2 pixel, out Sample s, o
     vec3 dv = seen_from_eye(to_pixel(view, vec4(s.jet.dv, 0.0)));
     vec3 ray = frame.perspective != 0u ? normalize(seen_from_eye(s.q)) : vec3(0.0, 0.0, 1.0);
     float cosine = abs(dot(normalize(cross(normalize(du), normalize(dv))), ray));
-    return within && !lost && dot(moved, moved) < ARRIVED_PX * ARRIVED_PX && cosine < FOLD_COSINE;
+    return within && !lost && way < ARRIVED_PX && cosine < FOLD_COSINE;
 }
 
 #endif
