@@ -7,8 +7,9 @@
 //
 // Only pixels are looked at beside which something else is seen: another face, or another place of the face. The fold
 // is the exact surface's, within ARRIVED_PX. It counts when it is as near to the pixel that sees the face as pixels
-// beside each other are, and inside the face's trims: where the face ends before it folds, its edge is the outline. The
-// trim test is that of one way (trim.glsl).
+// beside each other are, and inside the face's trims: where the face ends before it folds, its edge is the outline. What
+// another face covers, as edge_covered.glsl has it, is not drawn: surfaces that pass through each other have no edge that
+// would end the fold. The trim test is that of one way (trim.glsl).
 #include "scene.glsl"
 #include "view.glsl"
 #include "edges.glsl"
@@ -51,6 +52,7 @@ bool is_own_triangle(uint instance, uint triangle) { return false; }
 
 const bool OWN_PATCHES_HIDE = true;
 #include "edge_seen.glsl"
+#include "edge_covered.glsl"
 #include "fold.glsl"
 
 // From the centre of the pixel that sees the face.
@@ -133,7 +135,8 @@ void main() {
         if (steps == 0u || distance(place, vec2(places[i]) + 0.5) > FOLD_REACH_PX) continue;
         if (!reaches(fi, face, patch_instance, patch_, at_fold, uv)) continue;
         own_face = fi;
-        if (!is_seen(EdgePoint(place, seen_from_eye(s.q), vec2(FOLD_SHEET_PX, 0.0)), at)) continue;
+        EdgePoint e = EdgePoint(place, seen_from_eye(s.q), vec2(FOLD_SHEET_PX, 0.0));
+        if (!is_seen(e, at) || is_covered(e, at)) continue;
         imageAtomicMax(lines, at, LINE_SEEN | steps << LINE_COVERAGE | LINE_FOLD);
     }
 }
