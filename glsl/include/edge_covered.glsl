@@ -36,6 +36,8 @@ bool patch_covers(EdgePoint e, uvec2 seen) {
     FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
     Face face = face_at(fi.face);
     View view = view_at(fi.instance);
+    // own sheets are compared where the pixel sees them
+    if (OWN_PATCHES_HIDE && is_own_face(fi)) return false;
     vec2 slack = is_own_face(fi) ? vec2(COVERS_OWN_PX, COVERS_OWN_OFF * e.slack.y) : vec2(0.0);
     float behind = own_slack(e.place, view, slack);
     vec2 uv = unpack_uv(seen.y);

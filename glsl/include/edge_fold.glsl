@@ -1,14 +1,15 @@
 // Pass `edge_fold`: outlines of curved faces, where the surface folds away from the eye: normal across the ray.
 //
-//      pixel ·      ╭─── the exact fold: det J = 0, J = d(pixel) / d(u, v)
+//      pixel ·      ╭─── the exact fold: cosine between normal and ray = 0
 //           ╲╲     ╱
 //            ╲ ╲  ╱      from where a pixel beside this one sees the face, Newton's method to the point of the fold
 //      face    ╲╱        that is nearest to this pixel's centre
 //
 // Only pixels are looked at beside which something else is seen: another face, or another place of the face. The fold
 // is the exact surface's, within ARRIVED_PX. It counts when it is as near to the pixel that sees the face as pixels
-// beside each other are, and inside the face's trims: where the face ends before it folds, its edge is the outline. The
-// trim test is that of one way (trim.glsl).
+// beside each other are, and inside the face's trims: where the face ends before it folds, its edge is the outline. What
+// another face covers, as edge_covered.glsl has it, is not drawn: surfaces that pass through each other have no edge that
+// would end the fold. The trim test is that of one way (trim.glsl).
 #include "scene.glsl"
 #include "view.glsl"
 #include "edges.glsl"
@@ -51,6 +52,7 @@ bool is_own_triangle(uint instance, uint triangle) { return false; }
 
 const bool OWN_PATCHES_HIDE = true;
 #include "edge_seen.glsl"
+#include "edge_covered.glsl"
 #include "fold.glsl"
 
 // From the centre of the pixel that sees the face.
@@ -58,18 +60,20 @@ const float FOLD_REACH_PX = 1.5;
 // Neighbours whose (u, v) differ by no more, of the patch, are on one sheet.
 const float SAME_PLACE = 0.05;
 
-// Whether a face reaches a fold, of its domain, where a pixel beside it sees the face at (u, v) of a patch. Only faces
-// without trims are marked closed: beyond the seams of others, pass `edge_line` draws the folds.
+// Whether a face reaches a fold, of its domain or beyond a seam, where a pixel beside it sees the face at (u, v) of a
+// patch.
 bool reaches(FaceInstance fi, Face face, uint patch_instance, Patch patch_, vec2 fold, vec2 uv) {
     vec2 place = mix(fold, patch_.domain.xy + uv * patch_.domain.zw, BEFORE_FOLD);
-    bvec2 closed = notEqual(face.flags & uvec2(FACE_CLOSED_U, FACE_CLOSED_V), uvec2(0u));
-    place = mix(place, fract(place), closed);
+    bvec2 meets = notEqual(face.flags & uvec2(FACE_MEETS_U, FACE_MEETS_V), uvec2(0u));
+    vec2 turns = mix(vec2(0.0), floor(place), meets);
+    place -= turns;
     if (clamp(place, 0.0, 1.0) != place) return false;
     if ((face.flags & FACE_TRIMMED) == 0u) return true;
 #ifdef TRIM_BY_TABLE
     // the table has rows only where the picture shows a patch that a trim curve crosses
     if (!table_covers(fi.first_bin, face.strips, place)) {
-        return in_whole_patch(fi, face, patch_instance, (place - patch_.domain.xy) / patch_.domain.zw);
+        vec2 there = (place + turns - patch_.domain.xy) / patch_.domain.zw;
+        return in_whole_patch(fi, face, patch_instance, there, meets);
     }
 #endif
     return trim_inside(fi, face, place);
@@ -131,7 +135,8 @@ void main() {
         if (steps == 0u || distance(place, vec2(places[i]) + 0.5) > FOLD_REACH_PX) continue;
         if (!reaches(fi, face, patch_instance, patch_, at_fold, uv)) continue;
         own_face = fi;
-        if (!is_seen(EdgePoint(place, seen_from_eye(s.q), vec2(FOLD_SHEET_PX, 0.0)), at)) continue;
+        EdgePoint e = EdgePoint(place, seen_from_eye(s.q), vec2(FOLD_SHEET_PX, 0.0));
+        if (!is_seen(e, at) || is_covered(e, at)) continue;
         imageAtomicMax(lines, at, LINE_SEEN | steps << LINE_COVERAGE | LINE_FOLD);
     }
 }

@@ -13,10 +13,11 @@ const float BEYOND = 1e-4;
 const float ROUNDED = 1e-5;
 
 // Whether (u, v) of an untrimmed patch is in it, or in a patch beside it that lies within the loops. A surface
-// continues beyond its own end, but the face does not.
-bool in_whole_patch(FaceInstance fi, Face face, uint patch_instance, vec2 uv) {
+// continues beyond its own end, but the face does not, unless it goes on over the seam there.
+bool in_whole_patch(FaceInstance fi, Face face, uint patch_instance, vec2 uv, bvec2 goes_on) {
     ivec2 count = ivec2(face.count_u, face.count_v);
     ivec2 place = place_of(face, int(patch_instance - fi.first_patch_instance)) + way_beyond(uv, ROUNDED);
+    place = mix(place, (place + count) % count, goes_on);
     if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, count))) return false;
     return side_of(patch_at(patch_in(face, place)).shape) != SIDE_OUTSIDE;
 }
@@ -24,12 +25,13 @@ bool in_whole_patch(FaceInstance fi, Face face, uint patch_instance, vec2 uv) {
 // Whether the face is there at (u, v) of its patch. The table has rows only near the face's border: not for
 // strips and bins in which all patches are whole.
 bool is_there(FaceInstance fi, Face face, uint patch_instance, Patch patch_, vec2 uv) {
-    if ((face.flags & FACE_TRIMMED) == 0u) return in_whole_patch(fi, face, patch_instance, uv);
+    if ((face.flags & FACE_TRIMMED) == 0u) return in_whole_patch(fi, face, patch_instance, uv, bvec2(false));
     vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
 #ifdef TRIM_BY_TABLE
     if (side_of(patch_.shape) == SIDE_INSIDE) {
         if (clamp(uv, 0.0, 1.0) == uv) return true;
-        if (!table_covers(fi.first_bin, face.strips, at)) return in_whole_patch(fi, face, patch_instance, uv);
+        bool known = table_covers(fi.first_bin, face.strips, at);
+        if (!known) return in_whole_patch(fi, face, patch_instance, uv, bvec2(false));
     }
 #endif
     return trim_inside(fi, face, at);
