@@ -14,10 +14,10 @@ const float ROUNDED = 1e-5;
 
 // Whether (u, v) of an untrimmed patch is in it, or in a patch beside it that lies within the loops. A surface
 // continues beyond its own end, but the face does not, unless it goes on over the seam there.
-bool in_whole_patch(FaceInstance fi, Face face, uint patch_instance, vec2 uv, bvec2 goes_on) {
+bool in_whole_patch(FaceInstance fi, Face face, uint patch_instance, vec2 uv, bvec2 meets) {
     ivec2 count = ivec2(face.count_u, face.count_v);
     ivec2 place = place_of(face, int(patch_instance - fi.first_patch_instance)) + way_beyond(uv, ROUNDED);
-    place = mix(place, (place + count) % count, goes_on);
+    place = mix(place, (place + count) % count, meets);
     if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, count))) return false;
     return side_of(patch_at(patch_in(face, place)).shape) != SIDE_OUTSIDE;
 }
