@@ -144,6 +144,48 @@ void close_item(Walk w, uint end, uint first, uint done_key, bool asks) {
     best = Change(key, w.from, end, w.positive, w.negative, w.candidates);
 }
 
+// Leaves of a tile one behind the other, all of which must hold a point, as half-spaces of a convex solid must: each
+// leads to the next one where the point is inside, and all to one place where it is not.
+//
+//      leaf 1  ├─────────────────────▶          only where all of them together begin and end does the item change
+//      leaf 2       ├────────────────▶
+//      leaf 3  ◀──────────────┤
+//                   lo        hi
+struct Run {
+    float lo;
+    float hi;
+    uint next; // the leaf that it leads to, or NOBODY
+    uint out_exit;
+};
+
+const Run NO_RUN = Run(NEVER, -NEVER, NOBODY, NOBODY);
+
+float next_of_run(Run run, float t) {
+    if (!(run.lo < run.hi)) return NEVER;
+    return t < run.lo ? run.lo : t < run.hi ? run.hi : NEVER;
+}
+
+// Exits that lead to leaves ahead of the scan, but for those from a leaf to the one behind it.
+struct Jumps {
+    uint nearest;
+    uint farthest;
+    uint unknown; // up to this leaf, any may be led to: only the nearest is known
+};
+
+bool is_led_to(inout Jumps jumps, uint i) {
+    if (i == jumps.nearest) {
+        jumps.unknown = jumps.farthest;
+        jumps.nearest = NOBODY;
+    }
+    return i <= jumps.unknown;
+}
+
+void add_jump(inout Jumps jumps, uint to) {
+    if (to >= EXIT_FALSE) return;
+    jumps.nearest = min(jumps.nearest, to);
+    jumps.farthest = max(jumps.farthest, to);
+}
+
 // A side as a layer.
 struct Layer {
     vec4 colour;
@@ -236,6 +278,8 @@ void main() {
         live_end = first;
         Walk w = Walk(NOBODY, 0u, EXIT_FALSE, EXIT_FALSE, NOBODY, NOBODY, 0u, false);
         float soonest = NEVER;
+        Run run = NO_RUN;
+        Jumps jumps = Jumps(NOBODY, scan_from, scan_from);
         wanted += scan_end - scan_from;
         for (uint i = scan_from; i < scan_end; ++i) {
             ++steps;
@@ -253,6 +297,7 @@ void main() {
             bool is_kept = i - first < KEPT;
             bool operand = SOLIDS_HAVE_BOUNDARY_OPERANDS && (leaf.flags & LEAF_BOUNDARY) != 0u;
             Crossing c;
+            Span part = NOTHING; // of the ray in the leaf, where it is one piece
             if (operand) {
                 uint last;
                 c = crossing_of(leaf.first, t, first_fragment, fragment_count, last);
@@ -274,6 +319,7 @@ void main() {
                 if (t < lo || t > hi) {
                     // the ray is not near the box, or has passed it: as if the leaf began with its box
                     c = Crossing(false, false, false, t < lo ? lo : NEVER);
+                    part = Span(c.next, NEVER, NEVER, NEVER);
                 } else {
                     if (is_kept && scan > 0u && purpose != SIDE) {
                         s = kept[i - first];
@@ -287,12 +333,28 @@ void main() {
                         if (is_kept) kept[i - first] = s;
                     }
                     c = crossing_of(s, t);
+                    part = s;
                 }
             }
+            bool led_to = is_led_to(jumps, i);
+            bool joins = run.next == i && run.out_exit == here.out_exit && !led_to;
+            if (!joins) {
+                soonest = min(soonest, next_of_run(run, t));
+                run = Run(-NEVER, NEVER, NOBODY, here.out_exit);
+            }
+            if (operand || part.g0 < part.g1) {
+                soonest = min(soonest, min(c.next, next_of_run(run, t)));
+                run = NO_RUN;
+            } else {
+                run.lo = max(run.lo, part.lo);
+                run.hi = min(run.hi, part.hi);
+                run.next = here.in_exit == i + 1u ? here.in_exit : NOBODY;
+            }
+            if (here.in_exit != i + 1u) add_jump(jumps, here.in_exit);
+            if (here.out_exit != i + 1u) add_jump(jumps, here.out_exit);
             bool turned = purpose == OWNER && i == asked;
             if (i == w.at) w.at = c.inside != turned ? here.in_exit : here.out_exit;
             if (i == w.at_before) w.at_before = c.before != turned ? here.in_exit : here.out_exit;
-            soonest = min(soonest, c.next);
             w.lives = w.lives || c.inside || c.ends || c.next < NEVER;
             if (c.ends && i >= after) {
                 ++w.candidates;
@@ -301,6 +363,7 @@ void main() {
             }
         }
         close_item(w, scan_end, first, done_key, purpose == SEARCH && !begins);
+        soonest = min(soonest, next_of_run(run, t));
 
         if (purpose == SEARCH) {
             begins = false;
