@@ -60,13 +60,14 @@ impl Capacities {
         Self { solids: self.solids.expecting(crossings, counts), ..self }
     }
 
-    /// See [`solids::Capacities::for_picture`], [`gaps::Capacities::for_picture`] and
+    /// See [`solids::Capacities::for_picture`], [`gaps::Capacities::for_picture`], [`edges::Capacities::for_picture`] and
     /// [`antialiasing::Capacities::for_picture`].
     pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), ranges: Ranges) -> Result<Self, TooMany> {
         let range = ranges.quads;
         let gaps = self.gaps.for_picture(counts, size, range);
+        let edges = self.edges.for_picture(counts, size, range);
         let antialiasing = self.antialiasing.for_picture(counts, size, range);
-        Ok(Self { gaps, antialiasing, solids: self.solids.for_picture(counts, size, range)?, ..self })
+        Ok(Self { gaps, edges, antialiasing, solids: self.solids.for_picture(counts, size, range)?, ..self })
     }
 
     /// Whether buffers made for `self` have the same sizes as buffers made for `others`.
@@ -163,13 +164,13 @@ mod tests {
             let first = Capacities::first(counts, u32::MAX);
             first.for_picture(counts, size, both(RANGE)).unwrap().antialiasing.followed
         };
-        assert_eq!([of(false, (4096, 4096)), of(true, (64, 64)), of(true, (4096, 4096))], [0, 1 << 12, 1 << 20]);
+        assert_eq!([of(false, (4096, 4096)), of(true, (64, 64)), of(true, (4096, 4096))], [0, 1 << 15, 1 << 20]);
         assert_eq!(of(true, (1 << 15, 1 << 15)), RANGE / 12);
         let counts = Counts { follows_borders: true, ..Default::default() };
         let c = Counters { followed_points: 100_000, failed: 2048, ..Default::default() };
         let had = Capacities::first(counts, u32::MAX);
         let more = had.grown(&c, counts, (640, 480), both(RANGE)).unwrap();
-        assert_eq!((had.antialiasing.followed, more.antialiasing.followed), (1 << 12, 125_000));
+        assert_eq!((had.antialiasing.followed, more.antialiasing.followed), (1 << 15, 125_000));
         assert!(!more.takes_as_much(had));
     }
 
@@ -183,7 +184,22 @@ mod tests {
             (gaps.candidates, antialiasing.followed)
         };
         // a band of the larger picture has 660 rows, and room for one candidate in eight pixels
-        assert_eq!((of((640, 480)), of((16384, 16384))), ((38_400, 19_200), (660 * 2048, RANGE / 12)));
+        assert_eq!((of((640, 480)), of((16384, 16384))), ((38_400, 1 << 15), (660 * 2048, RANGE / 12)));
+    }
+
+    /// A straight piece is one chord; a curved one has more in a larger picture.
+    #[test]
+    fn chords_have_room_by_the_picture() {
+        let counts = Counts { piece_instances: 3000, curved_piece_instances: 600, ..Default::default() };
+        let of = |counts, size| {
+            let had = Capacities::first(counts, u32::MAX).for_picture(counts, size, both(RANGE)).unwrap();
+            had.edges.chords
+        };
+        // the root of the diagonal is 8 and 16
+        assert_eq!([of(counts, (64, 0)), of(counts, (0, 256))], [3000 + 3000, 3000 + 6000]);
+        assert_eq!(of(Counts::default(), (256, 256)), 0);
+        let many = Counts { piece_instances: 1 << 24, ..counts };
+        assert_eq!(of(many, (256, 256)), RANGE / size_of::<crate::abi::Chord>() as u32);
     }
 
     #[test]

@@ -64,6 +64,8 @@ pub(crate) struct Counts {
     pub shadowless: u32,
     /// Placed pieces of edges along which lines are drawn.
     pub piece_instances: u32,
+    /// How many of them are curved.
+    pub curved_piece_instances: u32,
     /// There are lines, along edges or silhouettes.
     pub lines: bool,
     /// Faces' surfaces may be followed to points at borders.
@@ -106,6 +108,7 @@ impl Counts {
             open: count(data.open),
             shadowless: count(data.shadowless),
             piece_instances: data.edges.as_ref().map_or(0, |edges| count(edges.piece_instances.len())),
+            curved_piece_instances: data.edges.as_ref().map_or(0, |edges| count(edges.curved_piece_instances())),
             lines: data.has_lines(),
             follows_borders: data.follows_borders(),
         }

@@ -106,6 +106,11 @@ impl EdgeData {
         }
     }
 
+    /// How many placed pieces are curved.
+    pub(crate) fn curved_piece_instances(&self) -> usize {
+        self.piece_instances.iter().filter(|placed| self.pieces[placed.piece as usize].degree > 1).count()
+    }
+
     /// The lines of all placed parts. Instances that the scene does not draw as faces get placements of their own, at
     /// the end of `placements`. `found` has the edges of each part of the model.
     pub(super) fn of(

@@ -20,7 +20,7 @@ pub(crate) struct Capacities {
 impl Capacities {
     /// A first guess that fits small pictures.
     pub(crate) fn first(counts: Counts) -> Self {
-        Self { followed: u32::from(counts.follows_borders) * (1 << 12) }
+        Self { followed: u32::from(counts.follows_borders) * (1 << 15) }
     }
 
     /// At least one point for every [`PIXELS_OF_A_POINT`] pixels of a picture, as far as a storage buffer of `range` bytes
