@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   press ─▶ Drag, waits for the point under the cursor ─▶ moves ─▶ camera ─▶ a picture of fewer pixels, in time
-//!                                                 still for SETTLE, or released ─┴─▶ every pixel, once
+//!                                                 still for SETTLE, or released ─┴─▶ every pixel ─▶ every effect
 //! ```
 //!
 //! The caller passes times in; there is no window here.
@@ -378,14 +378,16 @@ impl View {
         self.set(camera, now);
     }
 
-    /// The next picture of the current view: of fewer pixels and effects while the view moves.
-    pub fn due(&self, now: Instant) -> Due {
-        self.of(if self.moving(now) { self.pacing.step() } else { Step::STILL })
+    /// The next picture of the current view: of fewer pixels and effects while the view moves; then a sharp one, and one
+    /// with every effect once the window shows the sharp one. `shown`: what it shows.
+    pub fn due(&self, shown: Option<&Camera>, now: Instant) -> Due {
+        let still = || if shown == Some(&self.camera) { Step::STILL } else { self.pacing.sharp() };
+        self.of(if self.moving(now) { self.pacing.step() } else { still() })
     }
 
-    /// The first picture of all, of as many pixels as one of a moving view: it is shown earlier.
+    /// The first picture of all, of as many pixels as one of a moving view and without effects: it is shown earlier.
     pub fn first(&self) -> Due {
-        self.of(self.pacing.step())
+        self.of(self.pacing.first())
     }
 
     fn of(&self, step: Step) -> Due {

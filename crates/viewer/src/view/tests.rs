@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::navigation::gesture::Button;
+use selvedge::picture::Effects;
 
 const BOX: Bounds = Bounds { min: DVec3::ZERO, max: DVec3::new(40.0, 30.0, 20.0) };
 const MODE: (Preset, OrbitStyle) = (Preset::Onshape, OrbitStyle::Turntable);
@@ -25,13 +26,33 @@ fn a_moving_view_has_fewer_pixels_and_a_still_one_all() {
     let start = Instant::now();
     let mut view = view(start);
     let later = start + Duration::from_secs(1);
-    assert_eq!((view.due(later).step.scale, view.wake(later)), (1.0, None));
+    assert_eq!((view.due(None, later).step.scale, view.wake(later)), (1.0, None));
     assert_eq!((view.first().step.scale, view.first().camera.size), (0.5, (400, 300)));
     view.wheel(DVec2::new(300.0, 200.0), 1.0, later);
-    assert!(view.due(later).step.scale < 1.0);
+    assert!(view.due(None, later).step.scale < 1.0);
     let wake = view.wake(later).expect("the still picture");
-    assert_eq!((view.due(wake).step.scale, view.due(wake).camera.size), (1.0, (800, 600)));
+    assert_eq!((view.due(None, wake).step.scale, view.due(None, wake).camera.size), (1.0, (800, 600)));
     assert_eq!(view.wake(wake), None);
+}
+
+/// The sharp picture is that of moving ones in every pixel; where these have all effects, it is the last one.
+#[test]
+fn a_still_view_is_sharp_before_it_has_every_effect() {
+    let now = Instant::now();
+    let all = Effects { borders: true, ambient: true, lines: true, shadows: true };
+    let mut view = view(now);
+    view.pacing.set_effects(all);
+    assert_eq!((view.first().step.without, view.due(None, now).step.without), (all, all), "no time is known yet");
+    view.pacing.took(view.pacing.step(), Duration::from_millis(1));
+    assert_eq!(view.due(None, now).step, Step::STILL);
+    for _ in 0..9 {
+        view.pacing.took(view.pacing.step(), Duration::from_secs(1));
+    }
+    let sharp = view.due(None, now);
+    assert_eq!((sharp.step, sharp.camera), (Step { scale: 1.0, without: all }, *view.camera()));
+    assert_eq!(view.due(Some(&sharp.camera), now).step, Step::STILL);
+    let fewer = Camera { size: (400, 300), ..sharp.camera };
+    assert_eq!(view.due(Some(&fewer), now).step, sharp.step, "that of the move is shown");
 }
 
 #[test]
@@ -62,9 +83,9 @@ fn a_drag_waits_for_its_point_and_holds_it() {
     view.moved(start + 50.0, held(Button::Right), MODE, now);
     let at = view.camera.project(point).expect("in front").0;
     assert!(at.distance(start_pixel) < 1e-6 && view.is_dragging());
-    assert!(view.due(now).step.scale < 1.0);
+    assert!(view.due(None, now).step.scale < 1.0);
     assert!(!view.release());
-    assert_eq!((view.due(now).step.scale, view.wake(now)), (1.0, None));
+    assert_eq!((view.due(None, now).step.scale, view.wake(now)), (1.0, None));
     assert!(view.previous(false, now));
 }
 
@@ -116,7 +137,7 @@ fn two_fingers_move_what_is_under_the_cursor_and_turn_about_it() {
     assert!(direction(&view.camera).dot(direction(&before)) < 0.999);
     view.scroll(cursor, Scrolled::Zoom(2.0), OrbitStyle::Turntable, now);
     assert!(view.camera.eye.distance(under) < 0.8 * before.eye.distance(under));
-    assert!(view.due(now).step.scale < 1.0, "the view moves");
+    assert!(view.due(None, now).step.scale < 1.0, "the view moves");
 }
 
 #[test]
