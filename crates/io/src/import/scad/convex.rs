@@ -3,6 +3,7 @@
 //! ```text
 //!   cylinder($fn = 6)   box of its height * six half-spaces      convex    box * one half-space a face
 //!   sphere($fn = 6)     box * its facets                         others    a closed mesh
+//!   with more than 100 planes: a closed mesh
 //! ```
 //!
 //! Vertices stand where OpenSCAD puts them: at angles `360° i / n`, rings of a ball at `180° (i + ½) / rings`
@@ -20,13 +21,16 @@ use std::sync::Arc;
 
 /// Faces of a convex polyhedron times its vertices: beyond, it stays a mesh.
 const MOST_TESTS: usize = 10_000_000;
-/// Faces that are drawn as half-spaces.
-const MOST_FACES: usize = 1000;
+/// Planes beyond which a convex part is a mesh: its half-spaces would cost each ray more than its triangles do.
+pub(super) const MOST_PLANES: usize = 100;
 /// Distance from a plane that is rounding, relative to the size: numbers carry six digits.
 const ROUNDING: f64 = 4e-6;
 
 /// A frustum about z from `z = 0`, its corners on circles of the two radii.
 pub(super) fn frustum(to: &mut Assembly, placed: &Placed, [bottom, top]: [f64; 2], height: f64, n: u32) -> u32 {
+    if n as usize > MOST_PLANES {
+        return lathe(to, placed, &[(bottom, 0.0), (top, height)], n);
+    }
     let step = TAU / f64::from(n);
     let middle = (0.5 * step).cos();
     let slope = if height > 0.0 { (top - bottom) / height } else { 0.0 };
@@ -48,6 +52,10 @@ pub(super) fn ball(to: &mut Assembly, placed: &Placed, radius: f64, n: u32) -> u
         let (s, c) = (PI * (f64::from(ring) + 0.5) / f64::from(rings)).sin_cos();
         (radius * s, radius * c)
     };
+    if (rings as usize - 1) * n as usize > MOST_PLANES {
+        let profile: Vec<_> = (0..rings).rev().map(at).collect();
+        return lathe(to, placed, &profile, n);
+    }
     let step = TAU / f64::from(n);
     let middle = (0.5 * step).cos();
     let mut planes = Vec::new();
@@ -64,6 +72,41 @@ pub(super) fn ball(to: &mut Assembly, placed: &Placed, radius: f64, n: u32) -> u
     to.half_spaces(within, &planes, placed)
 }
 
+/// A mesh of rings of `n` vertices about z; `profile`: radius and height of each, upwards.
+fn lathe(to: &mut Assembly, placed: &Placed, profile: &[(f64, f64)], n: u32) -> u32 {
+    let step = TAU / f64::from(n);
+    let (mut points, mut firsts) = (Vec::new(), Vec::new());
+    for &(radius, z) in profile {
+        firsts.push(points.len() as u32);
+        // a tip is one vertex
+        let count = if radius > 0.0 { n } else { 1 };
+        points.extend((0..count).map(|i| {
+            let (s, c) = (step * f64::from(i)).sin_cos();
+            DVec3::new(radius * c, radius * s, z)
+        }));
+    }
+    let vertex = |ring: usize, i: u32| firsts[ring] + if profile[ring].0 > 0.0 { i % n } else { 0 };
+    let last = profile.len() - 1;
+    let mut triangles: Vec<[u32; 3]> = Vec::new();
+    for i in 1..n.saturating_sub(1) {
+        triangles.push([vertex(0, 0), vertex(0, i + 1), vertex(0, i)]);
+        triangles.push([vertex(last, 0), vertex(last, i), vertex(last, i + 1)]);
+    }
+    for ring in 0..last {
+        for i in 0..n {
+            let [a, b] = [i, i + 1].map(|i| vertex(ring, i));
+            let [c, d] = [i, i + 1].map(|i| vertex(ring + 1, i));
+            triangles.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+    match Mesh::new(placed.id, points, triangles, Vec::new()) {
+        Ok(mesh) => to.add(Shape::Mesh(Arc::new(mesh)), placed),
+        // sizes without end are left out before
+        Err(_) => to.nothing(),
+    }
+}
+
 /// `polyhedron(points, faces)`: half-spaces where it is convex, else a mesh.
 pub(super) fn polyhedron(to: &mut Assembly, placed: &Placed, args: &Args<'_>) -> Result<u32, Fault> {
     let points: Vec<DVec3> = args.points("points")?.into_iter().map(DVec3::from_array).collect();
@@ -74,7 +117,7 @@ pub(super) fn polyhedron(to: &mut Assembly, placed: &Placed, args: &Args<'_>) ->
         return Ok(to.nothing());
     }
     closed(&faces).map_err(|what| args.fault(what))?;
-    if let Some(planes) = planes(&points, &faces) {
+    if let Some(planes) = planes(&points, &faces).filter(|planes| planes.len() <= MOST_PLANES) {
         let corners = faces.iter().flatten().map(|i| points[*i as usize]);
         return Ok(to.half_spaces(around(corners), &planes, placed));
     }
@@ -111,11 +154,8 @@ pub(super) fn closed(faces: &[Vec<u32>]) -> Result<(), &'static str> {
     if whole { Ok(()) } else { Err("the faces do not close, so there is no inside") }
 }
 
-/// The planes of a convex polyhedron; `None` for others, and for those with very many faces.
+/// The planes of a convex polyhedron; `None` for others, and for those with very many faces and vertices.
 pub(in crate::import) fn planes(points: &[DVec3], faces: &[Vec<u32>]) -> Option<Vec<Plane>> {
-    if faces.len() > MOST_FACES {
-        return None;
-    }
     // a vertex of many faces is one
     let mut used: Vec<u32> = faces.iter().flatten().copied().collect();
     used.sort_unstable();

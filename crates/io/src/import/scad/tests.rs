@@ -65,6 +65,56 @@ fn same(text: &str, reach: f64, expected: impl Fn(DVec3) -> f64) {
     assert!(held > 50 && tested > held + 50, "{held} of {tested} points inside: the test says nothing");
 }
 
+/// Volume of a mesh, and the winding of its edges: each is run through once each way.
+fn volume(mesh: &Mesh) -> f64 {
+    let mut edges = std::collections::HashMap::new();
+    for t in mesh.triangles() {
+        for k in 0..3 {
+            let (a, b) = (t[k], t[(k + 1) % 3]);
+            *edges.entry((a.min(b), a.max(b))).or_insert(0) += if a < b { 1 } else { -1 };
+        }
+    }
+    assert!(edges.values().all(|n| *n == 0), "it is open");
+    let six = |t: usize| {
+        let [a, b, c] = mesh.corners(t);
+        a.dot(b.cross(c))
+    };
+    (0..mesh.triangles().len()).map(six).sum::<f64>() / 6.0
+}
+
+/// A ray would test half-spaces one by one. The volume is that of frusta whose bases are regular polygons.
+#[test]
+fn many_facets_are_a_mesh() {
+    let polygon = |n: f64| 0.5 * n * (TAU / n).sin();
+    let frustum = |n: f64, r: [f64; 2], h: f64| polygon(n) * h / 3.0 * (r[0] * r[0] + r[0] * r[1] + r[1] * r[1]);
+    let ball = |n: f64| {
+        let rings = (n / 2.0).ceil();
+        let at = |k: f64| (0.5 * TAU * (k + 0.5) / rings).sin_cos();
+        let part = |k: usize| {
+            let ((r0, z0), (r1, z1)) = (at(k as f64), at(k as f64 + 1.0));
+            frustum(n, [2.0 * r0, 2.0 * r1], 2.0 * (z0 - z1))
+        };
+        (0..rings as usize - 1).map(part).sum::<f64>()
+    };
+    let cases = [
+        ("sphere(r = 2, $fn = 30);", ball(30.0)),
+        ("sphere(r = 2, $fn = 31);", ball(31.0)),
+        ("cylinder(r1 = 3, r2 = 1, h = 5, $fn = 200);", frustum(200.0, [3.0, 1.0], 5.0)),
+        ("cylinder(r1 = 3, r2 = 0, h = 5, $fn = 200);", frustum(200.0, [3.0, 0.0], 5.0)),
+        ("cylinder(r1 = 0, r2 = 3, h = 5, $fn = 200);", frustum(200.0, [0.0, 3.0], 5.0)),
+    ];
+    for (text, expected) in cases {
+        let import = scad(text.as_bytes(), "t.csg", Facets::AsWritten).expect("a solid");
+        let [Primitive { shape: Shape::Mesh(mesh), .. }] = import.model.solids[0].primitives() else {
+            panic!("{text} is no mesh")
+        };
+        let found = volume(mesh);
+        assert!((found - expected).abs() < 1e-9 * expected, "{text}: {found}, not {expected}");
+    }
+    let few = scad("sphere(r = 2, $fn = 12);".as_bytes(), "t.csg", Facets::AsWritten).expect("a solid");
+    assert!(few.model.solids[0].primitives().iter().all(|p| !matches!(p.shape, Shape::Mesh(_))));
+}
+
 fn block(p: DVec3, min: [f64; 3], max: [f64; 3]) -> f64 {
     (DVec3::from_array(min) - p).max(p - DVec3::from_array(max)).max_element()
 }

@@ -5,6 +5,7 @@ use super::solid::{OPEN, Part, Triangles};
 use super::{Body, Region, Shape, gather, hull};
 use crate::csg::Op;
 use crate::import::scad::args::Args;
+use crate::import::scad::convex::MOST_PLANES;
 use crate::import::scad::flat::{Lift, Plate};
 use crate::import::scad::frame::Made;
 use crate::import::scad::{Context, Fault, Reader, convex};
@@ -12,9 +13,6 @@ use crate::import::solid::{Assembly, Placed, around};
 use crate::model::{Mesh, Shape as Solid};
 use glam::{DAffine2, DVec2};
 use std::sync::Arc;
-
-/// Planes beyond which a convex part is a mesh.
-const MOST_PLANES: usize = 100;
 
 impl Reader<'_> {
     /// A shape as a node of the solid, lifted where it is flat.
