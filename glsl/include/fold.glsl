@@ -18,8 +18,10 @@ const uint FOLD_STEPS = 12u;
 const float FOLD_DIFFERENCE = 1.0 / 512.0;
 // Where a fold may lie beside the last patch of its face, of the patch.
 const float FOLD_BESIDE = 0.25;
-// A step is no longer than a quarter of a patch; than a whole one where that is no longer than this.
+// A step is no longer than a quarter of a patch, or than this, over patches that are narrower.
 const float FOLD_NARROW_PX = 1.0;
+// Patches at most that a step leads across.
+const uint FOLD_HOPS = 8u;
 // Largest cosine between normal and ray at a fold that was found.
 const float FOLD_COSINE = 0.2;
 // A longer step ends the search: no fold is within reach. Near a fold the distance in the picture is the square of the
@@ -74,23 +76,27 @@ bool find_fold(Face face, int n, View view, vec2 uv, vec2 pixel, out Sample s, o
         way = length(along * to);
         lost = way > FOLD_FAR_PX;
         float patches = max(abs(to.x), abs(to.y));
-        float shorter = max(min(patches / MAX_STEP, max(patches, way / FOLD_NARROW_PX)), 1.0);
+        float shorter = max(min(patches / MAX_STEP, way / FOLD_NARROW_PX), 1.0);
         // where the surface is seen edge-on, a long way may be short in the picture
         if (patches > 1.0) way = max(way, FOLD_FAR_PX);
         to /= shorter;
         uv += to;
-        ivec2 out_ = place + way_beyond(uv, 0.0);
-        ivec2 next = mix(clamp(out_, ivec2(0), count - 1), (out_ + count) % count, meets);
-        Patch there = patch_at(patch_in(face, next));
-        if (next == place || side_of(there.shape) == SIDE_OUTSIDE) continue;
-        vec2 over = vec2(greaterThanEqual(out_, count)) - vec2(lessThan(out_, ivec2(0)));
-        over = mix(vec2(0.0), over, meets);
-        uv = (patch_.domain.xy + uv * patch_.domain.zw - over - there.domain.xy) / there.domain.zw;
-        // a step in a wide patch may be many narrow ones: far beyond its sides a patch is not the surface
-        uv = mix(uv, clamp(uv, 0.0, 1.0), notEqual(out_, place));
-        turns += over;
-        patch_ = there;
-        place = next;
+        bool within = false; // of a patch, or beyond the last one
+        for (uint hop = 0u; hop < FOLD_HOPS && !within; ++hop) {
+            ivec2 out_ = place + way_beyond(uv, 0.0);
+            ivec2 next = mix(clamp(out_, ivec2(0), count - 1), (out_ + count) % count, meets);
+            Patch there = patch_at(patch_in(face, next));
+            within = next == place || side_of(there.shape) == SIDE_OUTSIDE;
+            if (within) continue;
+            vec2 over = vec2(greaterThanEqual(out_, count)) - vec2(lessThan(out_, ivec2(0)));
+            over = mix(vec2(0.0), over, meets);
+            uv = (patch_.domain.xy + uv * patch_.domain.zw - over - there.domain.xy) / there.domain.zw;
+            // far beyond its sides a patch is not the surface
+            if (hop + 1u == FOLD_HOPS) uv = mix(uv, clamp(uv, 0.0, 1.0), notEqual(out_, place));
+            turns += over;
+            patch_ = there;
+            place = next;
+        }
     }
     at = patch_.domain.xy + s.uv * patch_.domain.zw + turns;
     bool within = all(greaterThanEqual(s.uv, vec2(-FOLD_BESIDE))) && all(lessThanEqual(s.uv, vec2(1.0 + FOLD_BESIDE)));
