@@ -159,7 +159,7 @@ impl EdgeData {
             }
             let own = edge.uses.iter().map(|u| (first_face + u.face) as u32).collect();
             let flags = count << abi::EDGE_SEEDS | if style.is_none() { abi::EDGE_UNDRAWN } else { 0 };
-            self.push_line(number, style.unwrap_or(LineStyle::Full), own, edges.deviation, flags);
+            self.push_line(number, style.unwrap_or(LineStyle::Full), own, edge.deviation, flags);
             for (nth, span) in edge.curve.iter().enumerate() {
                 self.push_piece(&span.piece.points, origin);
                 self.points.extend(texels.get(nth).into_iter().flatten());

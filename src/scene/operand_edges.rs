@@ -87,11 +87,11 @@ impl EdgeData {
         let Some((placement, first_face)) = operand.placed else { return };
         let near = if cuts.alone { 0 } else { abi::EDGE_NEAR };
         let settings = self.settings;
-        let mut push = |style, own: Vec<u32>, pieces: &[Bezier<DVec4>], flags: u32| {
+        let mut push = |style, (own, off): (Vec<u32>, f64), pieces: &[Bezier<DVec4>], flags: u32| {
             if pieces.is_empty() {
                 return;
             }
-            self.push_line(abi::SOLID_NUMBER, style, own, edges.deviation, flags);
+            self.push_line(abi::SOLID_NUMBER, style, own, off, flags);
             for piece in pieces {
                 let piece = self.push_piece(&piece.points, operand.origin);
                 // of no instance of the model
@@ -102,7 +102,7 @@ impl EdgeData {
         for edge in &edges.edges {
             let Some(style) = settings.style(edge.kind) else { continue };
             let pieces: Vec<_> = edge.curve.iter().flat_map(|span| kept(&span.piece, &cuts.sections, None)).collect();
-            push(style, edge.uses.iter().map(|u| face(u.face)).collect(), &pieces, near);
+            push(style, (edge.uses.iter().map(|u| face(u.face)).collect(), edge.deviation), &pieces, near);
         }
         // beside faces meshes bound nothing
         for edge in edges.of_meshes.iter().filter(|_| !first_triangles.is_empty()) {
@@ -110,7 +110,7 @@ impl EdgeData {
             let own =
                 edge.triangles.iter().map(|(mesh, nth)| abi::OWN_TRIANGLE | (first_triangles[*mesh] + *nth as u32));
             let [from, to] = edge.ends;
-            push(style, own.collect(), &kept(&Bezier::line(from, to), &cuts.sections, None), near);
+            push(style, (own.collect(), 0.0), &kept(&Bezier::line(from, to), &cuts.sections, None), near);
         }
         for (nth, section) in cuts.sections.iter().enumerate() {
             let plane = (section.truncate(), -section.w);
@@ -122,7 +122,7 @@ impl EdgeData {
             for cut in outlines {
                 let pieces: Vec<_> =
                     cut.pieces.iter().flat_map(|piece| kept(piece, &cuts.sections, Some(nth))).collect();
-                push(LineStyle::Bold, cut.face.map(face).into_iter().collect(), &pieces, 0);
+                push(LineStyle::Bold, (cut.face.map(face).into_iter().collect(), edges.deviation), &pieces, 0);
             }
         }
     }

@@ -170,7 +170,7 @@ impl<'a> EdgeTracer<'a> {
         let placed = &self.model.instances[instance];
         let edges = &self.parts[placed.part];
         let edge: &Edge = &edges.edges[edge];
-        let known = edges.deviation * scale(&placed.transform);
+        let known = edge.deviation * scale(&placed.transform);
         let own = |hit: &Hit| hit.instance == instance && edge.uses.iter().any(|u| u.face == hit.face_index);
         self.tracer.sight(point, known, &own, probe)
     }

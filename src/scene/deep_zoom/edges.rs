@@ -111,9 +111,9 @@ impl SceneData {
             let instance = &whole.instances[nth];
             let sight = Sight::new(&cut.camera, instance);
             let (first_face, first_number) = (first_faces[instance.part], numbers[instance.part] as u32);
-            let Edges { edges, of_meshes, deviation, reach, .. } = &edges[instance.part];
+            let Edges { edges, of_meshes, reach, .. } = &edges[instance.part];
             let key = nth as u32 + 1;
-            let mut push = |number, kind, own: Vec<u32>, pieces: Vec<Bezier<DVec4>>, seeds: &[Seeds]| {
+            let mut push = |number, kind, (own, off): (Vec<u32>, f64), pieces: Vec<Bezier<DVec4>>, seeds: &[Seeds]| {
                 let style = settings.style(kind);
                 let mut line = None;
                 for (nth, piece) in pieces.iter().enumerate() {
@@ -125,7 +125,7 @@ impl SceneData {
                     let flags = count << abi::EDGE_SEEDS | if style.is_none() { abi::EDGE_UNDRAWN } else { 0 };
                     // the pieces of a line have as many seeds
                     if line.replace(flags) != Some(flags) {
-                        data.push_line(number, style.unwrap_or(LineStyle::Full), own.clone(), *deviation, flags);
+                        data.push_line(number, style.unwrap_or(LineStyle::Full), own.clone(), off, flags);
                     }
                     let bounds = piece.points.iter().fold(Bounds::EMPTY, |all, p| all.with(p.point()));
                     let origin = bounds.centre();
@@ -145,7 +145,7 @@ impl SceneData {
                 let arrays = (self.faces.as_slice(), self.patches.as_slice());
                 let seeds = if may_fold { seeds_of_cut(of, &pieces, shown, arrays) } else { Vec::new() };
                 let own = edge.uses.iter().map(|u| (first_face + u.face) as u32).collect();
-                push(number, edge.kind, own, pieces, &seeds);
+                push(number, edge.kind, (own, edge.deviation), pieces, &seeds);
             }
             let Some(first_triangles) = meshes.map(|part| &self.meshes.first_triangles[part]) else { continue };
             for (edge, number) in of_meshes.iter().zip(first_number + edges.len() as u32..) {
@@ -154,7 +154,7 @@ impl SceneData {
                 halve(&Bezier { points }, &sight, MOST_DEPTH, &mut pieces);
                 let own =
                     |&(mesh, triangle): &(usize, usize)| abi::OWN_TRIANGLE | (first_triangles[mesh] + triangle as u32);
-                push(number, edge.kind, edge.triangles.iter().map(own).collect(), pieces, &[]);
+                push(number, edge.kind, (edge.triangles.iter().map(own).collect(), 0.0), pieces, &[]);
             }
         }
         self.edges = Some(data);

@@ -112,10 +112,9 @@ impl<'s> Sight<'s> {
 
     fn of_edge(&self, (instance, edge): (usize, usize), point: DVec3, probe: &mut Probe<'_>) -> Visibility {
         let (part, transform) = self.transform(instance);
-        let edges = &self.scene.edges[part];
-        let uses = &edges.edges[edge].uses;
-        let own = |hit: &Hit| hit.instance == instance && uses.iter().any(|u| u.face == hit.face_index);
-        self.scene.tracer.sight(point, edges.deviation * scale(&transform), &own, probe)
+        let edge = &self.scene.edges[part].edges[edge];
+        let own = |hit: &Hit| hit.instance == instance && edge.uses.iter().any(|u| u.face == hit.face_index);
+        self.scene.tracer.sight(point, edge.deviation * scale(&transform), &own, probe)
     }
 
     fn of_side(&self, (instance, mesh): (usize, usize), point: DVec3, probe: &mut Probe<'_>) -> Visibility {

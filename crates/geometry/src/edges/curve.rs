@@ -146,7 +146,7 @@ mod tests {
 
     fn edge(pieces: Vec<Vec<DVec4>>) -> Edge {
         let curve = pieces.into_iter().map(|points| Span { start: 0.0, end: 1.0, piece: Bezier { points } }).collect();
-        Edge { curve, ends: [0, 1], uses: Vec::new(), source: None, kind: EdgeKind::Sharp, turn: 1.0 }
+        Edge { curve, ends: [0, 1], uses: Vec::new(), source: None, kind: EdgeKind::Sharp, turn: 1.0, deviation: 0.0 }
     }
 
     fn point(x: f64, y: f64, w: f64) -> DVec4 {

@@ -7,7 +7,7 @@
 //!
 //! The directions into the faces decide, not their normals: neighbours of an open part may be oriented differently. The
 //! angle is measured at three points of each curve of the first use; between them it is not bounded. A point at which a
-//! face has no normal (a pole, a cusp) is skipped.
+//! face has no normal (a pole, a cusp) is skipped. How far the uses are apart is measured at the same points.
 
 use super::sheet::Sheet;
 use super::stretch::Stretch;
@@ -31,22 +31,39 @@ fn inward(sheet: &Sheet, curve: &Bezier<DVec3>, t: f64) -> Option<DVec3> {
     normal.cross(along).try_normalize().filter(|_| has_one)
 }
 
-/// Kind and largest turn of the edge of these stretches.
-pub(super) fn kind(sheets: &[Sheet], stretches: &[Stretch], uses: &[(usize, bool)], smooth: f64) -> (EdgeKind, f64) {
-    let [(first, _), others @ ..] = uses else { return (EdgeKind::Border, f64::NAN) };
+/// Distance of `p` from a trim curve at its foot on it, `t`: across the curve, for the foot may be off along it.
+fn off(sheet: &Sheet, curve: &Bezier<DVec3>, t: f64, p: DVec3) -> f64 {
+    let (jet, along) = sheet.frame(curve, t);
+    let way = p - jet.point;
+    let across = way - along * (way.dot(along) / along.length_squared());
+    if across.is_finite() { across.length() } else { way.length() }
+}
+
+/// Kind and largest turn of the edge of these stretches, and how far apart they are found.
+pub(super) fn kind(
+    sheets: &[Sheet],
+    stretches: &[Stretch],
+    uses: &[(usize, bool)],
+    smooth: f64,
+) -> (EdgeKind, f64, f64) {
+    let [(first, _), others @ ..] = uses else { return (EdgeKind::Border, f64::NAN, 0.0) };
     if others.is_empty() {
-        return (EdgeKind::Border, f64::NAN);
+        return (EdgeKind::Border, f64::NAN, 0.0);
     }
     let first = &stretches[*first];
     let sheet = &sheets[first.face];
     let mut turn: Option<f64> = None;
+    let mut apart: f64 = 0.0;
     for (other, _) in others {
         let other = &stretches[*other];
         let across = Across::new(&sheets[other.face], other);
         for curve in &first.pieces {
             for t in POINTS {
+                let p = sheet.at(curve, t);
+                let Some((other, s)) = across.foot(p) else { continue };
+                apart = apart.max(off(across.sheet, other, s, p));
                 let Some(a) = inward(sheet, curve, t) else { continue };
-                let Some(b) = across.inward(sheet.at(curve, t)) else { continue };
+                let Some(b) = inward(across.sheet, other, s) else { continue };
                 turn = Some(turn.unwrap_or(0.0).max(a.angle_between(-b)));
             }
         }
@@ -59,7 +76,7 @@ pub(super) fn kind(sheets: &[Sheet], stretches: &[Stretch], uses: &[(usize, bool
         (true, false) => EdgeKind::Smooth,
         (false, _) => EdgeKind::Sharp,
     };
-    (kind, turn)
+    (kind, turn, apart)
 }
 
 /// Another use of the edge, evaluated next to points of the first.
@@ -80,9 +97,9 @@ impl<'s, 'a> Across<'s, 'a> {
         Self { sheet, stretch, points }
     }
 
-    /// The direction into the face next to `p`: on the nearest chord, at its own parameter. An error of the parameter
-    /// turns it by as much as the surface bends over a share of that chord.
-    fn inward(&self, p: DVec3) -> Option<DVec3> {
+    /// The curve next to `p`, and its parameter there, from the nearest chord. An error of the parameter turns the
+    /// direction into the face by as much as the surface bends over a share of that chord.
+    fn foot(&self, p: DVec3) -> Option<(&'s Bezier<DVec3>, f64)> {
         let foot = |w: &[(usize, f64, DVec3)]| {
             let chord = w[1].2 - w[0].2;
             let s = ((p - w[0].2).dot(chord) / chord.length_squared()).clamp(0.0, 1.0);
@@ -98,6 +115,6 @@ impl<'s, 'a> Across<'s, 'a> {
             let step = (p - jet.point).dot(along) / along.length_squared();
             t = if step.is_finite() { (t + step).clamp(0.0, 1.0) } else { t };
         }
-        inward(self.sheet, curve, t)
+        Some((curve, t))
     }
 }

@@ -121,12 +121,15 @@ impl Part {
             let uses: Vec<EdgeUse> = ordered.iter().map(used).collect();
             let stated = ordered.iter().find_map(|(s, _)| stretches[*s].edge);
             let source = stated.and_then(|e| *self.stated_edges.get(e.edge as usize)?);
-            let (kind, turn) = kind::kind(sheets, stretches, &ordered, limits.smooth);
-            Ok((Edge { curve, ends: first.ends, uses, source, kind, turn }, deviation))
+            let (kind, turn, apart) = kind::kind(sheets, stretches, &ordered, limits.smooth);
+            Ok((Edge { curve, ends: first.ends, uses, source, kind, turn, deviation: apart }, deviation))
         };
         let all: Vec<(Edge, f64)> = found.edges.par_iter().map(edge).collect::<Result<_, EdgeError>>()?;
-        let deviation = all.iter().map(|e| e.1).fold(found.cut.deviation, f64::max);
+        let known = all.iter().map(|e| e.1).fold(found.cut.deviation, f64::max);
         let mut edges: Vec<Edge> = all.into_iter().map(|e| e.0).collect();
+        // edges that the source shares are as far apart as it has them, each by itself
+        edges.iter_mut().for_each(|e| e.deviation = e.deviation.max(known));
+        let deviation = edges.iter().map(|e| e.deviation).fold(known, f64::max);
         let mut number = vec![None; found.cut.vertices.points.len()];
         let mut vertices: Vec<DVec3> = Vec::new();
         for end in edges.iter_mut().flat_map(|e| &mut e.ends) {

@@ -77,7 +77,7 @@ pub struct EdgeUse {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edge {
     /// The curve in space: pieces end to end, along the first use. Where that face is a plane or the edge a line of
-    /// constant parameter it is exact, else fitted within [`Edges::deviation`] of the trimmed surface.
+    /// constant parameter it is exact, else fitted within [`Edge::deviation`] of the trimmed surface.
     pub curve: Vec<Span<Bezier<DVec4>>>,
     /// Indices into [`Edges::vertices`]; the same twice for a closed edge.
     pub ends: [usize; 2],
@@ -90,6 +90,8 @@ pub struct Edge {
     /// Largest angle, in radians, by which the surface turns across it: 0 where it continues, π where it folds back.
     /// NaN for borders.
     pub turn: f64,
+    /// Largest distance found, in model units, between its uses, and by which fits and joins of the part may be off.
+    pub deviation: f64,
 }
 
 /// A side of triangles where a surface made of facets creases or ends.
@@ -125,8 +127,8 @@ pub struct Edges {
     /// Points nearer to each other than this, in model units, are one. Pieces of loops within it are points and belong
     /// to no edge.
     pub reach: f64,
-    /// Largest distance, in model units, between curves that are taken as one edge: loops that were joined, and curves
-    /// fitted to them.
+    /// The largest [`Edge::deviation`], in model units: between curves that are taken as one edge, which are loops that
+    /// were joined or that the source shares, and curves fitted to them.
     pub deviation: f64,
     /// Faces with loops that lie within [`Edges::reach`] of a point and have no edge, and how many loops.
     pub lost: Vec<(usize, usize)>,

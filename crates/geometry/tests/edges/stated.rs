@@ -51,6 +51,23 @@ fn an_edge_of_the_source_is_one_however_sloppy() {
     assert_eq!(bare.edges().unwrap().single(), 8);
 }
 
+/// Its ends are the same in both faces, and between them one face's side is bowed.
+#[test]
+fn an_edge_of_the_source_is_as_far_off_as_its_faces_have_it() {
+    let mut part = pair(0.0, [true, false]);
+    let bowed = &part.faces[1].loops[0];
+    let mut sides: Vec<Bezier<DVec3>> = bowed.curves().collect();
+    sides[3].points = [(0.0, 1.0, 1.0), (0.02, 0.5, 1.0), (0.0, 0.0, 1.0)].map(DVec3::from).to_vec();
+    let stated = bowed.edges().to_vec();
+    part.faces[1].loops = vec![TrimLoop::new(sides, DVec2::ZERO).unwrap().with_edges(stated).unwrap()];
+    let edges = part.edges().unwrap();
+    for edge in &edges.edges {
+        let wanted = if edge.uses.len() == 2 { 0.01 } else { 0.0 };
+        assert!((edge.deviation - wanted).abs() < 1e-12, "{} uses: {}", edge.uses.len(), edge.deviation);
+    }
+    assert!((edges.deviation - 0.01).abs() < 1e-12, "{}", edges.deviation);
+}
+
 /// A claim that geometry contradicts: the two ends of the edge lie apart.
 #[test]
 fn an_edge_whose_uses_lie_apart_is_not_joined() {
