@@ -193,6 +193,7 @@ pub mod fold {
     pub const FOLD_BESIDE: f32 = 0.25;
     pub const FOLD_COSINE: f32 = 0.2;
     pub const FOLD_FAR_PX: f32 = 16.0;
+    pub const FOLD_HOPS: u32 = 8;
     pub const FOLD_NARROW_PX: f32 = 1.0;
     pub const FOLD_SHEET_PX: f32 = 0.25;
     pub const FOLD_STEPS: u32 = 12;
