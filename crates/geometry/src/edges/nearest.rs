@@ -116,7 +116,7 @@ mod tests {
         let p = |x: f64, y: f64, w: f64| DVec4::new(x * w, y * w, 0.0, w);
         let piece = Bezier { points: vec![p(150.0, 100.0, 1.0), p(150.0, 150.0, half), p(100.0, 150.0, 1.0)] };
         let curve = vec![Span { start: 0.0, end: 1.0, piece }];
-        Edge { curve, ends: [0, 1], uses: Vec::new(), source: None, kind: EdgeKind::Sharp, turn: 1.0 }
+        Edge { curve, ends: [0, 1], uses: Vec::new(), source: None, kind: EdgeKind::Sharp, turn: 1.0, deviation: 0.0 }
     }
 
     #[test]

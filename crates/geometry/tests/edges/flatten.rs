@@ -18,6 +18,7 @@ fn edge(curve: &BSpline<DVec4>) -> Edge {
         source: None,
         kind: EdgeKind::Border,
         turn: f64::NAN,
+        deviation: 0.0,
     }
 }
 
@@ -30,6 +31,7 @@ fn of(points: Vec<DVec4>) -> Edge {
         source: None,
         kind: EdgeKind::Border,
         turn: f64::NAN,
+        deviation: 0.0,
     }
 }
 

@@ -379,9 +379,10 @@ impl View {
     }
 
     /// The next picture of the current view: of fewer pixels and effects while the view moves; then a sharp one, and one
-    /// with every effect once the window shows the sharp one. `shown`: what it shows.
+    /// with every effect once the window shows the sharp one and no drag may go on. `shown`: what it shows.
     pub fn due(&self, shown: Option<&Camera>, now: Instant) -> Due {
-        let still = || if shown == Some(&self.camera) { Step::STILL } else { self.pacing.sharp() };
+        let rests = shown == Some(&self.camera) && !self.is_dragging();
+        let still = || if rests { Step::STILL } else { self.pacing.sharp() };
         self.of(if self.moving(now) { self.pacing.step() } else { still() })
     }
 

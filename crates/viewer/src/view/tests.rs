@@ -51,8 +51,15 @@ fn a_still_view_is_sharp_before_it_has_every_effect() {
     let sharp = view.due(None, now);
     assert_eq!((sharp.step, sharp.camera), (Step { scale: 1.0, without: all }, *view.camera()));
     assert_eq!(view.due(Some(&sharp.camera), now).step, Step::STILL);
-    let fewer = Camera { size: (400, 300), ..sharp.camera };
-    assert_eq!(view.due(Some(&fewer), now).step, sharp.step, "that of the move is shown");
+    view.press(DVec2::new(10.0, 10.0));
+    view.hold(Some(DVec3::ZERO));
+    view.moved(DVec2::new(40.0, 10.0), held(Button::Right), MODE, now);
+    let (later, dragged) = (now + SETTLE, *view.camera());
+    assert_eq!(view.due(Some(&dragged), later).step, sharp.step, "the drag may go on");
+    view.release();
+    assert_eq!(view.due(Some(&dragged), later).step, Step::STILL);
+    let fewer = Camera { size: (400, 300), ..dragged };
+    assert_eq!(view.due(Some(&fewer), later).step, sharp.step, "that of the move is shown");
 }
 
 #[test]

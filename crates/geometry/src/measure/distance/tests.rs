@@ -33,7 +33,7 @@ fn rectangle(low: DVec2, high: DVec2) -> TrimLoop {
 
 fn edge(curve: &BSpline<DVec4>) -> Edge {
     let curve = curve.beziers();
-    Edge { curve, ends: [0, 1], uses: Vec::new(), source: None, kind: EdgeKind::Sharp, turn: 1.0 }
+    Edge { curve, ends: [0, 1], uses: Vec::new(), source: None, kind: EdgeKind::Sharp, turn: 1.0, deviation: 0.0 }
 }
 
 fn at(x: f64, y: f64, z: f64) -> DAffine3 {
