@@ -78,6 +78,8 @@ Patch patch_at(uint i) { return patches[i]; }
 
 const uint NOBODY = 0xffffffffu;
 
+#include "convex_run.glsl"
+
 // Number of stored spans; those of further leaves are computed in every scan that comes near their boxes.
 const uint KEPT = 12u;
 
@@ -142,48 +144,6 @@ void close_item(Walk w, uint end, uint first, uint done_key, bool asks) {
     ++left;
     if (best.key != 0u && key > best.key) return;
     best = Change(key, w.from, end, w.positive, w.negative, w.candidates);
-}
-
-// Leaves of a tile one behind the other, all of which must hold a point, as half-spaces of a convex solid must: each
-// leads to the next one where the point is inside, and all to one place where it is not.
-//
-//      leaf 1  ├─────────────────────▶          only where all of them together begin and end does the item change
-//      leaf 2       ├────────────────▶
-//      leaf 3  ◀──────────────┤
-//                   lo        hi
-struct Run {
-    float lo;
-    float hi;
-    uint next; // the leaf that it leads to, or NOBODY
-    uint out_exit;
-};
-
-const Run NO_RUN = Run(NEVER, -NEVER, NOBODY, NOBODY);
-
-float next_of_run(Run run, float t) {
-    if (!(run.lo < run.hi)) return NEVER;
-    return t < run.lo ? run.lo : t < run.hi ? run.hi : NEVER;
-}
-
-// Exits that lead to leaves ahead of the scan, but for those from a leaf to the one behind it.
-struct Jumps {
-    uint nearest;
-    uint farthest;
-    uint unknown; // up to this leaf, any may be led to: only the nearest is known
-};
-
-bool is_led_to(inout Jumps jumps, uint i) {
-    if (i == jumps.nearest) {
-        jumps.unknown = jumps.farthest;
-        jumps.nearest = NOBODY;
-    }
-    return i <= jumps.unknown;
-}
-
-void add_jump(inout Jumps jumps, uint to) {
-    if (to >= EXIT_FALSE) return;
-    jumps.nearest = min(jumps.nearest, to);
-    jumps.farthest = max(jumps.farthest, to);
 }
 
 // A side as a layer.

@@ -88,6 +88,32 @@ pub fn holes_by(n: u32, tool: &Primitive) -> Model {
     folded(Op::Difference, [block([0.0; 3], [side, side, 5.0])].into_iter().chain((0..n * n).map(hole)).collect())
 }
 
+/// A convex stone of a hundred half-spaces, with a pit that is convex, too, and a block beside it.
+pub fn stone() -> Model {
+    let (mut all, mut b) = (Vec::new(), Builder::new());
+    let mut convex = |count: u32, centre: DVec3, radius: f64| {
+        let reach = DVec3::splat(2.0 * radius);
+        all.push(block((centre - reach).to_array(), (centre + reach).to_array()));
+        all.extend((0..count).map(|i| {
+            // about as many in each direction
+            let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
+            let turn = f64::from(i) * 2.399_963_229_728_653;
+            let normal = DVec3::new(turn.cos(), turn.sin(), 0.0) * (1.0 - z * z).sqrt() + DVec3::Z * z;
+            below(normal, radius + normal.dot(centre))
+        }));
+        let first = all.len() as u32 - count - 1;
+        let leaves: Vec<u32> = (first..=first + count).map(|p| b.leaf(p)).collect();
+        b.fold(Op::Intersection, leaves)
+    };
+    let (body, pit) = (convex(100, DVec3::ZERO, 1.0), convex(20, DVec3::new(0.5, -0.6, 0.7), 0.5));
+    all.push(block([0.8, -0.4, -0.4], [1.6, 0.4, 0.4]));
+    let beside = b.leaf(all.len() as u32 - 1);
+    let cut = b.pair(Op::Difference, body, pit);
+    let root = b.pair(Op::Union, cut, beside);
+    (1..).zip(&mut all).for_each(|(id, p)| p.id = id);
+    Model { solids: vec![Solid::new(all, b.finish(root).unwrap()).unwrap()], ..Model::default() }
+}
+
 /// Nested balls, each subtracted from the one around it, cut open.
 pub fn onion() -> Model {
     let mut b = Builder::new();

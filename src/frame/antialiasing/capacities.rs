@@ -29,7 +29,7 @@ impl Capacities {
         let some = u64::from(size.0) * u64::from(size.1) / PIXELS_OF_A_POINT;
         let most = range / BYTES as u32;
         let some = if counts.follows_borders { some.min(most.into()) as u32 } else { 0 };
-        Self { followed: self.followed.max(some) }
+        Self { followed: self.followed.max(some).min(most) }
     }
 
     /// What the frame that reported `c` would have needed.

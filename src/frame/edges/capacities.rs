@@ -31,8 +31,8 @@ impl Capacities {
     pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), range: u32) -> Self {
         let diagonal = f64::from(size.0).hypot(size.1.into());
         let of_curved = f64::from(counts.curved_piece_instances) * CHORDS * diagonal.sqrt();
-        let some = counts.piece_instances.saturating_add(of_curved as u32).min(most(range));
-        Self { chords: self.chords.max(some) }
+        let some = counts.piece_instances.saturating_add(of_curved as u32);
+        Self { chords: self.chords.max(some).min(most(range)) }
     }
 
     /// What the frame that reported `c` would have needed.

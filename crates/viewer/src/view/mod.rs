@@ -79,6 +79,13 @@ pub struct Due {
     pub step: Step,
 }
 
+impl Due {
+    /// It has every pixel and every effect: none follows it while the view is still.
+    pub fn is_whole(&self) -> bool {
+        self.step == Step::STILL
+    }
+}
+
 impl Default for View {
     fn default() -> Self {
         let bounds = Bounds { min: DVec3::splat(-1.0), max: DVec3::ONE };

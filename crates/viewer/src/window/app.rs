@@ -10,7 +10,6 @@ use super::waiter::Waiter;
 use super::{Failure, Fault, ViewError, ViewOptions};
 use crate::measure::Measurement;
 use crate::navigation::gesture::Held;
-use crate::pacing::Step;
 use crate::panels::{Facts, Ui, Verdict};
 use crate::session::Picked;
 use crate::session::{Joiner, JoinerEvent, Loaded, LoaderEvent, Loads, Session};
@@ -452,7 +451,7 @@ impl App {
                 self.view.pacing.took(due.step, start.elapsed());
             }
             // the picture with every effect is next
-            self.again |= !complete || due.step != Step::STILL && !self.view.moving(Instant::now());
+            self.again |= !complete || !due.is_whole() && !self.view.moving(Instant::now());
             if complete && engine.drawn(&self.session.world).is_some() {
                 self.joiner.shown();
             }

@@ -172,9 +172,9 @@ fn few_segments_are_facets() {
         [kinds("cylinder($fn = 12, h = 1, r1 = 2, r2 = 2);"), kinds("cylinder($fn = 13, h = 1, r1 = 2, r2 = 2);")],
         [13, 1]
     );
-    let written = scad(b"sphere($fn = 0, $fa = 12, $fs = 2, r = 10);", "t", Facets::AsWritten).unwrap();
-    // 30 segments, 15 rings: 14 bands of 30 and the box
-    assert_eq!(written.model.solids[0].primitives().len(), 421);
+    let written = scad(b"sphere($fn = 0, $fa = 30, $fs = 2, r = 10);", "t", Facets::AsWritten).unwrap();
+    // 12 segments, 6 rings: 5 bands of 12 and the box
+    assert_eq!(written.model.solids[0].primitives().len(), 61);
 }
 
 #[test]
