@@ -20,7 +20,7 @@ const float FOLD_DIFFERENCE = 1.0 / 512.0;
 const float FOLD_BESIDE = 0.25;
 // A step is no longer than a quarter of a patch, or than this, over patches that are narrower.
 const float FOLD_NARROW_PX = 1.0;
-// Patches at most that a step leads across.
+// Patches at most that a short step leads across.
 const uint FOLD_HOPS = 8u;
 // Largest cosine between normal and ray at a fold that was found.
 const float FOLD_COSINE = 0.2;
@@ -77,6 +77,7 @@ bool find_fold(Face face, int n, View view, vec2 uv, vec2 pixel, out Sample s, o
         lost = way > FOLD_FAR_PX;
         float patches = max(abs(to.x), abs(to.y));
         float shorter = max(min(patches / MAX_STEP, way / FOLD_NARROW_PX), 1.0);
+        bool is_short = way <= FOLD_NARROW_PX * shorter;
         // where the surface is seen edge-on, a long way may be short in the picture
         if (patches > 1.0) way = max(way, FOLD_FAR_PX);
         to /= shorter;
@@ -91,8 +92,8 @@ bool find_fold(Face face, int n, View view, vec2 uv, vec2 pixel, out Sample s, o
             vec2 over = vec2(greaterThanEqual(out_, count)) - vec2(lessThan(out_, ivec2(0)));
             over = mix(vec2(0.0), over, meets);
             uv = (patch_.domain.xy + uv * patch_.domain.zw - over - there.domain.xy) / there.domain.zw;
-            // far beyond its sides a patch is not the surface
-            if (hop + 1u == FOLD_HOPS) uv = mix(uv, clamp(uv, 0.0, 1.0), notEqual(out_, place));
+            // a long step may lead across many narrow patches, whose slopes it does not know: it ends at the first
+            if (!is_short || hop + 1u == FOLD_HOPS) uv = mix(uv, clamp(uv, 0.0, 1.0), notEqual(out_, place));
             turns += over;
             patch_ = there;
             place = next;
