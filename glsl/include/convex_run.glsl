@@ -1,5 +1,5 @@
-// Leaves of a tile one behind the other, all of which must hold a point, as half-spaces of a convex solid must: each
-// leads to the next one where the point is inside, and all to one place where it is not.
+// A run: consecutive leaves of a tile that all have to contain a point, as the half-spaces of a convex solid do. Inside a
+// leaf, the walk goes to the next leaf. Outside, every leaf of the run leads to the same place.
 //
 //      leaf 1  ├─────────────────────▶          only where all of them together begin and end does the item change
 //      leaf 2       ├────────────────▶
@@ -24,11 +24,12 @@ float next_of_run(Run run, float t) {
     return t < run.lo ? run.lo : t < run.hi ? run.hi : NEVER;
 }
 
-// Exits that lead to leaves ahead of the scan, but for those from a leaf to the one behind it.
+// Where exits of the leaves so far lead, ahead of the scan. A leaf that such an exit leads to begins a new run. An exit to
+// the very next leaf does not count.
 struct Jumps {
     uint nearest;
     uint farthest;
-    uint unknown; // up to this leaf, any may be led to: only the nearest is known
+    uint unknown; // only the nearest is known: up to this leaf, an exit may lead to any
 };
 
 bool is_led_to(inout Jumps jumps, uint i) {

@@ -63,7 +63,7 @@ fn thickness() {
                 assert!(exact > 0.0 || drawn.to_bits() == 0, "{name} at {at}: {drawn}");
                 seen += usize::from(exact > 0.0);
             }
-            assert!(seen > 1000 || m.solids.is_empty(), "{name}: {seen}");
+            assert!(seen > 2000 || m.solids.is_empty(), "{name}: {seen}");
         }
     }
     assert_silent(renderer);

@@ -92,7 +92,8 @@ pub fn holes_by(n: u32, tool: &Primitive) -> Model {
 pub fn stone() -> Model {
     let (mut all, mut b) = (Vec::new(), Builder::new());
     let mut convex = |count: u32, centre: DVec3, radius: f64| {
-        let reach = DVec3::splat(2.0 * radius);
+        // it cuts off the outermost corners
+        let reach = DVec3::splat(1.05 * radius);
         all.push(block((centre - reach).to_array(), (centre + reach).to_array()));
         all.extend((0..count).map(|i| {
             // about as many in each direction

@@ -4,11 +4,12 @@ use super::compose::{compose, rectangle as part};
 use super::curves::Curves;
 use super::search::{Body, Work};
 use super::{OTHER, of};
-use crate::model::{Bounds, Face, SurfaceKind, TrimLoop};
+use crate::csg::{Builder, Op};
+use crate::model::{Bounds, Face, Primitive, Shape, Solid, SurfaceKind, TrimLoop};
 use crate::spline::{Bezier, Control, Patch, Surface};
 use crate::trim::RectSide;
 use glam::{DAffine3, DVec2, DVec3, DVec4};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 fn face(kind: SurfaceKind, surface: Surface, loops: Vec<TrimLoop>) -> Face {
     Face { id: 1, kind, surface, loops, same_sense: true, colour: None }
@@ -149,4 +150,31 @@ fn parts_and_composed_curves_are_the_patch_at_their_points() {
             assert!(found.distance(expected) < 1e-13, "{found} instead of {expected}");
         }
     }
+}
+
+/// 4,900 half-spaces: rings of 100 corners at heights `r cos((i + ½) π / 50)`, the widest of radius `r cos(π / 100)`, in a
+/// block that is wider.
+#[test]
+fn thousands_of_half_spaces_have_the_box_of_their_corners() {
+    let (radius, rings, n) = (10.0, 50, 100);
+    let corner = |ring: i32| (PI * (f64::from(ring) + 0.5) / f64::from(rings)).sin_cos();
+    let (middle, high) = ((0.5 * TAU / f64::from(n)).cos(), radius * corner(0).1);
+    let reach = DVec3::new(2.0 * radius, 2.0 * radius, high);
+    let mut shapes = vec![Shape::Block { min: -reach, max: reach }];
+    for ring in 1..rings {
+        let [(r0, z0), (r1, z1)] = [ring - 1, ring].map(corner).map(|(s, c)| (radius * s, radius * c));
+        let (out, up) = (z0 - z1, (r1 - r0) * middle);
+        shapes.extend((0..n).map(|i| {
+            let (s, c) = (TAU * (f64::from(i) + 0.5) / f64::from(n)).sin_cos();
+            Shape::HalfSpace { normal: DVec3::new(out * c, out * s, up), offset: out * r0 * middle + up * z0 }
+        }));
+    }
+    let mut b = Builder::new();
+    let leaves: Vec<u32> = (0..shapes.len() as u32).map(|p| b.leaf(p)).collect();
+    let root = b.fold(Op::Intersection, leaves);
+    let place = |shape| Primitive { shape, transform: DAffine3::IDENTITY, colour: [1.0; 4], id: 1 };
+    let solid = Solid::new(shapes.into_iter().map(place).collect(), b.finish(root).unwrap()).unwrap();
+    let (found, far) = (super::solid::bounds(&solid), radius * (PI / f64::from(n)).cos());
+    let off = (found.max - far).abs().max((found.min + far).abs()).max_element();
+    assert!(off < 1e-9, "{found:?}");
 }

@@ -28,8 +28,10 @@ const ROUNDING: f64 = 4e-6;
 
 /// A frustum about z from `z = 0`, its corners on circles of the two radii.
 pub(super) fn frustum(to: &mut Assembly, placed: &Placed, [bottom, top]: [f64; 2], height: f64, n: u32) -> u32 {
-    if n as usize > MOST_PLANES {
-        return lathe(to, placed, &[(bottom, 0.0), (top, height)], n);
+    if n as usize > MOST_PLANES
+        && let Some(mesh) = lathe(to, placed, &[(bottom, 0.0), (top, height)], n)
+    {
+        return mesh;
     }
     let step = TAU / f64::from(n);
     let middle = (0.5 * step).cos();
@@ -52,9 +54,11 @@ pub(super) fn ball(to: &mut Assembly, placed: &Placed, radius: f64, n: u32) -> u
         let (s, c) = (PI * (f64::from(ring) + 0.5) / f64::from(rings)).sin_cos();
         (radius * s, radius * c)
     };
-    if (rings as usize - 1) * n as usize > MOST_PLANES {
-        let profile: Vec<_> = (0..rings).rev().map(at).collect();
-        return lathe(to, placed, &profile, n);
+    let upwards: Vec<_> = (0..rings).rev().map(at).collect();
+    if (rings as usize - 1) * n as usize > MOST_PLANES
+        && let Some(mesh) = lathe(to, placed, &upwards, n)
+    {
+        return mesh;
     }
     let step = TAU / f64::from(n);
     let middle = (0.5 * step).cos();
@@ -72,8 +76,9 @@ pub(super) fn ball(to: &mut Assembly, placed: &Placed, radius: f64, n: u32) -> u
     to.half_spaces(within, &planes, placed)
 }
 
-/// A mesh of rings of `n` vertices about z; `profile`: radius and height of each, upwards.
-fn lathe(to: &mut Assembly, placed: &Placed, profile: &[(f64, f64)], n: u32) -> u32 {
+/// A mesh of rings of `n` vertices about z; `profile`: radius and height of each, upwards. `None` where a coordinate is
+/// not finite.
+fn lathe(to: &mut Assembly, placed: &Placed, profile: &[(f64, f64)], n: u32) -> Option<u32> {
     let step = TAU / f64::from(n);
     let (mut points, mut firsts) = (Vec::new(), Vec::new());
     for &(radius, z) in profile {
@@ -100,11 +105,8 @@ fn lathe(to: &mut Assembly, placed: &Placed, profile: &[(f64, f64)], n: u32) -> 
         }
     }
     triangles.retain(|[a, b, c]| a != b && b != c && c != a);
-    match Mesh::new(placed.id, points, triangles, Vec::new()) {
-        Ok(mesh) => to.add(Shape::Mesh(Arc::new(mesh)), placed),
-        // sizes without end are left out before
-        Err(_) => to.nothing(),
-    }
+    let mesh = Mesh::new(placed.id, points, triangles, Vec::new()).ok()?;
+    Some(to.add(Shape::Mesh(Arc::new(mesh)), placed))
 }
 
 /// `polyhedron(points, faces)`: half-spaces where it is convex, else a mesh.
