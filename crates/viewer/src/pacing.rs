@@ -1,7 +1,6 @@
 //! The resolution and the effects of pictures while the view moves: the next one is ready in time.
 //!
 //! ```text
-//!   sharp     every pixel, without what moving pictures leave out     once, if that is anything
 //!   still     every pixel, every effect                      once, then nothing is drawn
 //!   moving    the finest of these steps that takes at most BUDGET:
 //!
@@ -89,8 +88,6 @@ pub struct Pacing {
     present: Effects,
     ladder: Vec<Rung>,
     at: usize,
-    /// A moving picture was timed.
-    is_timed: bool,
     /// The last picture: its step and its time.
     last: Option<(usize, Duration)>,
     /// Of each effect, the time with it over the time without it.
@@ -102,7 +99,7 @@ impl Default for Pacing {
     fn default() -> Self {
         let ladder = ladder(Effects::NONE);
         let at = place(&ladder, FIRST);
-        Self { present: Effects::NONE, ladder, at, is_timed: false, last: None, costs: [ASSUMED; EFFECTS] }
+        Self { present: Effects::NONE, ladder, at, last: None, costs: [ASSUMED; EFFECTS] }
     }
 }
 
@@ -117,13 +114,7 @@ impl Pacing {
         self.ladder[self.at].0
     }
 
-    /// The step of the first picture after a move: every pixel, without the effects that moving pictures leave out, all of
-    /// them before the first move. Where effects take long, it comes sooner than a picture with them; else it has them.
-    pub fn sharp(&self) -> Step {
-        Step { without: if self.is_timed { self.step().without } else { self.present }, ..Step::STILL }
-    }
-
-    /// The step of the first picture of all, as soon as may be.
+    /// The step of the first picture of all, as soon as may be: without effects.
     pub fn first(&self) -> Step {
         Step { without: self.present, ..self.step() }
     }
@@ -141,15 +132,12 @@ impl Pacing {
     /// time grew with the pixels and effects cost what they did; a finer one is one step away.
     pub fn took(&mut self, step: Step, time: Duration) {
         if step != self.step() {
+            // a still picture: the hand rests, and may see something else when it goes on
             self.last = None;
-            if step == Step::STILL {
-                // the hand rests, and may see something else when it goes on
-                self.costs = self.costs.map(|cost| 0.5 * (cost + ASSUMED));
-            }
+            self.costs = self.costs.map(|cost| 0.5 * (cost + ASSUMED));
             return;
         }
         self.learn(time);
-        self.is_timed = true;
         self.last = Some((self.at, time));
         if time > BUDGET {
             let mut expected = time.as_secs_f64();

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   press ─▶ Drag, waits for the point under the cursor ─▶ moves ─▶ camera ─▶ a picture of fewer pixels, in time
-//!                                                 still for SETTLE, or released ─┴─▶ every pixel ─▶ every effect
+//!                                                 still for SETTLE, or released ─┴─▶ every pixel, once
 //! ```
 //!
 //! The caller passes times in; there is no window here.
@@ -77,13 +77,6 @@ pub struct Due {
     pub camera: Camera,
     /// Pixels of it along a side for one of the view, and effects that it leaves out.
     pub step: Step,
-}
-
-impl Due {
-    /// It has every pixel and every effect: none follows it while the view is still.
-    pub fn is_whole(&self) -> bool {
-        self.step == Step::STILL
-    }
 }
 
 impl Default for View {
@@ -385,12 +378,9 @@ impl View {
         self.set(camera, now);
     }
 
-    /// The next picture of the current view: of fewer pixels and effects while the view moves; then a sharp one, and one
-    /// with every effect once the window shows the sharp one and no drag may go on. `shown`: what it shows.
-    pub fn due(&self, shown: Option<&Camera>, now: Instant) -> Due {
-        let rests = shown == Some(&self.camera) && !self.is_dragging();
-        let still = || if rests { Step::STILL } else { self.pacing.sharp() };
-        self.of(if self.moving(now) { self.pacing.step() } else { still() })
+    /// The next picture of the current view: of fewer pixels and effects while the view moves.
+    pub fn due(&self, now: Instant) -> Due {
+        self.of(if self.moving(now) { self.pacing.step() } else { Step::STILL })
     }
 
     /// The first picture of all, of as many pixels as one of a moving view and without effects: it is shown earlier.

@@ -26,41 +26,22 @@ fn a_moving_view_has_fewer_pixels_and_a_still_one_all() {
     let start = Instant::now();
     let mut view = view(start);
     let later = start + Duration::from_secs(1);
-    assert_eq!((view.due(None, later).step.scale, view.wake(later)), (1.0, None));
+    assert_eq!((view.due(later).step.scale, view.wake(later)), (1.0, None));
     assert_eq!((view.first().step.scale, view.first().camera.size), (0.5, (400, 300)));
     view.wheel(DVec2::new(300.0, 200.0), 1.0, later);
-    assert!(view.due(None, later).step.scale < 1.0);
+    assert!(view.due(later).step.scale < 1.0);
     let wake = view.wake(later).expect("the still picture");
-    assert_eq!((view.due(None, wake).step.scale, view.due(None, wake).camera.size), (1.0, (800, 600)));
+    assert_eq!((view.due(wake).step.scale, view.due(wake).camera.size), (1.0, (800, 600)));
     assert_eq!(view.wake(wake), None);
 }
 
-/// The sharp picture is that of moving ones in every pixel; where these have all effects, it is the last one.
 #[test]
-fn a_still_view_is_sharp_before_it_has_every_effect() {
+fn the_first_picture_has_no_effects() {
     let now = Instant::now();
-    let rest = now + SETTLE;
     let all = Effects { borders: true, ambient: true, lines: true, shadows: true };
     let mut view = view(now);
     view.pacing.set_effects(all);
-    assert_eq!((view.first().step.without, view.due(None, rest).step.without), (all, all), "no time is known yet");
-    view.pacing.took(view.pacing.step(), Duration::from_millis(1));
-    assert_eq!(view.due(None, rest).step, Step::STILL);
-    for _ in 0..9 {
-        view.pacing.took(view.pacing.step(), Duration::from_secs(1));
-    }
-    let sharp = view.due(None, rest);
-    assert_eq!((sharp.step, sharp.camera), (Step { scale: 1.0, without: all }, *view.camera()));
-    assert_eq!(view.due(Some(&sharp.camera), rest).step, Step::STILL);
-    view.press(DVec2::new(10.0, 10.0));
-    view.hold(Some(DVec3::ZERO));
-    view.moved(DVec2::new(40.0, 10.0), held(Button::Right), MODE, now);
-    let dragged = *view.camera();
-    assert_eq!(view.due(Some(&dragged), rest).step, sharp.step, "the drag may go on");
-    view.release();
-    assert_eq!(view.due(Some(&dragged), rest).step, Step::STILL);
-    let fewer = Camera { size: (400, 300), ..dragged };
-    assert_eq!(view.due(Some(&fewer), rest).step, sharp.step, "that of the move is shown");
+    assert_eq!((view.first().step.without, view.pacing.step().without), (all, Effects::NONE));
 }
 
 #[test]
@@ -91,9 +72,9 @@ fn a_drag_waits_for_its_point_and_holds_it() {
     view.moved(start + 50.0, held(Button::Right), MODE, now);
     let at = view.camera.project(point).expect("in front").0;
     assert!(at.distance(start_pixel) < 1e-6 && view.is_dragging());
-    assert!(view.due(None, now).step.scale < 1.0);
+    assert!(view.due(now).step.scale < 1.0);
     assert!(!view.release());
-    assert_eq!((view.due(None, now).step.scale, view.wake(now)), (1.0, None));
+    assert_eq!((view.due(now).step.scale, view.wake(now)), (1.0, None));
     assert!(view.previous(false, now));
 }
 
@@ -145,7 +126,7 @@ fn two_fingers_move_what_is_under_the_cursor_and_turn_about_it() {
     assert!(direction(&view.camera).dot(direction(&before)) < 0.999);
     view.scroll(cursor, Scrolled::Zoom(2.0), OrbitStyle::Turntable, now);
     assert!(view.camera.eye.distance(under) < 0.8 * before.eye.distance(under));
-    assert!(view.due(None, now).step.scale < 1.0, "the view moves");
+    assert!(view.due(now).step.scale < 1.0, "the view moves");
 }
 
 #[test]

@@ -289,7 +289,7 @@ impl App {
         self.make_room();
         let effects = self.opened.as_ref().map(|opened| opened.engine.effects());
         self.view.pacing.set_effects(effects.unwrap_or_default());
-        let due = if self.seen { self.view.due(self.pictures.last(), now) } else { self.view.first() };
+        let due = if self.seen { self.view.due(now) } else { self.view.first() };
         let (mut settings, marks) = (self.frame_settings(), self.marks());
         settings.without = due.step.without;
         let (under, scene_settings) = (self.over_view(), self.scene_settings());
@@ -450,13 +450,13 @@ impl App {
             if std::mem::replace(&mut self.drawn, due.camera.size) == due.camera.size && complete {
                 self.view.pacing.took(due.step, start.elapsed());
             }
-            // the picture with every effect is next
-            self.again |= !complete || !due.is_whole() && !self.view.moving(Instant::now());
+            self.again |= !complete;
             if complete && engine.drawn(&self.session.world).is_some() {
                 self.joiner.shown();
             }
             if !self.seen && complete {
-                self.seen = true;
+                // the whole picture is next
+                (self.seen, self.again) = (true, true);
                 tracing::info!("first picture after {:.0} ms", ms(self.begun));
             }
             let (width, height) = due.camera.size;

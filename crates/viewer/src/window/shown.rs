@@ -20,8 +20,6 @@ pub struct ShownPicture {
 /// The last pictures.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pictures {
-    /// In the window.
-    last: Option<Camera>,
     shown: Option<ShownPicture>,
     failed: Option<ShownPicture>,
 }
@@ -35,13 +33,7 @@ impl Pictures {
 
     /// It is in the window; `complete` is false where parts of it are missing, so that it is due again.
     pub fn drawn(&mut self, picture: ShownPicture, complete: bool) {
-        self.last = Some(picture.camera);
         self.shown = complete.then_some(picture);
-    }
-
-    /// The camera of what is in the window, which may be incomplete or of the model before.
-    pub fn last(&self) -> Option<&Camera> {
-        self.last.as_ref()
     }
 
     /// It cannot be drawn: the one before is in the window still.
