@@ -287,6 +287,9 @@ impl Frame<'_> {
             let written = if behind.is_some() { written } else { Access::COLOUR_WRITE };
             times.scope(cmd, "layers", || layers.record(self, cmd, &solids, drawing, written));
         }
+        if let Some(edges) = self.edges().filter(|_| !matches!(drawing, Drawing::Sample)) {
+            times.scope(cmd, "line lists", || edges.list(self, cmd));
+        }
         let counters = &stages.common.counters;
         barrier::buffers(cmd, &[(counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, Access::TRANSFER_READ)]);
         self.counters.record_nth(cmd, counters, size_of::<Counters>() as u64, nth);
