@@ -7,7 +7,6 @@
 // column.
 #include "scene.glsl"
 #include "view.glsl"
-#include "words.glsl"
 #include "edges.glsl"
 #include "visible.glsl"
 #include "line_list.glsl"
@@ -16,21 +15,21 @@ layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 #include "grid.glsl"
 #include "in_picture.glsl"
-layout(binding = 1) uniform usamplerBuffer face_instances;
-layout(binding = 2) uniform usamplerBuffer faces;
-layout(binding = 3) uniform usamplerBuffer patches;
-layout(binding = 4) uniform usamplerBuffer patch_instances;
-layout(binding = 5, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 6, rg32ui) readonly uniform uimage2D meshes_and_solids; // in scenes without trims the same
-layout(binding = 7, r32ui) readonly uniform uimage2D operand_uv; // in scenes without Boolean solids not read
-layout(scalar, binding = 8) buffer Starts { LineList starts; uint start_words[]; };
-layout(scalar, binding = 9) buffer CountersBuffer { Counters counters; };
+#include "placed.glsl"
+layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
+layout(binding = 8, rg32ui) readonly uniform uimage2D meshes_and_solids; // in scenes without trims the same
+layout(binding = 9, r32ui) readonly uniform uimage2D operand_uv; // in scenes without Boolean solids not read
+layout(scalar, binding = 10) buffer Starts { LineList starts; uint start_words[]; };
+layout(scalar, binding = 11) buffer CountersBuffer { Counters counters; };
 
 layout(scalar, push_constant) uniform Push { uint capacity; } push;
 
 layout(constant_id = 17) const bool SOLIDS_HAVE_PATCHES = false;
 
-#include "faces.glsl"
+#include "patch.glsl"
+#include "patch_place.glsl"
+#include "refine.glsl"
+#include "fold_near.glsl"
 #include "fold_beside.glsl"
 
 const int FOLD_ROWS = 16; // of a thread
@@ -42,10 +41,16 @@ bool is_one_place(uvec2 a, uvec2 b) {
     return a.x == b.x && max(apart.x, apart.y) <= SAME_PLACE;
 }
 
-bool is_curved(uint patch_instance) {
-    FaceInstance fi = face_instance_at(word_at(patch_instances, patch_instance));
-    uint number = face_at(fi.face).first_patch + patch_instance - fi.first_patch_instance;
-    return texelFetch(patches, int(number) * 4 + 3).xyz != uvec3(0u);
+// Whether the face that a pixel sees may fold so near that it is drawn.
+bool may_fold(uvec2 seen) {
+    uint patch_instance = seen.x - 1u;
+    FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
+    Face face = face_at(fi.face);
+    uint n = patch_instance - fi.first_patch_instance;
+    Patch patch_ = patch_at(face.first_patch + n);
+    ivec2 place = place_of(face, int(n));
+    bool is_free = fold_free(face, place, patch_, view_at(fi.instance), unpack_uv(seen.y)) > FOLD_REACH_PX + START_OFF_PX;
+    return patch_.bend != vec3(0.0) && !is_free;
 }
 
 // The patches that pixels around see, and which of the pixels are starts: a bit each.
@@ -61,8 +66,9 @@ uint starts_of(ivec2 at) {
         if (!known) bits |= 1u << k;
         if (known) found[n].x = 0u; // what is not kept is not compared with
     }
-    for (uint k = 0u; k < 9u; ++k) {
-        if ((bits >> k & 1u) != 0u && !is_curved(patch_seen(beside_pixel(at, k)).x - 1u)) bits &= ~(1u << k);
+    for (uint left = bits; left != 0u; left &= left - 1u) {
+        uint k = uint(findLSB(left));
+        if (!may_fold(patch_seen(beside_pixel(at, k)))) bits &= ~(1u << k);
     }
     return bits;
 }

@@ -17,6 +17,7 @@ layout(scalar, binding = 1) readonly buffer Chords { Chord chords[]; };
 layout(scalar, binding = 2) buffer Points { LineList points; uint point_words[]; };
 layout(scalar, binding = 3) buffer Seeds { LineList seeds; uint seed_words[]; };
 layout(scalar, binding = 4) buffer CountersBuffer { Counters counters; };
+layout(scalar, binding = 5) readonly buffer ChordSeeds { uint chord_seeds[]; }; // where outlines are drawn
 
 layout(scalar, push_constant) uniform Push {
     vec3 half_px;
@@ -43,16 +44,17 @@ void put_point(uint pixel) {
     for (uint axis = 0u; axis < 3u; ++axis) atomicMax(points.grid[axis], grid[axis]);
 }
 
-// Seeds of the chord's edge, from number 1 on.
-void put_seeds(uint pixel, uint count) {
+// Seeds of the chord's edge, a bit each.
+void put_seeds(uint pixel, uint bits) {
+    uint count = uint(bitCount(bits));
     uint first = atomicAdd(seeds.count, count);
-    for (uint k = 0u; k < count; ++k) {
-        uint at = first + k;
-        bool fits = at < push.capacities.y;
-        if (fits) {
+    uint at = first;
+    for (uint left = bits; left != 0u; left &= left - 1u) {
+        if (at < push.capacities.y) {
             seed_words[LINE_ITEM_WORDS * at] = pixel;
-            seed_words[LINE_ITEM_WORDS * at + 1u] = chord | (k + 1u) << LINE_SEED;
+            seed_words[LINE_ITEM_WORDS * at + 1u] = chord | uint(findLSB(left) + 1) << LINE_SEED;
         }
+        ++at;
     }
     uint end = first + count;
     bool fits = end <= push.capacities.y;
@@ -74,6 +76,6 @@ void main() {
     uint steps = uint(covered * LINE_STEPS + 0.5);
     uint pixel = line_word(ivec2(gl_FragCoord.xy));
     if (steps != 0u) put_point(pixel);
-    uint folds = DRAWS_FOLDS ? c.style >> EDGE_SEEDS & EDGE_MOST_SEEDS : 0u;
-    if (folds != 0u) put_seeds(pixel, folds);
+    uint bits = DRAWS_FOLDS ? chord_seeds[chord] : 0u;
+    if (bits != 0u) put_seeds(pixel, bits);
 }

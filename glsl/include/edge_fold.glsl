@@ -61,8 +61,6 @@ const bool OWN_PATCHES_HIDE = true;
 #include "fold.glsl"
 #include "fold_beside.glsl"
 
-// From the centre of the pixel that sees the face.
-const float FOLD_REACH_PX = 1.5;
 
 // Whether a face reaches a fold, of its domain or beyond a seam, where a pixel beside it sees the face at (u, v) of a
 // patch.

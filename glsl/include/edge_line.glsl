@@ -94,6 +94,7 @@ const bool OWN_PATCHES_HIDE = false;
 #include "edge_seen.glsl"
 #include "edge_covered.glsl"
 #include "fold.glsl"
+#include "line_seed.glsl"
 
 // Of a piece: single precision.
 const float SEED_ROUNDED = 1e-4;
@@ -109,12 +110,6 @@ const float TURN_SHEET_PX = 2.0;
 // Dashes of hidden lines and the gaps between them, in half widths of lines.
 const float DASH = 8.0;
 const float GAP = 6.0;
-
-// The parameter of the edge's piece at a share of the chord.
-float parameter_at(Chord c, float share) {
-    float from = share * c.w.x;
-    return mix(c.t.x, c.t.y, from / (from + (1.0 - share) * c.w.y));
-}
 
 // The exact point of the edge.
 EdgePoint point_at(float t, EdgePiece piece, View view) {
@@ -182,20 +177,10 @@ float fold_beside(vec4 face_beside, vec4 ends, float t, EdgePoint e, uint instan
     View view = view_at(instance);
     Face face = face_at(uint(face_beside.x));
     ivec2 count = ivec2(face.count_u, face.count_v);
-    ivec2 place = place_of(face, int(face_beside.y));
-    vec2 beside = mix(ends.xy, ends.zw, (t - SEED_END) / (1.0 - 2.0 * SEED_END));
-    Patch patch_ = patch_at(patch_in(face, place));
-    vec2 uv = (beside - patch_.domain.xy) / patch_.domain.zw;
-    bool arrived = false; // tested by the loop's condition, not by a `break`: see refine.glsl
-    for (uint hop = 0u; hop < MAX_HOPS && !arrived; ++hop) {
-        ivec2 next = clamp(place + way_beyond(uv, BEYOND), ivec2(0), count - 1);
-        Patch there = patch_at(patch_in(face, next));
-        arrived = next == place || side_of(there.shape) == SIDE_OUTSIDE;
-        if (arrived) continue;
-        patch_ = there;
-        place = next;
-        uv = (beside - patch_.domain.xy) / patch_.domain.zw;
-    }
+    vec2 beside = beside_edge(ends, t);
+    Patch patch_;
+    vec2 uv;
+    ivec2 place = seed_place(face, int(face_beside.y), beside, patch_, uv);
     Sample s;
     vec2 fold;
     point = e;

@@ -3,6 +3,9 @@
 #ifndef FOLD_BESIDE_GLSL
 #define FOLD_BESIDE_GLSL
 
+// A fold is drawn so far from the centre of the pixel that sees the face.
+const float FOLD_REACH_PX = 1.5;
+
 // The pixels around a pixel, by rows; number 4 is itself.
 ivec2 beside_pixel(ivec2 at, uint k) { return at + ivec2(k % 3u, k / 3u) - 1; }
 

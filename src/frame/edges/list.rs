@@ -1,12 +1,13 @@
-//! Passes `line_list` and `fold_list`: lists of what passes `edge_line` and `edge_fold` look at.
+//! Passes `seed_list`, `line_list` and `fold_list`: lists of what passes `edge_line` and `edge_fold` look at.
 //!
 //! ```text
+//!   chord ──seed_list──▶ faces beside it that may fold there           once a view
 //!   chord ─▶ rectangle ──line_list──▶ points: pixels that its line covers
 //!                                     seeds:  pixels beside which folds are looked for from its edge
-//!   pixel, and those around ──fold_list──▶ starts: a pixel, and one around that sees a curved face which may end between
+//!   pixel, and those around ──fold_list──▶ starts: a pixel, and one around that sees a curved face which may fold between
 //! ```
 //!
-//! Reads: everything that the bindings name. Writes: `points`, `seeds`; `starts`; `counters`.
+//! Reads: everything that the bindings name. Writes: `chord_seeds`; `points`, `seeds`; `starts`; `counters`.
 
 use super::divide::COUNT_OFFSET;
 use crate::abi::LineList;
@@ -14,9 +15,11 @@ use crate::abi::constants::fold_list::FOLD_ROWS;
 use crate::abi::constants::line_list::{FOUND_WORDS, LINE_ITEM_WORDS};
 use crate::frame::common::draw::Draw;
 use crate::frame::common::kernel::Kernel;
+use crate::bindings::Placed;
 use crate::frame::common::room::Room;
-use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource, TexelBuffer};
-use crate::shaders::{self, constant};
+use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource};
+use crate::scene::EdgeBuffers;
+use crate::shaders::{self, Shader, constant};
 use bytemuck::{Pod, Zeroable};
 use std::mem::offset_of;
 
@@ -55,6 +58,45 @@ impl List {
     }
 }
 
+/// Those of the constants that a shader has.
+fn of_shader(constants: &[(u32, u32)], shader: &Shader) -> Vec<(u32, u32)> {
+    constants.iter().copied().filter(|(id, _)| shader.interface.constants.contains(id)).collect()
+}
+
+/// Pass `seed_list`.
+pub(crate) struct SeedsOfChords(Kernel);
+
+/// Its buffers, in binding order.
+pub(crate) struct SeedBindings<'a> {
+    pub frame: &'a Buffer,
+    pub placed: Placed<'a>,
+    pub chords: &'a Buffer,
+    pub edges: &'a EdgeBuffers,
+    pub draw: &'a Buffer,
+    pub chord_seeds: &'a Buffer,
+}
+
+impl SeedsOfChords {
+    /// `constants` of passes that follow surfaces.
+    pub(crate) fn new(device: &Device, constants: &[(u32, u32)]) -> Result<Self, GpuError> {
+        let constants = of_shader(constants, &shaders::SEED_LIST_COMP);
+        Ok(Self(Kernel::new(device, "seed_list", &shaders::SEED_LIST_COMP, &constants)?))
+    }
+
+    /// One thread a chord; there is room for `capacity`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &SeedBindings<'_>, capacity: u32) {
+        let e = b.edges;
+        let edges = [b.chords, &e.piece_instances, &e.pieces].map(Resource::from);
+        let resources: Vec<_> = [b.frame.into()]
+            .into_iter()
+            .chain(b.placed.resources())
+            .chain(edges)
+            .chain([Resource::from(&e.points), b.draw.into(), b.chord_seeds.into()])
+            .collect();
+        self.0.record(cmd, &resources, capacity);
+    }
+}
+
 /// Pass `line_list`.
 pub(crate) struct OfChords {
     pipeline: Pipeline,
@@ -67,6 +109,8 @@ pub(crate) struct ChordBindings<'a> {
     pub points: &'a List,
     pub seeds: &'a List,
     pub counters: &'a Buffer,
+    /// What pass `seed_list` wrote, where outlines are drawn.
+    pub chord_seeds: &'a Buffer,
     /// The draw, and its number.
     pub draw: &'a Buffer,
 }
@@ -88,7 +132,7 @@ impl OfChords {
 
     /// `size`: of the picture.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &ChordBindings<'_>, size: (u32, u32), half_px: [f32; 3]) {
-        let resources = [b.frame, b.chords, &b.points.buffer, &b.seeds.buffer, b.counters].map(Resource::from);
+        let resources = [b.frame, b.chords, &b.points.buffer, &b.seeds.buffer, b.counters, b.chord_seeds].map(Resource::from);
         let params = ChordParams { half_px, capacities: [b.points.capacity, b.seeds.capacity] };
         cmd.rendering(size, &[], None, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&params));
@@ -105,10 +149,7 @@ pub(crate) struct OfPixels(Kernel);
 /// Its buffers and images, in binding order.
 pub(crate) struct PixelBindings<'a> {
     pub frame: &'a Buffer,
-    pub face_instances: &'a TexelBuffer,
-    pub faces: &'a TexelBuffer,
-    pub patches: &'a TexelBuffer,
-    pub patch_instances: &'a TexelBuffer,
+    pub placed: Placed<'a>,
     pub visibility: &'a Image,
     pub meshes_and_solids: &'a Image,
     pub operand_uv: &'a Image,
@@ -117,21 +158,18 @@ pub(crate) struct PixelBindings<'a> {
 }
 
 impl OfPixels {
-    pub(crate) fn new(device: &Device, meshes_and_solids: bool, operands: bool) -> Result<Self, GpuError> {
-        let constants = [
-            (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(meshes_and_solids)),
-            (constant::SOLIDS_HAVE_PATCHES, u32::from(operands)),
-        ];
+    /// `constants` of passes that follow surfaces.
+    pub(crate) fn new(device: &Device, constants: &[(u32, u32)]) -> Result<Self, GpuError> {
+        let constants = of_shader(constants, &shaders::FOLD_LIST_COMP);
         Ok(Self(Kernel::new(device, "fold_list", &shaders::FOLD_LIST_COMP, &constants)?))
     }
 
     /// One thread a column of [`FOLD_ROWS`] pixels.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &PixelBindings<'_>) {
         let (width, height) = b.visibility.size();
-        let placed = [b.face_instances, b.faces, b.patches, b.patch_instances].map(Resource::from);
         let images = [b.visibility, b.meshes_and_solids, b.operand_uv].map(Resource::from);
         let written = [&b.starts.buffer, b.counters].map(Resource::from);
-        let resources: Vec<_> = [b.frame.into()].into_iter().chain(placed).chain(images).chain(written).collect();
+        let resources: Vec<_> = [b.frame.into()].into_iter().chain(b.placed.resources()).chain(images).chain(written).collect();
         self.0.bind(cmd, &resources, bytemuck::bytes_of(&b.starts.capacity));
         self.0.dispatch_rows(cmd, [width, height.div_ceil(FOLD_ROWS as u32)]);
     }

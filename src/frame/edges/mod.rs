@@ -42,6 +42,8 @@ pub(crate) struct Passes {
     /// The host wants their numbers.
     has_edge_image: bool,
     divide: divide::Divide,
+    /// Where outlines of curved faces are wanted.
+    seeds: Option<list::SeedsOfChords>,
     list: list::OfChords,
     line: line::Line,
     /// Where outlines of curved faces are wanted, and there are patches.
@@ -64,8 +66,7 @@ impl Passes {
         let kinds = line::Kinds { test, volume: data.volume.as_ref().and_then(SolidData::kinds) };
         let folds = edges.settings.silhouettes;
         let of_faces = || {
-            let meshes_and_solids = data.has_meshes() || data.solids.kinds().is_some();
-            let list = list::OfPixels::new(device, meshes_and_solids, data.has_operands)?;
+            let list = list::OfPixels::new(device, &constants)?;
             Ok::<_, GpuError>((list, fold::Fold::new(device, &constants, test)?))
         };
         let numbers = formats.numbers[0].then_some(NUMBER_FORMAT);
@@ -73,6 +74,7 @@ impl Passes {
             settings: edges.settings,
             has_edge_image: formats.numbers[0],
             divide: divide::Divide::new(device)?,
+            seeds: folds.then(|| list::SeedsOfChords::new(device, &constants)).transpose()?,
             list: list::OfChords::new(device, folds)?,
             line: line::Line::new(device, &constants, &kinds, folds)?,
             fold: (folds && (data.has_patches || data.has_operands)).then(of_faces).transpose()?,
@@ -104,6 +106,8 @@ pub(crate) struct EdgeStage {
     starts: Buffer,
     chords: Buffer,
     draw: Buffer,
+    /// Beside which of them folds may be.
+    chord_seeds: Buffer,
     /// Pixels that lines cover, and those beside which folds are looked for: from edges, and from pixels around.
     points: list::List,
     seeds: list::List,
@@ -144,6 +148,7 @@ impl EdgeStage {
             starts: room.words("edge chord starts", piece_instances + 1)?,
             chords: room.structs::<Chord>("edge chords", room.capacities.edges.chords)?,
             draw: room.indirect::<u32>("edge draw", divide::DRAW_WORDS)?,
+            chord_seeds: room.words("edge chord seeds", room.capacities.edges.chords)?,
             points: list::List::new(room, "line points", room.capacities.edges.points, false)?,
             seeds: list::List::new(room, "line seeds", room.capacities.edges.seeds, true)?,
             fold_starts: list::List::new(room, "fold starts", room.capacities.edges.starts, true)?,
@@ -176,6 +181,14 @@ impl EdgeStage {
         frame.stages.common.scan(cmd, &self.counts, &self.starts, frame.counts.piece_instances);
         cmd.after(w, r | w);
         divide.emit(cmd, &bindings, params, frame.capacities.edges.chords);
+        if let Some(seeds) = &self.passes.seeds {
+            cmd.after(w, r);
+            let (chords, draw, chord_seeds) = (&self.chords, &self.draw, &self.chord_seeds);
+            let placed = frame.scene.placed(frame.views);
+            let bindings = list::SeedBindings { frame: frame.constants, placed, chords, edges, draw, chord_seeds };
+            seeds.record(cmd, &bindings, frame.capacities.edges.chords);
+            barrier::buffers(cmd, &[(chord_seeds, w, Access::FRAGMENT_READ)]);
+        }
         let drawn = Access::VERTEX_READ | Access::FRAGMENT_READ | Access::COMPUTE_READ;
         barrier::buffers(cmd, &[(&self.chords, w, drawn), (&self.draw, w, Access::INDIRECT_READ)]);
         cmd.after(w, w | Access::INDIRECT_READ);
@@ -200,6 +213,7 @@ impl EdgeStage {
                 points: &self.points,
                 seeds: &self.seeds,
                 counters,
+                chord_seeds: &self.chord_seeds,
                 draw: &self.draw,
             };
             passes.list.record(cmd, &bindings, v.image.size(), self.half_px);
@@ -209,10 +223,7 @@ impl EdgeStage {
             let parts = frame.solids().map(|solids| solids.resolve(frame));
             let bindings = list::PixelBindings {
                 frame: frame.constants,
-                face_instances: placed.face_instances,
-                faces: placed.faces,
-                patches: placed.patches,
-                patch_instances: placed.patch_instances,
+                placed,
                 visibility: &v.image,
                 meshes_and_solids: v.of_meshes_and_solids(),
                 operand_uv: seen_solids(parts.as_ref(), &placed, &self.best).operand_uv,
