@@ -26,6 +26,9 @@ layout(scalar, push_constant) uniform Push {
 
 layout(location = 0) flat in uint chord;
 
+// The point of the edge that belongs to a place of its chord is not so far from it.
+const float CHORD_OFF_PX = 0.25;
+
 // Outlines of curved faces are drawn.
 layout(constant_id = 43) const bool DRAWS_FOLDS = false;
 
@@ -76,6 +79,7 @@ void main() {
     uint steps = uint(covered * LINE_STEPS + 0.5);
     uint pixel = line_word(ivec2(gl_FragCoord.xy));
     if (steps != 0u) put_point(pixel);
-    uint bits = DRAWS_FOLDS ? chord_seeds[chord] : 0u;
+    if (!DRAWS_FOLDS || length(from - share * along) > push.half_px.x + 0.5 + SEED_REACH_PX + CHORD_OFF_PX) return;
+    uint bits = chord_seeds[chord];
     if (bits != 0u) put_seeds(pixel, bits);
 }

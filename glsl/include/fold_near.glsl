@@ -13,13 +13,14 @@
 // Beside what a search may draw: a pixel's surface point, or that beside an edge, is so far off.
 const float START_OFF_PX = 0.75;
 
-// The largest bend of a patch and those around it, of the patch's (u, v).
-vec3 bend_around(Face face, ivec2 place, Patch patch_) {
+// The largest bend of a patch and of the three beside its nearest corner, of the patch's (u, v).
+vec3 bend_around(Face face, ivec2 place, Patch patch_, vec2 uv) {
     ivec2 count = ivec2(face.count_u, face.count_v);
     bvec2 meets = notEqual(face.flags & uvec2(FACE_MEETS_U, FACE_MEETS_V), uvec2(0u));
     vec3 bend = patch_.bend;
-    for (int k = 0; k < 9; ++k) {
-        ivec2 out_ = place + ivec2(k % 3, k / 3) - 1;
+    ivec2 way = ivec2(mix(vec2(-1.0), vec2(1.0), greaterThan(uv, vec2(0.5))));
+    for (int k = 1; k < 4; ++k) {
+        ivec2 out_ = place + way * ivec2(k & 1, k >> 1);
         ivec2 next = mix(clamp(out_, ivec2(0), count - 1), (out_ + count) % count, meets);
         Patch there = patch_at(patch_in(face, next));
         vec2 size = patch_.domain.zw / there.domain.zw;
@@ -41,7 +42,7 @@ float fold_free(Face face, ivec2 place, Patch patch_, View view, vec2 uv) {
     float u = length(along[0]);
     float v = length(along[1]);
     vec2 nearer = abs(vec2(dot(view.w.xyz, s.jet.du), dot(view.w.xyz, s.jet.dv)) / s.q.w);
-    vec3 bend = stretch * bend_around(face, place, patch_);
+    vec3 bend = stretch * bend_around(face, place, patch_, uv);
     bend += vec3(2.0 * nearer.x * u, nearer.x * v + nearer.y * u, 2.0 * nearer.y * v);
     float most = largest_of(bend.x / (u * u), bend.y / (u * v), bend.z / (v * v));
     float regular = 1.0 - abs(dot(along[0], along[1])) / (u * v);
