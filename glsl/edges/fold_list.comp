@@ -42,15 +42,15 @@ bool is_one_place(uvec2 a, uvec2 b) {
 }
 
 // Whether the face that a pixel sees may fold so near that it is drawn.
-bool may_fold(uvec2 seen) {
+bool may_fold(uvec2 seen, ivec2 around) {
     uint patch_instance = seen.x - 1u;
     FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
     Face face = face_at(fi.face);
     uint n = patch_instance - fi.first_patch_instance;
     Patch patch_ = patch_at(face.first_patch + n);
     ivec2 place = place_of(face, int(n));
-    bool is_free = fold_free(face, place, patch_, view_at(fi.instance), unpack_uv(seen.y)) > FOLD_REACH_PX + START_OFF_PX;
-    return patch_.bend != vec3(0.0) && !is_free;
+    float free = fold_free(face, place, patch_, view_at(fi.instance), unpack_uv(seen.y), vec2(around) + 0.5);
+    return patch_.bend != vec3(0.0) && !(free > FOLD_REACH_PX + NEAR_OFF_PX);
 }
 
 // The patches that pixels around see, and which of the pixels are starts: a bit each.
@@ -68,7 +68,8 @@ uint starts_of(ivec2 at) {
     }
     for (uint left = bits; left != 0u; left &= left - 1u) {
         uint k = uint(findLSB(left));
-        if (!may_fold(patch_seen(beside_pixel(at, k)))) bits &= ~(1u << k);
+        ivec2 around = beside_pixel(at, k);
+        if (!may_fold(patch_seen(around), around)) bits &= ~(1u << k);
     }
     return bits;
 }

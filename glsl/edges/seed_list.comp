@@ -4,8 +4,8 @@
 // Pass `seed_list`: beside which chords of smooth edges and seams a fold may be drawn: a bit for each face of the edge.
 // One thread a chord.
 //
-//    ●────○────○────●   places of the chord, SPACING_PX apart: where the surface beside all of them is free of folds up to
-//                        SEED_REACH_PX and half the space between places, pixels around need no search
+//    ●────○────○────●   places of the chord, SPACING_PX apart: where the surface beside all of them is free of folds up
+//                        to SEED_REACH_PX and half the space between places, pixels around need no search
 #include "scene.glsl"
 #include "view.glsl"
 #include "edges.glsl"
@@ -30,7 +30,7 @@ const uint MAX_HOPS = 8u;
 const float BEYOND = 1e-4;
 #include "line_seed.glsl"
 
-const float SPACING_PX = 4.0;
+const float SPACING_PX = 1.0;
 const float LEAST_PLACES = 3.0;
 const float MOST_PLACES = 32.0;
 
@@ -42,7 +42,7 @@ void main() {
     EdgePiece piece = edge_pieces[piece_instance.piece];
     float size = distance(c.a, c.b);
     uint places = uint(clamp(ceil(size / SPACING_PX), LEAST_PLACES, MOST_PLACES));
-    float reach = SEED_REACH_PX + START_OFF_PX + 0.5 * size / float(places - 1u);
+    float reach = SEED_REACH_PX + NEAR_OFF_PX + 0.5 * size / float(places - 1u);
     uint seeds = c.style >> EDGE_SEEDS & EDGE_MOST_SEEDS;
     uint bits = 0u;
     for (uint i = 0u; i < seeds * places; ++i) {
@@ -54,9 +54,10 @@ void main() {
         Face face = face_at(uint(beside.x));
         Patch patch_;
         vec2 uv;
-        float t = parameter_at(c, float(i % places) / float(places - 1u));
-        ivec2 place = seed_place(face, int(beside.y), beside_edge(ends, t), patch_, uv);
-        if (!(fold_free(face, place, patch_, view, uv) > reach)) bits |= 1u << k;
+        float share = float(i % places) / float(places - 1u);
+        vec2 at = beside_edge(ends, parameter_at(c, share));
+        ivec2 place = seed_place(face, int(beside.y), at, patch_, uv);
+        if (!(fold_free(face, place, patch_, view, uv, mix(c.a, c.b, share)) > reach)) bits |= 1u << k;
     }
     chord_seeds[chord] = bits;
 }

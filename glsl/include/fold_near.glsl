@@ -10,8 +10,8 @@
 #ifndef FOLD_NEAR_GLSL
 #define FOLD_NEAR_GLSL
 
-// Beside what a search may draw: a pixel's surface point, or that beside an edge, is so far off.
-const float START_OFF_PX = 0.75;
+// What a search leaves of its way, and what a chord is off its edge.
+const float NEAR_OFF_PX = 0.25;
 
 // The largest bend of a patch and of the three beside its nearest corner, of the patch's (u, v).
 vec3 bend_around(Face face, ivec2 place, Patch patch_, vec2 uv) {
@@ -31,9 +31,9 @@ vec3 bend_around(Face face, ivec2 place, Patch patch_, vec2 uv) {
 
 float largest_of(float a, float b, float c) { return 0.5 * (a + c) + sqrt(0.25 * (a - c) * (a - c) + b * b); }
 
-// Pixels.
-float fold_free(Face face, ivec2 place, Patch patch_, View view, vec2 uv) {
-    Sample s = sample_at(patch_, net_of(patch_), view, uv, vec2(0.0));
+// Pixels around a place of the picture, next to which the face is at (u, v) of its patch.
+float fold_free(Face face, ivec2 place, Patch patch_, View view, vec2 uv, vec2 pixel) {
+    Sample s = sample_at(patch_, net_of(patch_), view, uv, pixel);
     mat2 along = pixels_along(s, view);
     vec2 p = s.q.xy / s.q.w;
     vec3 across = (view.x.xyz - p.x * view.w.xyz) / s.q.w;
@@ -46,7 +46,7 @@ float fold_free(Face face, ivec2 place, Patch patch_, View view, vec2 uv) {
     bend += vec3(2.0 * nearer.x * u, nearer.x * v + nearer.y * u, 2.0 * nearer.y * v);
     float most = largest_of(bend.x / (u * u), bend.y / (u * v), bend.z / (v * v));
     float regular = 1.0 - abs(dot(along[0], along[1])) / (u * v);
-    return regular / (2.0 * most);
+    return regular / (2.0 * most) - length(s.miss);
 }
 
 #endif

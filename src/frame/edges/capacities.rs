@@ -39,7 +39,7 @@ pub(crate) struct Capacities {
 
 /// Most entries of a list in a storage buffer of so many bytes.
 fn most_of(list: usize, range: u32) -> u32 {
-    (range - size_of::<LineList>() as u32) / LISTS[list].1 as u32
+    range.saturating_sub(size_of::<LineList>() as u32) / LISTS[list].1 as u32
 }
 
 impl Capacities {
@@ -84,5 +84,48 @@ impl Capacities {
             seeds: of_lists(1, self.seeds, c.line_seeds)?,
             starts: of_lists(2, self.starts, c.fold_starts)?,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::abi::constants::scene::FAILED_LINES;
+
+    /// The storage buffer that every device binds.
+    const RANGE: u32 = 1 << 27;
+
+    fn lists(c: Capacities) -> [u32; 3] {
+        [c.points, c.seeds, c.starts]
+    }
+
+    /// Scenes without lines have no lists.
+    #[test]
+    fn lists_have_room_by_the_picture() {
+        let of = |lines, size, range| {
+            let counts = Counts { lines, ..Default::default() };
+            lists(Capacities::first(counts).for_picture(counts, size, range))
+        };
+        assert_eq!(of(true, (640, 480), RANGE), [38_400, 38_400, 19_200]);
+        assert_eq!(of(false, (640, 480), RANGE), [0; 3]);
+        // eight bytes an entry, and 36 a fold
+        let most = [RANGE / 8 - 4, (RANGE - 32) / 44, (RANGE - 32) / 44];
+        assert_eq!(of(true, (1 << 15, 1 << 15), RANGE), most);
+        assert_eq!(of(true, (640, 480), 16), [0; 3]);
+    }
+
+    #[test]
+    fn lists_grow_to_what_was_wanted_and_a_quarter() {
+        let had = Capacities { chords: 1, points: 1000, seeds: 1000, starts: 1000 };
+        let c = |line_points, line_seeds, fold_starts| Counters {
+            line_points,
+            line_seeds,
+            fold_starts,
+            failed: FAILED_LINES,
+            ..Default::default()
+        };
+        assert_eq!(had.grown(&c(900, 2000, 4000), RANGE).map(lists).ok(), Some([1000, 2500, 5000]));
+        let over = had.grown(&c(0, RANGE / 40, 0), RANGE).unwrap_err();
+        assert_eq!((over.what, over.most), ("pixels beside smooth edges", RANGE / 44));
     }
 }

@@ -13,9 +13,9 @@ use super::divide::COUNT_OFFSET;
 use crate::abi::LineList;
 use crate::abi::constants::fold_list::FOLD_ROWS;
 use crate::abi::constants::line_list::{FOUND_WORDS, LINE_ITEM_WORDS};
+use crate::bindings::Placed;
 use crate::frame::common::draw::Draw;
 use crate::frame::common::kernel::Kernel;
-use crate::bindings::Placed;
 use crate::frame::common::room::Room;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource};
 use crate::scene::EdgeBuffers;
@@ -132,7 +132,8 @@ impl OfChords {
 
     /// `size`: of the picture.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &ChordBindings<'_>, size: (u32, u32), half_px: [f32; 3]) {
-        let resources = [b.frame, b.chords, &b.points.buffer, &b.seeds.buffer, b.counters, b.chord_seeds].map(Resource::from);
+        let resources =
+            [b.frame, b.chords, &b.points.buffer, &b.seeds.buffer, b.counters, b.chord_seeds].map(Resource::from);
         let params = ChordParams { half_px, capacities: [b.points.capacity, b.seeds.capacity] };
         cmd.rendering(size, &[], None, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&params));
@@ -169,7 +170,8 @@ impl OfPixels {
         let (width, height) = b.visibility.size();
         let images = [b.visibility, b.meshes_and_solids, b.operand_uv].map(Resource::from);
         let written = [&b.starts.buffer, b.counters].map(Resource::from);
-        let resources: Vec<_> = [b.frame.into()].into_iter().chain(b.placed.resources()).chain(images).chain(written).collect();
+        let resources: Vec<_> =
+            [b.frame.into()].into_iter().chain(b.placed.resources()).chain(images).chain(written).collect();
         self.0.bind(cmd, &resources, bytemuck::bytes_of(&b.starts.capacity));
         self.0.dispatch_rows(cmd, [width, height.div_ceil(FOLD_ROWS as u32)]);
     }
