@@ -28,7 +28,8 @@
 //!                      ▼
 //!                 coverage       scenes with smooth trims: pixels at borders, mixed of what resolve drew
 //!               solid_layers     scenes with transparent solids: their faces, over what resolve drew
-//!                edge_line       scenes with lines: each pixel's best line along an edge, over what was drawn
+//!                line_list       scenes with lines: where to look at what
+//!                edge_line       each pixel's best line along an edge, over what was drawn
 //!
 //!  with several samples a pixel, everything from mesh on runs for each sample: antialiasing/samples.rs
 //!  if the view has not changed, passes above seen_squares (with several samples: above mesh) are skipped: reuse.rs
@@ -286,6 +287,9 @@ impl Frame<'_> {
             // without layers, nothing is drawn into the image behind them
             let written = if behind.is_some() { written } else { Access::COLOUR_WRITE };
             times.scope(cmd, "layers", || layers.record(self, cmd, &solids, drawing, written));
+        }
+        if let Some(edges) = self.edges().filter(|_| !matches!(drawing, Drawing::Sample)) {
+            times.scope(cmd, "line lists", || edges.list(self, cmd));
         }
         let counters = &stages.common.counters;
         barrier::buffers(cmd, &[(counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, Access::TRANSFER_READ)]);

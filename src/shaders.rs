@@ -65,9 +65,9 @@ pub struct TrimTest {
     pub within: Option<Within>,
     /// `None` if the way smooths no borders.
     pub borders: Option<Borders>,
-    /// Fragment shader of pass `edge_line`, and within a volume; `None`: [`EDGE_LINE_PLAIN`], which trusts no trimmed face.
+    /// Pass `edge_line`, and within a volume; `None`: [`EDGE_LINE_PLAIN`], which trusts no trimmed face.
     pub edge_line: Option<[&'static Shader; 2]>,
-    /// Fragment shader of pass `edge_fold`; `None`: that of scenes without trims.
+    /// Pass `edge_fold`; `None`: that of scenes without trims.
     pub edge_fold: Option<&'static Shader>,
 }
 
@@ -86,8 +86,8 @@ pub static BORDERS_PLAIN: Borders = Borders {
     follow: [&BORDER_FOLLOW_PLAIN_COMP, &BORDER_FOLLOW_PLAIN_VOLUME_COMP],
 };
 
-/// Fragment shader of pass `edge_line` of scenes without trims, and within a volume.
-pub static EDGE_LINE_PLAIN: [&Shader; 2] = [&EDGE_LINE_PLAIN_FRAG, &EDGE_LINE_PLAIN_VOLUME_FRAG];
+/// Pass `edge_line` of scenes without trims, and within a volume.
+pub static EDGE_LINE_PLAIN: [&Shader; 2] = [&EDGE_LINE_PLAIN_COMP, &EDGE_LINE_PLAIN_VOLUME_COMP];
 
 /// Shaders of scenes that a volume trims: `glsl/include/volume.glsl`.
 #[derive(Clone, Copy, Debug)]
@@ -109,8 +109,8 @@ pub static TRIM_TABLE: TrimTest = TrimTest {
         mix: [&BORDER_MIX_TABLE_COMP, &BORDER_MIX_TABLE_VOLUME_COMP],
         follow: [&BORDER_FOLLOW_TABLE_COMP, &BORDER_FOLLOW_TABLE_VOLUME_COMP],
     }),
-    edge_line: Some([&EDGE_LINE_TABLE_FRAG, &EDGE_LINE_TABLE_VOLUME_FRAG]),
-    edge_fold: Some(&EDGE_FOLD_TABLE_FRAG),
+    edge_line: Some([&EDGE_LINE_TABLE_COMP, &EDGE_LINE_TABLE_VOLUME_COMP]),
+    edge_fold: Some(&EDGE_FOLD_TABLE_COMP),
 };
 /// Cells with lists of arcs.
 pub static TRIM_EXACT: TrimTest = TrimTest {
@@ -123,8 +123,8 @@ pub static TRIM_EXACT: TrimTest = TrimTest {
         mix: [&BORDER_MIX_EXACT_COMP, &BORDER_MIX_EXACT_VOLUME_COMP],
         follow: [&BORDER_FOLLOW_EXACT_COMP, &BORDER_FOLLOW_EXACT_VOLUME_COMP],
     }),
-    edge_line: Some([&EDGE_LINE_EXACT_FRAG, &EDGE_LINE_EXACT_VOLUME_FRAG]),
-    edge_fold: Some(&EDGE_FOLD_EXACT_FRAG),
+    edge_line: Some([&EDGE_LINE_EXACT_COMP, &EDGE_LINE_EXACT_VOLUME_COMP]),
+    edge_fold: Some(&EDGE_FOLD_EXACT_COMP),
 };
 
 /// No test.

@@ -28,7 +28,7 @@ void main() {
     }
     if (draw == 0u && !DRAWS_ONLY) {
         counters = Counters(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u,
-                            0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+                            0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
     }
     if (draw < (2u + frame.corner_list) * frame.draw_capacity) draws[draw] = Draw(0u, 1u, 0xffffffffu, 0u);
 }

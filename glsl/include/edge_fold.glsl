@@ -32,9 +32,14 @@ layout(scalar, binding = 16) readonly buffer OperandMeshes { OperandMesh operand
 layout(scalar, binding = 17) readonly buffer OperandTriangles { uint operand_triangles[]; };
 layout(scalar, binding = 18) readonly buffer OperandPositions { vec3 operand_positions[]; };
 
-layout(scalar, push_constant) uniform Push { float half_px; } push;
+layout(scalar, push_constant) uniform Push {
+    float half_px;
+    uint capacity; // of the list of items
+} push;
 
-#define TRIM_BINDING 19
+#define LISTS_BINDING 19
+#include "line_items.glsl"
+#define TRIM_BINDING 20
 #include "trim.glsl"
 #include "placed.glsl"
 #include "patch.glsl"
@@ -54,11 +59,8 @@ const bool OWN_PATCHES_HIDE = true;
 #include "edge_seen.glsl"
 #include "edge_covered.glsl"
 #include "fold.glsl"
+#include "fold_beside.glsl"
 
-// From the centre of the pixel that sees the face.
-const float FOLD_REACH_PX = 1.5;
-// Neighbours whose (u, v) differ by no more, of the patch, are on one sheet.
-const float SAME_PLACE = 0.05;
 
 // Whether a face reaches a fold, of its domain or beyond a seam, where a pixel beside it sees the face at (u, v) of a
 // patch.
@@ -79,64 +81,42 @@ bool reaches(FaceInstance fi, Face face, uint patch_instance, Patch patch_, vec2
     return trim_inside(fi, face, place);
 }
 
-// A pixel's patch; x is 0 where it sees none.
-uvec2 patch_seen(ivec2 at) {
-    if (!is_in_picture(at)) return uvec2(0u);
-    uvec2 seen = imageLoad(visibility, at).xy;
-    if (SOLIDS_HAVE_PATCHES && sees_nothing(seen.x)) seen = imageLoad(meshes_and_solids, at).xy;
-    if (SOLIDS_HAVE_PATCHES && sees_operand(seen.x)) {
-        return uvec2(seen_patch_instance(seen.x) + 1u, imageLoad(operand_uv, at).x);
-    }
-    return sees_nothing(seen.x) || sees_other(seen.x) ? uvec2(0u) : uvec2(seen_patch_instance(seen.x) + 1u, seen.y);
-}
-
-bool is_one_place(uvec2 a, uvec2 b) {
-    if (a.x != b.x) return false;
-    vec2 apart = abs(unpack_uv(a.y) - unpack_uv(b.y));
-    return max(apart.x, apart.y) <= SAME_PLACE;
+// Looks for the fold beside a pixel from where the pixel `around` sees the face.
+void look(uvec2 item) {
+    ivec2 at = line_pixel(item.x);
+    ivec2 around = beside_pixel(at, item.y);
+    uvec2 found = patch_seen(around);
+    if (found.x == 0u) return; // a driver's idle lanes
+    uint patch_instance = found.x - 1u;
+    FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
+    Face face = face_at(fi.face);
+    Patch patch_ = patch_at(face.first_patch + patch_instance - fi.first_patch_instance);
+    View view = view_at(fi.instance);
+    Sample s;
+    vec2 at_fold;
+    int n = int(patch_instance - fi.first_patch_instance);
+    vec2 uv = unpack_uv(found.y);
+    if (!find_fold(face, n, view, uv, vec2(at) + 0.5, s, at_fold)) return;
+    vec2 place = s.q.xy / s.q.w;
+    float covered = line_coverage(length(s.miss), push.half_px);
+    uint steps = uint(covered * LINE_STEPS + 0.5);
+    if (steps == 0u || distance(place, vec2(around) + 0.5) > FOLD_REACH_PX) return;
+    if (!reaches(fi, face, patch_instance, patch_, at_fold, uv)) return;
+    put_found(Found(item.x, patch_instance, steps, place, seen_from_eye(s.q), 0.0));
 }
 
 void main() {
-    ivec2 at = ivec2(gl_FragCoord.xy);
-    uvec2 own = patch_seen(at);
-    uvec2 found[9];
-    ivec2 places[9];
-    found[0] = own;
-    places[0] = at;
-    uint count = own.x != 0u ? 1u : 0u;
-    bool alone = true;
-    for (int k = 0; k < 9; ++k) {
-        ivec2 beside = at + ivec2(k % 3 - 1, k / 3 - 1);
-        uvec2 seen = patch_seen(beside);
-        bool known = is_one_place(seen, own);
-        alone = alone && known;
-        for (uint i = 0u; i < count; ++i) known = known || is_one_place(seen, found[i]);
-        if (known || seen.x == 0u) continue;
-        found[count] = seen;
-        places[count] = beside;
-        ++count;
+    uint i = thread_number();
+    if (i >= items_of_step()) return;
+    if (LINE_STEP == STEP_LOOK) {
+        look(item_at(i));
+        return;
     }
-    if (alone) return;
-    for (uint i = 0u; i < count; ++i) {
-        uint patch_instance = found[i].x - 1u;
-        FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
-        Face face = face_at(fi.face);
-        Patch patch_ = patch_at(face.first_patch + patch_instance - fi.first_patch_instance);
-        if (patch_.bend == vec3(0.0)) continue;
-        View view = view_at(fi.instance);
-        Sample s;
-        vec2 at_fold;
-        int n = int(patch_instance - fi.first_patch_instance);
-        vec2 uv = unpack_uv(found[i].y);
-        if (!find_fold(face, n, view, uv, gl_FragCoord.xy, s, at_fold)) continue;
-        vec2 place = s.q.xy / s.q.w;
-        float covered = line_coverage(length(s.miss), push.half_px);
-        uint steps = uint(covered * LINE_STEPS + 0.5);
-        if (steps == 0u || distance(place, vec2(places[i]) + 0.5) > FOLD_REACH_PX) continue;
-        if (!reaches(fi, face, patch_instance, patch_, at_fold, uv)) continue;
-        own_face = fi;
-        EdgePoint e = EdgePoint(place, seen_from_eye(s.q), vec2(FOLD_SHEET_PX, 0.0));
-        if (!is_seen(e, at) || is_covered(e, at)) continue;
-        imageAtomicMax(lines, at, LINE_SEEN | steps << LINE_COVERAGE | LINE_FOLD);
-    }
+    Found f = found_at(i);
+    ivec2 at = line_pixel(f.pixel);
+    uint best = LINE_SEEN | f.steps << LINE_COVERAGE | LINE_FOLD;
+    own_face = face_instance_at(face_instance_of(f.what));
+    EdgePoint e = EdgePoint(f.place, f.from_eye, vec2(FOLD_SHEET_PX, 0.0));
+    if (imageLoad(lines, at).x >= best || !is_seen(e, at) || is_covered(e, at)) return;
+    imageAtomicMax(lines, at, best);
 }

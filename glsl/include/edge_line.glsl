@@ -29,24 +29,30 @@ layout(scalar, binding = 18) readonly buffer MeshInstances { MeshInstance mesh_i
 layout(scalar, binding = 19) readonly buffer Triangles { uint triangles[]; };
 layout(scalar, binding = 20) readonly buffer Positions { vec3 positions[]; };
 
-#ifdef WITHIN_VOLUME
-#define SOLIDS_BY_DEPTH // descriptors are few
-#define TRIM_BINDING 21
-#else
-#define TRIM_BINDING 27
-// in scenes without Boolean solids not read
-layout(binding = 21, r32ui) readonly uniform uimage2D operand_uv;
-layout(binding = 22) uniform usamplerBuffer leaf_surfaces;
-layout(binding = 23) uniform samplerBuffer surface_places;
-layout(scalar, binding = 24) readonly buffer OperandMeshes { OperandMesh operand_meshes[]; };
-layout(scalar, binding = 25) readonly buffer OperandTriangles { uint operand_triangles[]; };
-layout(scalar, binding = 26) readonly buffer OperandPositions { vec3 operand_positions[]; };
-#endif
 
 layout(scalar, push_constant) uniform Push {
-    vec3 half_px;
-    uint hidden;
+    vec3 half_px; // of lines: full, thin, bold
+    uint hidden;  // 1: hidden ones are drawn, too
+    uint capacity; // of the list of items
 } push;
+
+#define LISTS_BINDING 21
+#include "line_items.glsl"
+
+// descriptors are few: with the trim table, all 32 that every device has
+#ifdef WITHIN_VOLUME
+#define SOLIDS_BY_DEPTH
+#define TRIM_BINDING 22
+#else
+#define TRIM_BINDING 28
+// in scenes without Boolean solids not read
+layout(binding = 22, r32ui) readonly uniform uimage2D operand_uv;
+layout(binding = 23) uniform usamplerBuffer leaf_surfaces;
+layout(binding = 24) uniform samplerBuffer surface_places;
+layout(scalar, binding = 25) readonly buffer OperandMeshes { OperandMesh operand_meshes[]; };
+layout(scalar, binding = 26) readonly buffer OperandTriangles { uint operand_triangles[]; };
+layout(scalar, binding = 27) readonly buffer OperandPositions { vec3 operand_positions[]; };
+#endif
 
 #include "trim.glsl"
 #ifdef WITHIN_VOLUME
@@ -60,7 +66,9 @@ layout(scalar, push_constant) uniform Push {
 #include "face_point.glsl"
 #include "visible.glsl"
 
-layout(location = 0) flat in uint chord;
+// Of the thread's item.
+uint chord;
+vec2 centre; // of the pixel
 
 bool is_own_key(uint key) {
     EdgeLine line = edge_lines[edge_pieces[piece_instances[chords[chord].piece_instance].piece].edge];
@@ -86,15 +94,13 @@ const bool OWN_PATCHES_HIDE = false;
 #include "edge_seen.glsl"
 #include "edge_covered.glsl"
 #include "fold.glsl"
+#include "line_seed.glsl"
 
 // Of a piece: single precision.
 const float SEED_ROUNDED = 1e-4;
 // From the edge to the fold on the surface: so far from it the edge's own trim curve, which is right to half a pixel,
 // does not decide.
 const float TRIMS_TELL_PX = 1.0;
-
-// Outlines of curved faces are drawn.
-layout(constant_id = 43) const bool DRAWS_FOLDS = false;
 
 // What Newton's method leaves of the way to the edge's place, and what the sheet bends on it.
 const float ON_SHEET_PX = 1.0 / 64.0;
@@ -104,12 +110,6 @@ const float TURN_SHEET_PX = 2.0;
 // Dashes of hidden lines and the gaps between them, in half widths of lines.
 const float DASH = 8.0;
 const float GAP = 6.0;
-
-// The parameter of the edge's piece at a share of the chord.
-float parameter_at(Chord c, float share) {
-    float from = share * c.w.x;
-    return mix(c.t.x, c.t.y, from / (from + (1.0 - share) * c.w.y));
-}
 
 // The exact point of the edge.
 EdgePoint point_at(float t, EdgePiece piece, View view) {
@@ -159,7 +159,7 @@ bool is_left(uint number, Face face, uint instance, vec2 place) {
 #ifdef TRIM_BY_TABLE
     bool found = false;
     for (int k = 0; k < 9 && !found; ++k) {
-        ivec2 at = ivec2(gl_FragCoord.xy) + ivec2(k % 3 - 1, k / 3 - 1);
+        ivec2 at = ivec2(centre) + ivec2(k % 3 - 1, k / 3 - 1);
         uint seen = imageLoad(visibility, clamp(at, ivec2(0), ivec2(frame.size) - 1)).x;
         if (sees_nothing(seen) || sees_other(seen)) continue;
         FaceInstance there = face_instance_at(face_instance_of(seen_patch_instance(seen)));
@@ -177,24 +177,14 @@ float fold_beside(vec4 face_beside, vec4 ends, float t, EdgePoint e, uint instan
     View view = view_at(instance);
     Face face = face_at(uint(face_beside.x));
     ivec2 count = ivec2(face.count_u, face.count_v);
-    ivec2 place = place_of(face, int(face_beside.y));
-    vec2 beside = mix(ends.xy, ends.zw, (t - SEED_END) / (1.0 - 2.0 * SEED_END));
-    Patch patch_ = patch_at(patch_in(face, place));
-    vec2 uv = (beside - patch_.domain.xy) / patch_.domain.zw;
-    bool arrived = false; // tested by the loop's condition, not by a `break`: see refine.glsl
-    for (uint hop = 0u; hop < MAX_HOPS && !arrived; ++hop) {
-        ivec2 next = clamp(place + way_beyond(uv, BEYOND), ivec2(0), count - 1);
-        Patch there = patch_at(patch_in(face, next));
-        arrived = next == place || side_of(there.shape) == SIDE_OUTSIDE;
-        if (arrived) continue;
-        patch_ = there;
-        place = next;
-        uv = (beside - patch_.domain.xy) / patch_.domain.zw;
-    }
+    vec2 beside = beside_edge(ends, t);
+    Patch patch_;
+    vec2 uv;
+    ivec2 place = seed_place(face, int(face_beside.y), beside, patch_, uv);
     Sample s;
     vec2 fold;
     point = e;
-    if (!find_fold(face, place.y * count.x + place.x, view, uv, gl_FragCoord.xy, s, fold)) return 0.0;
+    if (!find_fold(face, place.y * count.x + place.x, view, uv, centre, s, fold)) return 0.0;
     point = EdgePoint(s.q.xy / s.q.w, seen_from_eye(s.q), vec2(FOLD_SHEET_PX, e.slack.y));
     vec2 run = ends.zw - ends.xy;
     bool is_in_face = dot(fold - beside, face_beside.z * vec2(-run.y, run.x)) > 0.0;
@@ -210,43 +200,65 @@ float fold_beside(vec4 face_beside, vec4 ends, float t, EdgePoint e, uint instan
     return line_coverage(length(s.miss), push.half_px.x);
 }
 
+// A point of the edge.
+void test(Chord c, EdgePiece piece, View view, vec2 from, float share, ivec2 at) {
+    vec2 along = c.b - c.a;
+    float half_px = push.half_px[c.style & EDGE_STYLE];
+    float covered = line_coverage(length(from - share * along), half_px);
+    uint steps = uint(covered * LINE_STEPS + 0.5);
+    uint best = LINE_SEEN | steps << LINE_COVERAGE | chord;
+    if (steps == 0u || imageLoad(lines, at).x >= best) return;
+    EdgePoint e = point_at(parameter_at(c, share), piece, view);
+    bool near = (c.style & EDGE_NEAR) == 0u || is_near_own(e);
+    if (!near || !is_seen(e, at) || is_covered(e, at)) {
+        bool is_dashed = (c.style & EDGE_TURNS) == 0u;
+        steps = is_dashed ? uint(covered * dash(along, centre, half_px) * LINE_STEPS + 0.5) : 0u;
+        if (push.hidden == 0u || steps == 0u) return;
+        best = steps << LINE_COVERAGE | chord;
+    }
+    imageAtomicMax(lines, at, best);
+}
+
+// The fold beside the edge.
+void look(Chord c, PieceInstance piece_instance, EdgePiece piece, float t, EdgePoint e, uvec2 item) {
+    int texel = int(piece.first + piece.degree + 1u + SEED_TEXELS * ((item.y >> LINE_SEED) - 1u));
+    vec4 beside = texelFetch(edge_points, texel);
+    vec4 ends = texelFetch(edge_points, texel + 1);
+    uint instance = beside.w > 0.0 ? uint(beside.w) - 1u : piece_instance.placement;
+    EdgePoint p;
+    uint steps = uint(fold_beside(beside, ends, t, e, instance, p) * LINE_STEPS + 0.5);
+    if (steps != 0u) put_found(Found(item.x, item.y, steps, p.pixel, p.place, p.slack.y));
+}
+
 void main() {
+    uint i = thread_number();
+    if (i >= items_of_step()) return;
+    if (LINE_STEP == STEP_FOUND) {
+        Found f = found_at(i);
+        ivec2 at = line_pixel(f.pixel);
+        chord = f.what & LINE_CHORD;
+        uint best = LINE_SEEN | f.steps << LINE_COVERAGE | LINE_FOLD;
+        EdgePoint e = EdgePoint(f.place, f.from_eye, vec2(FOLD_SHEET_PX, f.off));
+        if (imageLoad(lines, at).x >= best || !is_seen(e, at) || is_covered(e, at)) return;
+        imageAtomicMax(lines, at, best);
+        return;
+    }
+    uvec2 item = item_at(i);
+    ivec2 at = line_pixel(item.x);
+    centre = vec2(at) + 0.5;
+    chord = item.y & LINE_CHORD;
     Chord c = chords[chord];
     vec2 along = c.b - c.a;
-    vec2 from = gl_FragCoord.xy - c.a;
+    vec2 from = centre - c.a;
     float size = dot(along, along);
     float share = size > 0.0 ? clamp(dot(from, along) / size, 0.0, 1.0) : 0.0;
-    float half_px = push.half_px[c.style & EDGE_STYLE];
-    float covered = (c.style & EDGE_UNDRAWN) != 0u ? 0.0 : line_coverage(length(from - share * along), half_px);
-    ivec2 at = ivec2(gl_FragCoord.xy);
     PieceInstance piece_instance = piece_instances[c.piece_instance];
     EdgePiece piece = edge_pieces[piece_instance.piece];
     View view = view_at(piece_instance.placement);
-    float t = parameter_at(c, share);
-    EdgePoint e = point_at(t, piece, view);
-    // the edge, then the folds beside it
-    uint folds = DRAWS_FOLDS ? c.style >> EDGE_SEEDS & EDGE_MOST_SEEDS : 0u;
-    for (uint k = 0u; k <= folds; ++k) {
-        bool is_edge = !DRAWS_FOLDS || k == 0u;
-        EdgePoint p = e;
-        if (!is_edge) {
-            int texel = int(piece.first + piece.degree + 1u + SEED_TEXELS * (k - 1u));
-            vec4 beside = texelFetch(edge_points, texel);
-            vec4 ends = texelFetch(edge_points, texel + 1);
-            uint instance = beside.w > 0.0 ? uint(beside.w) - 1u : piece_instance.placement;
-            covered = fold_beside(beside, ends, t, e, instance, p);
-        }
-        uint steps = uint(covered * LINE_STEPS + 0.5);
-        uint what = is_edge ? chord : LINE_FOLD;
-        uint best = LINE_SEEN | steps << LINE_COVERAGE | what;
-        if (steps == 0u || imageLoad(lines, at).x >= best) continue;
-        bool near = !is_edge || (c.style & EDGE_NEAR) == 0u || is_near_own(p);
-        if (!near || !is_seen(p, at) || is_covered(p, at)) {
-            bool is_dashed = is_edge && (c.style & EDGE_TURNS) == 0u;
-            steps = is_dashed ? uint(covered * dash(along, gl_FragCoord.xy, half_px) * LINE_STEPS + 0.5) : 0u;
-            if (push.hidden == 0u || steps == 0u) continue;
-            best = steps << LINE_COVERAGE | what;
-        }
-        imageAtomicMax(lines, at, best);
+    if (LINE_STEP == STEP_TEST) {
+        test(c, piece, view, from, share, at);
+    } else {
+        float t = parameter_at(c, share);
+        look(c, piece_instance, piece, t, point_at(t, piece, view), item);
     }
 }

@@ -88,6 +88,12 @@ const uint LINE_BOLD = 3u;
 // Half of the widest line of a Boolean solid: drivers end loops over more pixels.
 const float MOST_HALF_PX = 100.0;
 
+// The parameter of the edge's piece at a share of the chord.
+float parameter_at(Chord c, float share) {
+    float from = share * c.w.x;
+    return mix(c.t.x, c.t.y, from / (from + (1.0 - share) * c.w.y));
+}
+
 // Share of the pixel covered by a line whose middle has this distance from the pixel's centre: exact for lines along
 // columns or rows.
 float line_coverage(float distance_px, float half_px) {

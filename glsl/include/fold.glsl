@@ -10,6 +10,8 @@
 #ifndef FOLD_GLSL
 #define FOLD_GLSL
 
+#include "jets_beside.glsl"
+
 // At a fold the sheet bends away from its tangent plane at once.
 const float FOLD_SHEET_PX = 0.25;
 // Splines have patches that are a few pixels wide, and the pixel sees the face some patches before its fold.
@@ -55,14 +57,14 @@ bool find_fold(Face face, int n, View view, vec2 uv, vec2 pixel, out Sample s, o
     bool lost = false; // tested by the loop's condition, not by a `break`: see refine.glsl
     for (uint i = 0u; i <= FOLD_STEPS && !lost; ++i) {
         Net net = net_of(patch_);
-        s = sample_at(patch_, net, view, uv, pixel);
+        vec2 apart = vec2(way_within(uv.x), way_within(uv.y));
+        Jet jets[3];
+        jets_beside(net.first, patch_.shape, net.less, uv, apart, jets);
+        s = sample_of(jets[0], net, view, uv, pixel);
         if (way < ARRIVED_PX || i == FOLD_STEPS) break;
         float g = cosine_at(s, view);
-        vec2 apart = vec2(way_within(uv.x), way_within(uv.y));
-        Sample beside = sample_at(patch_, net, view, uv + vec2(apart.x, 0.0), pixel);
-        float gu = (cosine_at(beside, view) - g) / apart.x;
-        beside = sample_at(patch_, net, view, uv + vec2(0.0, apart.y), pixel);
-        float gv = (cosine_at(beside, view) - g) / apart.y;
+        float gu = (cosine_at(sample_of(jets[1], net, view, uv, pixel), view) - g) / apart.x;
+        float gv = (cosine_at(sample_of(jets[2], net, view, uv, pixel), view) - g) / apart.y;
         vec2 slope = vec2(gu, gv);
         float steep = dot(slope, slope);
         if (!(steep > 0.0)) return false;

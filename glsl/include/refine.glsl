@@ -44,13 +44,17 @@ Net net_of(Patch patch_) {
     return Net(patch_.first + (fine ? count + 1u : 0u), fine ? vec3(0.0) : base.xyz, base.xyz);
 }
 
-Sample sample_at(Patch patch_, Net net, View view, vec2 uv, vec2 pixel) {
+Sample sample_of(Jet jet, Net net, View view, vec2 uv, vec2 pixel) {
     Sample s;
     s.uv = uv;
-    s.jet = patch_jet_from(net.first, patch_.shape, net.less, uv);
+    s.jet = jet;
     s.q = to_pixel(view, vec4(net.base, 1.0)) + to_pixel(view, vec4(s.jet.point, 0.0));
     s.miss = s.q.xy / s.q.w - pixel;
     return s;
+}
+
+Sample sample_at(Patch patch_, Net net, View view, vec2 uv, vec2 pixel) {
+    return sample_of(patch_jet_from(net.first, patch_.shape, net.less, uv), net, view, uv, pixel);
 }
 
 // Change of the pixel with u, and with v: the columns of J. `qu` and `qv` are the derivatives of the homogeneous pixel.

@@ -241,6 +241,9 @@ struct Counters {
     uint hidden_parts; // placed parts in sight that are not listed because they are hidden (parts.glsl)
     uint listed_patches; // patch instances of the listed parts
     uint edge_chords;  // of lines along edges
+    uint line_points;  // of lines, of folds beside edges, of folds of faces: to a workgroup (line_list.glsl)
+    uint line_seeds;
+    uint fold_starts;
     uint followed_points; // of pixels at borders: the most in one list (border_followed.glsl)
     uint clamps;       // factors or densities above their hard limits, loops that a driver ended
     uint failed;       // one bit for each buffer that was too small, and for passes drawn too seldom
@@ -258,6 +261,7 @@ const uint FAILED_LAYERS = 256u;
 const uint FAILED_RAY_SEGMENTS = 512u;
 const uint FAILED_EDGE_CHORDS = 1024u;
 const uint FAILED_FOLLOWED_POINTS = 2048u;
+const uint FAILED_LINES = 4096u;
 
 // Tessellation of one patch instance, decided by the split pass. Totals over the whole patch.
 struct Factors {

@@ -113,14 +113,9 @@ pub mod edge_divide {
     pub const EDGE_OUTSIDE: u32 = 0;
     pub const EDGE_TOLERANCE_PX: f32 = 0.09;
 }
-pub mod edge_fold {
-    pub const FOLD_REACH_PX: f32 = 1.5;
-    pub const SAME_PLACE: f32 = 0.05;
-}
 pub mod edge_line {
     pub const DASH: f32 = 8.0;
     pub const GAP: f32 = 6.0;
-    pub const ROUNDED_PX: f32 = 0.0625;
     pub const SEED_ROUNDED: f32 = 1e-4;
     pub const TRIMS_TELL_PX: f32 = 1.0;
     pub const TURN_SHEET_PX: f32 = 2.0;
@@ -198,6 +193,16 @@ pub mod fold {
     pub const FOLD_SHEET_PX: f32 = 0.25;
     pub const FOLD_STEPS: u32 = 12;
 }
+pub mod fold_beside {
+    pub const FOLD_REACH_PX: f32 = 1.5;
+}
+pub mod fold_list {
+    pub const FOLD_ROWS: i32 = 16;
+    pub const SAME_PLACE: f32 = 0.05;
+}
+pub mod fold_near {
+    pub const NEAR_OFF_PX: f32 = 0.25;
+}
 pub mod gap_candidate {
     pub const ABSENT: u32 = 0;
     pub const FROM_BESIDE: u32 = 0;
@@ -234,6 +239,17 @@ pub mod layer_words {
     pub const HIGH_BITS: u32 = 8;
     pub const LOW_BITS: u32 = 24;
     pub const UV_BITS: u32 = 16;
+}
+pub mod line_list {
+    pub const CHORD_OFF_PX: f32 = 0.25;
+    pub const FOUND_WORDS: u32 = 9;
+    pub const LINE_GROUP: u32 = 64;
+    pub const LINE_ITEM_WORDS: u32 = 2;
+    pub const LINE_SEED: u32 = 24;
+    pub const ROUNDED_PX: f32 = 0.0625;
+    pub const STEP_FOUND: u32 = 2;
+    pub const STEP_LOOK: u32 = 1;
+    pub const STEP_TEST: u32 = 0;
 }
 pub mod mesh_walk {
     pub const MOST_CROSSED: u32 = 32;
@@ -299,6 +315,7 @@ pub mod scene {
     pub const FAILED_GAP_CANDIDATES: u32 = 16;
     pub const FAILED_INTERCEPTS: u32 = 8;
     pub const FAILED_LAYERS: u32 = 256;
+    pub const FAILED_LINES: u32 = 4096;
     pub const FAILED_RAY_SEGMENTS: u32 = 512;
     pub const FAILED_ROWS: u32 = 4;
     pub const FAILED_SUB_PATCHES: u32 = 1;
@@ -323,6 +340,13 @@ pub mod scene {
     pub const STYLE_ZEBRA: u32 = 3;
     pub const TAU_HIDDEN: u32 = 0x8000;
     pub const TRIMMED_LIST: u32 = 1;
+}
+pub mod seed_list {
+    pub const BEYOND: f32 = 1e-4;
+    pub const LEAST_PLACES: f32 = 3.0;
+    pub const MAX_HOPS: u32 = 8;
+    pub const MOST_PLACES: f32 = 32.0;
+    pub const SPACING_PX: f32 = 1.0;
 }
 pub mod segments {
     pub const LINES_PER_SEGMENT: u32 = 32;

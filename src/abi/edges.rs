@@ -35,6 +35,16 @@ pub struct PieceInstance {
     pub instance: u32,
 }
 
+/// How long lists of lines are, and the grids of passes over them.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct LineList {
+    pub grid: [u32; 3],
+    pub count: u32,
+    pub found_grid: [u32; 3],
+    pub found_count: u32,
+}
+
 /// A straight line of a frame.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]

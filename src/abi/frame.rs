@@ -2,6 +2,7 @@
 
 pub use crate::abi::constants::scene::ENCODE_SUMMED;
 use bytemuck::{Pod, Zeroable};
+use std::slice;
 
 /// From part coordinates to homogeneous pixels: rows `X`, `Y`, depth and `W`.
 #[repr(C)]
@@ -76,15 +77,14 @@ impl Frame {
 impl Counters {
     /// The larger of each count, for two samples of one frame.
     pub fn most(self, other: Self) -> Self {
-        let (mut all, others) = (self, bytemuck::cast::<Self, [u32; COUNTERS]>(other));
-        let words: &mut [u32; COUNTERS] = bytemuck::cast_mut(&mut all);
-        words.iter_mut().zip(others).for_each(|(word, other)| *word = other.max(*word));
+        let mut all = self;
+        let words: &mut [u32] = bytemuck::cast_slice_mut(slice::from_mut(&mut all));
+        let others: &[u32] = bytemuck::cast_slice(slice::from_ref(&other));
+        words.iter_mut().zip(others).for_each(|(word, other)| *word = (*other).max(*word));
         all.failed = self.failed | other.failed;
         all
     }
 }
-
-const COUNTERS: usize = size_of::<Counters>() / size_of::<u32>();
 
 /// Written by the passes, read back by the host.
 #[repr(C)]
@@ -119,6 +119,9 @@ pub struct Counters {
     pub hidden_parts: u32,
     pub listed_patches: u32,
     pub edge_chords: u32,
+    pub line_points: u32,
+    pub line_seeds: u32,
+    pub fold_starts: u32,
     pub followed_points: u32,
     pub clamps: u32,
     pub failed: u32,

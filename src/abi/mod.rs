@@ -1,5 +1,5 @@
 //! The structures that Rust and GLSL share, in scalar layout. Twins of `glsl/include/scene.glsl`,
-//! `view.glsl`, `parts.glsl`, `border_pixel.glsl`, `border_around.glsl`, `border_followed.glsl`, `edges.glsl`, `exact.glsl`, `solids.glsl`, `tiles.glsl` and `sun.glsl`; the build asserts every offset and stride
+//! `view.glsl`, `parts.glsl`, `border_pixel.glsl`, `border_around.glsl`, `border_followed.glsl`, `edges.glsl`, `line_list.glsl`, `exact.glsl`, `solids.glsl`, `tiles.glsl` and `sun.glsl`; the build asserts every offset and stride
 //! against the compiled shaders.
 
 // the GLSL states the meaning and units of the fields; the build compares both

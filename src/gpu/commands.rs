@@ -213,6 +213,13 @@ impl<'a> Commands<'a> {
         unsafe { self.device.raw().cmd_clear_color_image(self.raw, image.handle(), layout, &colour, &[range]) };
     }
 
+    /// Fills the first words of a buffer, as a transfer write.
+    pub fn fill_first(&self, buffer: &Buffer, words: u64, word: u32) {
+        let bytes = words * size_of::<u32>() as u64;
+        // SAFETY: recording outside rendering; the buffer belongs to this device.
+        unsafe { self.device.raw().cmd_fill_buffer(self.raw, buffer.handle(), 0, bytes, word) };
+    }
+
     /// Fills one word, the `nth`, as a transfer write.
     pub fn fill_word(&self, buffer: &Buffer, nth: u64, word: u32) {
         let bytes = size_of::<u32>() as u64;

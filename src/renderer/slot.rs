@@ -20,7 +20,7 @@ use ash::vk;
 use glam::{DMat4, DVec3};
 
 /// Timed scopes in a frame.
-const SCOPES: u32 = 17;
+const SCOPES: u32 = 18;
 
 /// What one frame in flight owns.
 pub(super) struct Slot {

@@ -1,13 +1,24 @@
-//! How many chords of lines there is room for.
+//! How many chords of lines there is room for, and how many pixels to look at.
 
+use super::list::item_bytes;
 use crate::abi::constants::edges::LINE_SOLID;
-use crate::abi::{Chord, Counters};
+use crate::abi::{Chord, Counters, LineList};
 use crate::frame::capacities::grown;
-use crate::frame::counts::{Counts, TooMany};
+use crate::frame::counts::{Counts, SMALLER, TooMany};
 
 /// Chords of a curved piece over the root of the picture's diagonal in pixels. Those of a part in full view, nist_pmi_2.stp,
 /// have 0.57 at 410 x 378 and 0.54 at 3840 x 2160.
 const CHORDS: f64 = 5.0 / 8.0;
+
+/// As many pixels as one that a line covers, as one beside which a fold is looked for from an edge, and as one around that
+/// sees a face which may fold. Full of small faces, nist_pmi_2.stp at 820 x 756 has one in 3, one in 2 and one in 6.
+const PIXELS_OF_ONE: [u64; 3] = [8, 8, 16];
+/// Bytes of an entry of these lists, and what it is.
+const LISTS: [(&str, usize); 3] = [
+    ("pixels of lines", item_bytes(false)),
+    ("pixels beside smooth edges", item_bytes(true)),
+    ("pixels around curved faces", item_bytes(true)),
+];
 
 /// Most chords in a storage buffer of so many bytes.
 fn most(range: u32) -> u32 {
@@ -18,12 +29,23 @@ fn most(range: u32) -> u32 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Capacities {
     pub chords: u32,
+    /// Pixels that lines cover.
+    pub points: u32,
+    /// Pixels beside which folds are looked for from edges.
+    pub seeds: u32,
+    /// The same from pixels around.
+    pub starts: u32,
+}
+
+/// Most entries of a list in a storage buffer of so many bytes.
+fn most_of(list: usize, range: u32) -> u32 {
+    range.saturating_sub(size_of::<LineList>() as u32) / LISTS[list].1 as u32
 }
 
 impl Capacities {
     /// A chord for each piece.
     pub(crate) fn first(counts: Counts) -> Self {
-        Self { chords: counts.piece_instances.min(LINE_SOLID) }
+        Self { chords: counts.piece_instances.min(LINE_SOLID), points: 0, seeds: 0, starts: 0 }
     }
 
     /// At least what most scenes in full view need in a picture of this size, as far as a storage buffer of `range` bytes
@@ -32,7 +54,17 @@ impl Capacities {
         let diagonal = f64::from(size.0).hypot(size.1.into());
         let of_curved = f64::from(counts.curved_piece_instances) * CHORDS * diagonal.sqrt();
         let some = counts.piece_instances.saturating_add(of_curved as u32);
-        Self { chords: self.chords.max(some).min(most(range)) }
+        let pixels = u64::from(size.0) * u64::from(size.1);
+        let of_lists = |list: usize, had: u32| {
+            let some = if counts.lines { pixels / PIXELS_OF_ONE[list] } else { 0 };
+            had.max(some as u32).min(most_of(list, range))
+        };
+        Self {
+            chords: self.chords.max(some).min(most(range)),
+            points: of_lists(0, self.points),
+            seeds: of_lists(1, self.seeds),
+            starts: of_lists(2, self.starts),
+        }
     }
 
     /// What the frame that reported `c` would have needed.
@@ -41,6 +73,59 @@ impl Capacities {
         let over = TooMany::of_numbers(wanted.0, wanted.1, LINE_SOLID, help)
             .or_else(|| TooMany::of_bytes(wanted, size_of::<Chord>(), range, help));
         over.map_or(Ok(()), Err)?;
-        Ok(Self { chords: grown(self.chords, c.edge_chords, most(range)) })
+        let of_lists = |list: usize, had: u32, wanted: u32| {
+            let (what, bytes) = LISTS[list];
+            TooMany::of_bytes((what, wanted), bytes, range, SMALLER).map_or(Ok(()), Err)?;
+            Ok(grown(had, wanted, most_of(list, range)))
+        };
+        Ok(Self {
+            chords: grown(self.chords, c.edge_chords, most(range)),
+            points: of_lists(0, self.points, c.line_points)?,
+            seeds: of_lists(1, self.seeds, c.line_seeds)?,
+            starts: of_lists(2, self.starts, c.fold_starts)?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::abi::constants::scene::FAILED_LINES;
+
+    /// The storage buffer that every device binds.
+    const RANGE: u32 = 1 << 27;
+
+    fn lists(c: Capacities) -> [u32; 3] {
+        [c.points, c.seeds, c.starts]
+    }
+
+    /// Scenes without lines have no lists.
+    #[test]
+    fn lists_have_room_by_the_picture() {
+        let of = |lines, size, range| {
+            let counts = Counts { lines, ..Default::default() };
+            lists(Capacities::first(counts).for_picture(counts, size, range))
+        };
+        assert_eq!(of(true, (640, 480), RANGE), [38_400, 38_400, 19_200]);
+        assert_eq!(of(false, (640, 480), RANGE), [0; 3]);
+        // eight bytes an entry, and 36 a fold
+        let most = [RANGE / 8 - 4, (RANGE - 32) / 44, (RANGE - 32) / 44];
+        assert_eq!(of(true, (1 << 15, 1 << 15), RANGE), most);
+        assert_eq!(of(true, (640, 480), 16), [0; 3]);
+    }
+
+    #[test]
+    fn lists_grow_to_what_was_wanted_and_a_quarter() {
+        let had = Capacities { chords: 1, points: 1000, seeds: 1000, starts: 1000 };
+        let c = |line_points, line_seeds, fold_starts| Counters {
+            line_points,
+            line_seeds,
+            fold_starts,
+            failed: FAILED_LINES,
+            ..Default::default()
+        };
+        assert_eq!(had.grown(&c(900, 2000, 4000), RANGE).map(lists).ok(), Some([1000, 2500, 5000]));
+        let over = had.grown(&c(0, RANGE / 40, 0), RANGE).unwrap_err();
+        assert_eq!((over.what, over.most), ("pixels beside smooth edges", RANGE / 44));
     }
 }

@@ -1,20 +1,25 @@
 //! Pass `edge_fold`: outlines of curved faces, as lines.
 //!
 //! ```text
-//!   pixel, and those beside it ─▶ curved faces that end here ─▶ the exact fold next to the pixel ─▶ each pixel's best line
+//!   pixel, and one around that sees a curved face ──look──▶ the exact fold next to the pixel ──test──▶ each pixel's best line
 //! ```
 //!
-//! Reads: everything that `Bindings` names. Writes: `best`, as pass `edge_line`.
+//! Two steps, each with a thread for each entry of its list: few searches find a fold. Reads: everything that `Bindings`
+//! names. Writes: folds of `starts`; `best`, as pass `edge_line`.
 
+use super::list::List;
+use crate::abi::constants::line_list::{STEP_FOUND, STEP_LOOK};
 use crate::bindings::{Placed, SeenSolids};
-use crate::frame::common::draw::Draw;
-use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource};
 use crate::scene::MeshBuffers;
-use crate::shaders::{self, TrimTest};
+use crate::shaders::{self, TrimTest, constant};
+use bytemuck::{Pod, Zeroable};
 
 /// The pass.
 pub(crate) struct Fold {
-    pipeline: Pipeline,
+    look: Kernel,
+    test: Kernel,
     /// Whether it reads what a trim test reads.
     tests: bool,
 }
@@ -28,22 +33,36 @@ pub(crate) struct Bindings<'a> {
     pub best: &'a Image,
     pub meshes: Option<&'a MeshBuffers>,
     pub solids: SeenSolids<'a>,
+    pub starts: &'a List,
     /// What the trim test reads, in its order.
     pub trim: &'a [Resource<'a>],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Params {
+    half_px: f32,
+    capacity: u32,
 }
 
 impl Fold {
     /// `test`: how faces are trimmed; `None` where none is.
     pub(crate) fn new(device: &Device, constants: &[(u32, u32)], test: Option<&TrimTest>) -> Result<Self, GpuError> {
         let tested = test.and_then(|test| test.edge_fold.map(|shader| (test.way, shader)));
-        let (way, shader) = tested.unwrap_or(("no trims", &shaders::EDGE_FOLD_PLAIN_FRAG));
-        let name = format!("edge_fold ({way})");
-        let draw = Draw::new(&name, &shaders::RESOLVE_VERT, shader);
-        Ok(Self { pipeline: Draw { constants, ..draw }.pipeline(device)?, tests: tested.is_some() })
+        let (way, shader) = tested.unwrap_or(("no trims", &shaders::EDGE_FOLD_PLAIN_COMP));
+        let kernel = |name: &str, step: u32| {
+            let constants: Vec<_> = constants.iter().copied().chain([(constant::LINE_STEP, step)]).collect();
+            Kernel::new(device, &format!("{name} ({way})"), shader, &constants)
+        };
+        Ok(Self {
+            look: kernel("edge_fold", STEP_LOOK)?,
+            test: kernel("edge_fold found", STEP_FOUND)?,
+            tests: tested.is_some(),
+        })
     }
 
-    /// One triangle over a picture of the visibility image's size; lines are twice `half_px` wide.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, half_px: f32) {
+    /// Lines are twice `half_px` wide. `between` stands between both steps.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, half_px: f32, between: impl FnOnce()) {
         let meshes = b.meshes.map_or([b.frame; 3], |m| [&m.instances, &m.triangles, &m.positions]);
         let resources: Vec<_> = [b.frame.into()]
             .into_iter()
@@ -51,11 +70,16 @@ impl Fold {
             .chain([b.visibility.into(), b.meshes_and_solids.into(), b.best.into()])
             .chain(meshes.map(Resource::from))
             .chain(b.solids.resources())
+            .chain([Resource::from(&b.starts.buffer)])
             .chain(b.trim.iter().copied().filter(|_| self.tests))
             .collect();
-        cmd.rendering(b.visibility.size(), &[], None, || {
-            cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&half_px));
-            cmd.draw(3, 0, 1);
-        });
+        let params = Params { half_px, capacity: b.starts.capacity };
+        let step = |kernel: &Kernel, (arguments, offset): (&Buffer, u64)| {
+            kernel.bind(cmd, &resources, bytemuck::bytes_of(&params));
+            cmd.dispatch_indirect(arguments, offset);
+        };
+        step(&self.look, b.starts.of_items());
+        between();
+        step(&self.test, b.starts.of_found());
     }
 }

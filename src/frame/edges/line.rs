@@ -1,26 +1,28 @@
 //! Pass `edge_line`: each pixel's best line along an edge.
 //!
 //! ```text
-//!   chord ─▶ rectangle ─▶ pixel: distance ─▶ share covered
-//!                               exact point of the edge, what pixels around it see ─▶ seen, or hidden
-//!                                                                          └─▶ seen | share | chord, the largest
+//!   points: pixel, chord ──test──▶ exact point of the edge, what pixels around it see ─▶ seen, or hidden
+//!                                                          └─▶ seen | share | chord, the largest
+//!   seeds: pixel, chord, face ──look──▶ the fold of the face beside the edge ──test──▶ the same
 //! ```
 //!
-//! Reads: everything that `Bindings` names. Writes: `best`, cleared to 0 before.
+//! Each step has a thread for each entry of its list. Reads: everything that `Bindings` names. Writes: folds of `seeds`;
+//! `best`, cleared to 0 before.
 
+use super::list::List;
+use crate::abi::constants::line_list::{STEP_FOUND, STEP_LOOK, STEP_TEST};
 use crate::bindings::{Placed, Primitives, SeenSolids};
-use crate::frame::common::draw::Draw;
-use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource, TexelBuffer};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource, TexelBuffer};
 use crate::scene::{EdgeBuffers, MeshBuffers};
-use crate::shaders::{self, EDGE_LINE_PLAIN, TrimTest, constant};
+use crate::shaders::{EDGE_LINE_PLAIN, TrimTest, constant};
 use bytemuck::{Pod, Zeroable};
-
-/// Bytes before the number of draws.
-const COUNT_OFFSET: u64 = 16;
 
 /// The pass.
 pub(crate) struct Line {
-    pipeline: Pipeline,
+    test: Kernel,
+    /// Where outlines of curved faces are drawn: looks for folds, and tests what was found.
+    folds: Option<[Kernel; 2]>,
     /// It reads what the trim test does.
     tests: bool,
 }
@@ -44,6 +46,8 @@ pub(crate) struct Bindings<'a> {
     pub edges: &'a EdgeBuffers,
     pub best: &'a Image,
     pub meshes: Option<&'a MeshBuffers>,
+    pub points: &'a List,
+    pub seeds: &'a List,
     /// Read where no volume trims the scene.
     pub solids: SeenSolids<'a>,
     /// What the trim test reads, in its order.
@@ -61,41 +65,64 @@ pub(crate) struct Params {
     pub hidden: u32,
 }
 
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct ListParams {
+    lines: Params,
+    capacity: u32,
+}
+
 impl Line {
-    /// `constants` of passes that follow surfaces.
-    pub(crate) fn new(device: &Device, constants: &[(u32, u32)], kinds: &Kinds<'_>) -> Result<Self, GpuError> {
+    /// `constants` of passes that follow surfaces; `folds`: outlines of curved faces are drawn.
+    pub(crate) fn new(
+        device: &Device,
+        constants: &[(u32, u32)],
+        kinds: &Kinds<'_>,
+        folds: bool,
+    ) -> Result<Self, GpuError> {
         let tested = kinds.test.and_then(|test| test.edge_line.map(|shaders| (test.way, shaders)));
         let (way, [alone, within]) = tested.unwrap_or(("no trims", EDGE_LINE_PLAIN));
-        let (fragment, volume) = if kinds.volume.is_some() { (within, ", within a volume") } else { (alone, "") };
+        let (shader, volume) = if kinds.volume.is_some() { (within, ", within a volume") } else { (alone, "") };
         let of_volume = kinds.volume.map(|kind| (constant::SOLIDS_HAVE, kind));
-        let constants: Vec<_> = constants.iter().copied().chain(of_volume).collect();
-        let name = format!("edge_line ({way}{volume})");
-        let draw = Draw::new(&name, &shaders::EDGE_LINE_VERT, fragment);
-        Ok(Self { pipeline: Draw { constants: &constants, ..draw }.pipeline(device)?, tests: tested.is_some() })
+        let kernel = |name: &str, step: u32| {
+            let own = of_volume.into_iter().chain([(constant::LINE_STEP, step)]);
+            let constants: Vec<_> = constants.iter().copied().chain(own).collect();
+            Kernel::new(device, &format!("{name} ({way}{volume})"), shader, &constants)
+        };
+        let of_folds = || Ok([kernel("edge_line folds", STEP_LOOK)?, kernel("edge_line found", STEP_FOUND)?]);
+        Ok(Self {
+            test: kernel("edge_line", STEP_TEST)?,
+            folds: folds.then(of_folds).transpose()?,
+            tests: tested.is_some(),
+        })
     }
 
-    /// What `draw` says, and its number, over a picture of the visibility image's size.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, params: Params, draw: &Buffer) {
+    /// `between` stands between looking for folds and testing them.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, params: Params, between: impl FnOnce()) {
         let (e, placed) = (b.edges, b.placed.resources());
         let seen = [b.visibility.into(), b.meshes_and_solids.into(), Resource::from(&e.face_keys), b.sources.into()];
         let edges = [b.chords, &e.piece_instances, &e.pieces, &e.lines, &e.own_faces].map(Resource::from);
         let meshes = b.meshes.map_or([b.frame; 3], |m| [&m.instances, &m.triangles, &m.positions]);
-        let resources: Vec<_> = [b.frame.into()]
-            .into_iter()
-            .chain(placed)
-            .chain(seen)
-            .chain(edges)
-            .chain([Resource::from(&e.points), b.best.into()])
-            .chain(meshes.map(Resource::from))
-            .chain(b.solids.resources().into_iter().filter(|_| b.volume.is_none()))
-            .chain(b.trim.iter().copied().filter(|_| self.tests))
-            .chain(b.volume.iter().flat_map(Primitives::resources))
-            .collect();
-        cmd.rendering(b.visibility.size(), &[], None, || {
-            cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&params));
-            // lavapipe (Mesa 25.0.7) takes the number of draws of a draw without a count from the draw with one before
-            // it
-            cmd.draw_indirect_count(draw, 0, draw, COUNT_OFFSET, 1);
-        });
+        let step = |kernel: &Kernel, list: &List, (arguments, offset): (&Buffer, u64)| {
+            let resources: Vec<_> = [b.frame.into()]
+                .into_iter()
+                .chain(placed)
+                .chain(seen)
+                .chain(edges)
+                .chain([Resource::from(&e.points), b.best.into()])
+                .chain(meshes.map(Resource::from))
+                .chain([Resource::from(&list.buffer)])
+                .chain(b.solids.resources().into_iter().filter(|_| b.volume.is_none()))
+                .chain(b.trim.iter().copied().filter(|_| self.tests))
+                .chain(b.volume.iter().flat_map(Primitives::resources))
+                .collect();
+            kernel.bind(cmd, &resources, bytemuck::bytes_of(&ListParams { lines: params, capacity: list.capacity }));
+            cmd.dispatch_indirect(arguments, offset);
+        };
+        step(&self.test, b.points, b.points.of_items());
+        let Some([look, test]) = &self.folds else { return };
+        step(look, b.seeds, b.seeds.of_items());
+        between();
+        step(test, b.seeds, b.seeds.of_found());
     }
 }

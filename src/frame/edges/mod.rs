@@ -2,7 +2,8 @@
 //!
 //! ```text
 //!   edge_count ─(scan)─▶ edge_emit ──▶ chords, with the patches' tessellation
-//!                                        │
+//!                                        │ line_list, fold_list: what to look at, and where
+//!                                        ▼
 //!   visibility, patches, meshes ──▶ edge_line ──▶ each pixel's best line ──edge_show──▶ the host's colour, edges' numbers
 //!                                   edge_fold ──▶          outlines
 //!   Boolean solids ──▶ edge_change, edge_join ──▶          where what is seen of them changes
@@ -16,6 +17,7 @@ pub(crate) mod divide;
 pub(crate) mod fold;
 pub(crate) mod join;
 pub(crate) mod line;
+pub(crate) mod list;
 pub(crate) mod show;
 mod solid_lines;
 
@@ -40,9 +42,12 @@ pub(crate) struct Passes {
     /// The host wants their numbers.
     has_edge_image: bool,
     divide: divide::Divide,
+    /// Where outlines of curved faces are wanted.
+    seeds: Option<list::SeedsOfChords>,
+    list: list::OfChords,
     line: line::Line,
     /// Where outlines of curved faces are wanted, and there are patches.
-    fold: Option<fold::Fold>,
+    fold: Option<(list::OfPixels, fold::Fold)>,
     /// Where there are Boolean solids.
     solids: Option<solid_lines::Passes>,
     show: show::Show,
@@ -59,17 +64,20 @@ impl Passes {
         let Some(edges) = data.edges.as_ref().filter(|_| data.has_lines()) else { return Ok(None) };
         let constants = constants(data);
         let kinds = line::Kinds { test, volume: data.volume.as_ref().and_then(SolidData::kinds) };
-        let folds = (constant::DRAWS_FOLDS, u32::from(edges.settings.silhouettes));
-        let with_folds: Vec<_> = constants.into_iter().chain([folds]).collect();
+        let folds = edges.settings.silhouettes;
+        let of_faces = || {
+            let list = list::OfPixels::new(device, &constants)?;
+            Ok::<_, GpuError>((list, fold::Fold::new(device, &constants, test)?))
+        };
         let numbers = formats.numbers[0].then_some(NUMBER_FORMAT);
         Ok(Some(Self {
             settings: edges.settings,
             has_edge_image: formats.numbers[0],
             divide: divide::Divide::new(device)?,
-            line: line::Line::new(device, &with_folds, &kinds)?,
-            fold: (edges.settings.silhouettes && (data.has_patches || data.has_operands))
-                .then(|| fold::Fold::new(device, &constants, test))
-                .transpose()?,
+            seeds: folds.then(|| list::SeedsOfChords::new(device, &constants)).transpose()?,
+            list: list::OfChords::new(device, folds)?,
+            line: line::Line::new(device, &constants, &kinds, folds)?,
+            fold: (folds && (data.has_patches || data.has_operands)).then(of_faces).transpose()?,
             solids: solid_lines::Passes::new(device, data, &edges.settings)?,
             show: show::Show::new(device, data, (formats.colour, numbers))?,
         }))
@@ -98,6 +106,12 @@ pub(crate) struct EdgeStage {
     starts: Buffer,
     chords: Buffer,
     draw: Buffer,
+    /// Beside which of them folds may be.
+    chord_seeds: Buffer,
+    /// Pixels that lines cover, and those beside which folds are looked for: from edges, and from pixels around.
+    points: list::List,
+    seeds: list::List,
+    fold_starts: list::List,
     /// Each pixel's best line.
     best: Image,
     /// Of lines of Boolean solids; where there are some.
@@ -134,6 +148,10 @@ impl EdgeStage {
             starts: room.words("edge chord starts", piece_instances + 1)?,
             chords: room.structs::<Chord>("edge chords", room.capacities.edges.chords)?,
             draw: room.indirect::<u32>("edge draw", divide::DRAW_WORDS)?,
+            chord_seeds: room.words("edge chord seeds", room.capacities.edges.chords)?,
+            points: list::List::new(room, "line points", room.capacities.edges.points, false)?,
+            seeds: list::List::new(room, "line seeds", room.capacities.edges.seeds, true)?,
+            fold_starts: list::List::new(room, "fold starts", room.capacities.edges.starts, true)?,
             best: room.image("best lines", BEST_FORMAT, COUNTED)?,
             solids: passes.solids.as_ref().map(|solids| solid_lines::Images::new(room, solids)).transpose()?,
         })
@@ -163,21 +181,76 @@ impl EdgeStage {
         frame.stages.common.scan(cmd, &self.counts, &self.starts, frame.counts.piece_instances);
         cmd.after(w, r | w);
         divide.emit(cmd, &bindings, params, frame.capacities.edges.chords);
-        let drawn = Access::VERTEX_READ | Access::FRAGMENT_READ;
+        if let Some(seeds) = &self.passes.seeds {
+            cmd.after(w, r);
+            let (chords, draw, chord_seeds) = (&self.chords, &self.draw, &self.chord_seeds);
+            let placed = frame.scene.placed(frame.views);
+            let bindings = list::SeedBindings { frame: frame.constants, placed, chords, edges, draw, chord_seeds };
+            seeds.record(cmd, &bindings, frame.capacities.edges.chords);
+            barrier::buffers(cmd, &[(chord_seeds, w, Access::FRAGMENT_READ)]);
+        }
+        let drawn = Access::VERTEX_READ | Access::FRAGMENT_READ | Access::COMPUTE_READ;
         barrier::buffers(cmd, &[(&self.chords, w, drawn), (&self.draw, w, Access::INDIRECT_READ)]);
         cmd.after(w, w | Access::INDIRECT_READ);
+    }
+
+    /// Makes the lists of what to look at, and where, before the counters are read back.
+    pub(super) fn list(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        let (s, v, passes) = (frame.scene, &frame.stages.visibility, &self.passes);
+        let (w, r) = WRITE_TO_READ;
+        let counters = &frame.stages.common.counters;
+        let lists = [&self.points, &self.seeds, &self.fold_starts];
+        let (read, cleared) = (r | w | Access::INDIRECT_READ, Access::TRANSFER_WRITE);
+        let written = w | Access::FRAGMENT_WRITE;
+        barrier::buffers(cmd, &lists.map(|list| (&list.buffer, read, cleared)));
+        lists.iter().for_each(|list| list.clear(cmd));
+        barrier::buffers(cmd, &lists.map(|list| (&list.buffer, cleared, written)));
+        barrier::buffers(cmd, &[(counters, w | Access::INDIRECT_READ, written)]);
+        if s.edges.is_some() {
+            let bindings = list::ChordBindings {
+                frame: frame.constants,
+                chords: &self.chords,
+                points: &self.points,
+                seeds: &self.seeds,
+                counters,
+                chord_seeds: &self.chord_seeds,
+                draw: &self.draw,
+            };
+            passes.list.record(cmd, &bindings, v.image.size(), self.half_px);
+        }
+        if let Some((list, _)) = &passes.fold {
+            let placed = s.placed(frame.views);
+            let parts = frame.solids().map(|solids| solids.resolve(frame));
+            let bindings = list::PixelBindings {
+                frame: frame.constants,
+                placed,
+                visibility: &v.image,
+                meshes_and_solids: v.of_meshes_and_solids(),
+                operand_uv: seen_solids(parts.as_ref(), &placed, &self.best).operand_uv,
+                starts: &self.fold_starts,
+                counters,
+            };
+            list.record(cmd, &bindings);
+        }
+        barrier::buffers(cmd, &lists.map(|list| (&list.buffer, written, read)));
+        barrier::buffers(cmd, &[(counters, written, w)]);
     }
 
     /// Lines over the host's colour, which is whole, and their numbers.
     pub(super) fn draw(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let (s, v, passes) = (frame.scene, &frame.stages.visibility, &self.passes);
         let (written, read) = (Access::FRAGMENT_WRITE, Access::FRAGMENT_READ);
+        let (w, r) = WRITE_TO_READ;
         let parts = frame.solids().map(|solids| solids.resolve(frame));
         let solids = seen_solids(parts.as_ref(), &s.placed(frame.views), &self.best);
         barrier::images(cmd, &[(&self.best, read.discarded(), Access::TRANSFER_WRITE)]);
         cmd.clear(&self.best, 0);
-        barrier::images(cmd, &[(&self.best, Access::TRANSFER_WRITE, written)]);
+        barrier::images(cmd, &[(&self.best, Access::TRANSFER_WRITE, w)]);
         let trim = frame.trim_test();
+        let found = |list: &list::List| {
+            barrier::buffers(cmd, &[(&list.buffer, w, r | w | Access::INDIRECT_READ)]);
+            barrier::images(cmd, &[(&self.best, w, w)]);
+        };
         if let (Some(edges), Some(sources)) = (&s.edges, &s.sources) {
             let bindings = line::Bindings {
                 frame: frame.constants,
@@ -189,14 +262,16 @@ impl EdgeStage {
                 edges,
                 best: &self.best,
                 meshes: s.meshes.as_ref(),
+                points: &self.points,
+                seeds: &self.seeds,
                 trim: &trim,
                 volume: frame.volume(),
                 solids,
             };
             let params = line::Params { half_px: self.half_px, hidden: u32::from(passes.settings.hidden) };
-            passes.line.record(cmd, &bindings, params, &self.draw);
+            passes.line.record(cmd, &bindings, params, || found(&self.seeds));
         }
-        if let Some(fold) = &passes.fold {
+        if let Some((_, fold)) = &passes.fold {
             let bindings = fold::Bindings {
                 frame: frame.constants,
                 placed: s.placed(frame.views),
@@ -205,13 +280,14 @@ impl EdgeStage {
                 best: &self.best,
                 meshes: s.meshes.as_ref(),
                 solids,
+                starts: &self.fold_starts,
                 trim: &trim,
             };
-            barrier::images(cmd, &[(&self.best, written, written)]);
-            fold.record(cmd, &bindings, self.half_px[0]);
+            barrier::images(cmd, &[(&self.best, w, w)]);
+            fold.record(cmd, &bindings, self.half_px[0], || found(&self.fold_starts));
         }
+        barrier::images(cmd, &[(&self.best, w, written)]);
         if let (Some(solids), Some(images)) = (&passes.solids, &self.solids) {
-            barrier::images(cmd, &[(&self.best, written, written)]);
             solids.draw(frame, cmd, (images, &self.best), self.half_px);
         }
         barrier::images(cmd, &[(&self.best, written, read)]);

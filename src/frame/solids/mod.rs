@@ -226,7 +226,7 @@ impl<'a> SolidParts<'a> {
             self.band(frame, cmd, &band);
         }
         if let Some(uv) = &stage.operand_uv {
-            barrier::images(cmd, &[(uv, Access::COLOUR_WRITE, Access::FRAGMENT_READ)]);
+            barrier::images(cmd, &[(uv, Access::COLOUR_WRITE, Access::COMPUTE_READ | Access::FRAGMENT_READ)]);
         }
     }
 

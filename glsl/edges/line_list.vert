@@ -1,17 +1,17 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `edge_line`: a rectangle around each chord, half a pixel wider than its line and the folds beside it. One
+// Pass `line_list`: a rectangle around each chord, half a pixel wider than its line and the folds beside it. One
 // instance a chord.
 #include "scene.glsl"
 #include "edges.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 11) readonly buffer Chords { Chord chords[]; };
+layout(scalar, binding = 1) readonly buffer Chords { Chord chords[]; };
 
 layout(scalar, push_constant) uniform Push {
-    vec3 half_px; // of lines: full, thin
-    uint hidden;  // 1: hidden ones are drawn, too
+    vec3 half_px; // of lines: full, thin, bold
+    uvec2 capacities;
 } push;
 
 layout(location = 0) flat out uint chord;
