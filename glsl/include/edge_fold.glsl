@@ -63,12 +63,14 @@ const bool OWN_PATCHES_HIDE = true;
 
 
 // Whether a face reaches a fold, of its domain or beyond a seam, where a pixel beside it sees the face at (u, v) of a
-// patch.
+// patch. Beyond a window of a deep zoom the trims are those at its side.
 bool reaches(FaceInstance fi, Face face, uint patch_instance, Patch patch_, vec2 fold, vec2 uv) {
     vec2 place = mix(fold, patch_.domain.xy + uv * patch_.domain.zw, BEFORE_FOLD);
     bvec2 meets = notEqual(face.flags & uvec2(FACE_MEETS_U, FACE_MEETS_V), uvec2(0u));
     vec2 turns = mix(vec2(0.0), floor(place), meets);
     place -= turns;
+    place = mix(place, max(place, 0.0), goes_on_before(face));
+    place = mix(place, min(place, 1.0), goes_on_after(face));
     if (clamp(place, 0.0, 1.0) != place) return false;
     if ((face.flags & FACE_TRIMMED) == 0u) return true;
 #ifdef TRIM_BY_TABLE

@@ -31,8 +31,10 @@ vec3 bend_around(Face face, ivec2 place, Patch patch_, vec2 uv) {
 
 float largest_of(float a, float b, float c) { return 0.5 * (a + c) + sqrt(0.25 * (a - c) * (a - c) + b * b); }
 
-// Pixels around a place of the picture, next to which the face is at (u, v) of its patch.
+// Pixels around a place of the picture, next to which the face is at (u, v) of its patch. None where the face is a window
+// of a deep zoom beyond which the surface goes on: its bend there is not known.
 float fold_free(Face face, ivec2 place, Patch patch_, View view, vec2 uv, vec2 pixel) {
+    if (face.flags >> FACE_GOES_ON != 0u) return 0.0;
     Sample s = sample_at(patch_, net_of(patch_), view, uv, pixel);
     mat2 along = pixels_along(s, view);
     vec2 p = s.q.xy / s.q.w;

@@ -63,6 +63,7 @@ const uint FACE_OPERAND = 32u;   // belongs to a Boolean solid: drawn only as it
 const uint FACE_MEETS_U = 64u;   // the sides u = 0 and u = 1 of the surface meet, whatever the trims
 const uint FACE_MEETS_V = 128u;
 const uint FACE_POINTS = 8u;     // from this bit on: BORDER_* of the sides that are points
+const uint FACE_GOES_ON = 12u;   // the same of the sides where a window of a deep zoom ends, and not the surface
 
 // Members that every pixel reads are whole texels; members read together are in one.
 struct Face {

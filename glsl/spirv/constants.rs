@@ -186,7 +186,8 @@ pub mod factor {
 }
 pub mod fold {
     pub const FOLD_BESIDE: f32 = 0.25;
-    pub const FOLD_COSINE: f32 = 0.2;
+    pub const FOLD_BESIDE_WINDOW: f32 = 8.0;
+    pub const FOLD_FAR_OUT_PX: f32 = 64.0;
     pub const FOLD_FAR_PX: f32 = 16.0;
     pub const FOLD_HOPS: u32 = 8;
     pub const FOLD_NARROW_PX: f32 = 1.0;
@@ -300,6 +301,7 @@ pub mod scene {
     pub const ENCODE_SUMMED: u32 = 2;
     pub const FACE_CLOSED_U: u32 = 1;
     pub const FACE_CLOSED_V: u32 = 2;
+    pub const FACE_GOES_ON: u32 = 12;
     pub const FACE_MEETS_U: u32 = 64;
     pub const FACE_MEETS_V: u32 = 128;
     pub const FACE_OPERAND: u32 = 32;

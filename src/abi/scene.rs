@@ -4,8 +4,8 @@ pub use crate::abi::constants::behind::OUTSIDE_CELLS;
 pub use crate::abi::constants::border_cells::BORDER_BANDS;
 pub use crate::abi::constants::depth_pyramid::SQUARE;
 pub use crate::abi::constants::scene::{
-    BORDER_U0, BORDER_U1, BORDER_V0, BORDER_V1, FACE_CLOSED_U, FACE_CLOSED_V, FACE_MEETS_U, FACE_MEETS_V, FACE_OPERAND,
-    FACE_POINTS, FACE_SAME_SENSE, FACE_SOLID, FACE_TRIMMED, MESH_NORMALS, MESH_SOLID,
+    BORDER_U0, BORDER_U1, BORDER_V0, BORDER_V1, FACE_CLOSED_U, FACE_CLOSED_V, FACE_GOES_ON, FACE_MEETS_U, FACE_MEETS_V,
+    FACE_OPERAND, FACE_POINTS, FACE_SAME_SENSE, FACE_SOLID, FACE_TRIMMED, MESH_NORMALS, MESH_SOLID,
 };
 use bytemuck::{Pod, Zeroable};
 

@@ -179,6 +179,11 @@ impl SceneData {
         for source in data.sources.iter_mut().filter(|source| source[1] > 0) {
             *source = cut.source_of(source[1] as usize - 1, whole);
         }
+        for (source, &(_, first)) in cut.sources.iter().zip(&data.parts) {
+            for (face, sides) in data.faces[first..].iter_mut().zip(&source.goes_on) {
+                face.flags |= sides << abi::FACE_GOES_ON;
+            }
+        }
         Ok(data)
     }
 

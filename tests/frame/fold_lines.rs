@@ -1,14 +1,19 @@
 //! Outlines where a face is narrow beside a smooth edge or a seam: no pixel's centre leads to the fold, and it counts
 //! only where the face's trims leave it.
 
-use crate::edge_lines::{centres, draw, draw_next, faults_of_outline, lines, of_wider_cylinder, rounded_block, with};
+use crate::edge_lines::{
+    WIDTH, centres, draw, draw_next, faults_of_outline, lines, of_wider_cylinder, rounded_block, with,
+};
 use crate::shapes;
 use crate::support::{assert_silent, orthographic};
 use crate::watched::renderer;
-use glam::{DVec2, DVec3};
-use selvedge::model::{Camera, Model, Projection};
+use glam::{DVec2, DVec3, DVec4};
+use selvedge::model::{Camera, Model, Projection, SurfaceKind};
 use selvedge::picture::{EdgeChoice, EdgeSettings, SceneSettings, TrimWay};
-use std::f64::consts::FRAC_PI_2;
+use selvedge::spline::Surface;
+use selvedge_check::Tracer;
+use selvedge_check::drawing::{DrawingSettings, LineImage, judge_lines};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 const SIZE: (u32, u32) = (160, 120);
 
@@ -58,15 +63,14 @@ fn a_fold_beyond_another_trim_is_no_line() {
     assert_silent(renderer);
 }
 
-/// A cylinder so near that windows are cut out of it, of which half a pixel beyond its seam is seen, between the
-/// centres of pixels: the seam leads to the outline.
-#[test]
-fn an_outline_close_beyond_a_seam_is_a_line_in_a_deep_zoom() {
+/// A cylinder so near that windows are cut out of it, of which half a pixel is seen beyond a place at this angle, between
+/// the centres of pixels: the outline's wrong pixels.
+fn faults_close_beyond(angle: f64) -> (usize, usize) {
     let model = shapes::cylinder();
     let (radius, height) = shapes::CYLINDER;
-    // the outline at 80.2 px, the seam at 79.7 px
+    // the outline at 80.2 px, the place at 79.7 px
     let (round_px, beyond_px) = (2e5_f64, 0.5);
-    let beyond = (1.0 - beyond_px / round_px).acos();
+    let beyond = angle + (1.0 - beyond_px / round_px).acos();
     let px = radius / round_px;
     let at = |away: f64, z: f64| (DVec2::from_angle(beyond) * away).extend(z);
     let target = at(radius - 0.2 * px, 0.4 * height);
@@ -84,5 +88,50 @@ fn an_outline_close_beyond_a_seam_is_a_line_in_a_deep_zoom() {
     assert!((outline[0].x - 80.2).abs() < 1e-6, "{}", outline[0]);
     let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
     let picture = draw(&model, with(settings), &camera);
-    assert_eq!(faults_of_outline(&picture, &outline), (0, 0), "of {} pixels", centres(&picture).count());
+    assert!(centres(&picture).count() > 60);
+    faults_of_outline(&picture, &outline)
+}
+
+/// The seam leads to the outline.
+#[test]
+fn an_outline_close_beyond_a_seam_is_a_line_in_a_deep_zoom() {
+    assert_eq!(faults_close_beyond(0.0), (0, 0));
+}
+
+/// A window ends in the middle of a patch, and no pixel's centre sees the one in which the fold is.
+#[test]
+fn an_outline_close_beyond_a_window_is_a_line_in_a_deep_zoom() {
+    assert_eq!(faults_close_beyond(FRAC_PI_4), (0, 0));
+}
+
+/// A sheet whose picture is Whitney's cusp, (x³ - y x, y): two folds meet in the middle of the picture, of which the sheet
+/// hides one. Beyond the cusp it is seen nearly edge-on, and folds nowhere.
+#[test]
+fn an_outline_ends_at_its_cusp() {
+    let (x, x3, y) = ([-1.0, -1.0 / 3.0, 1.0 / 3.0, 1.0], [-1.0, 1.0, -1.0, 1.0], [-1.0, 1.0]);
+    let points = (0..2).flat_map(|j| (0..4).map(move |i| (i, j)));
+    let points = points.map(|(i, j)| DVec4::new(x3[i] - y[j] * x[i], y[j], x[i], 1.0)).collect();
+    let knots = |n: usize| [vec![0.0; n + 1], vec![1.0; n + 1]].concat();
+    let surface = Surface::new((3, 1), knots(3), knots(1), points).unwrap();
+    let model = shapes::one("cusp", false, vec![shapes::face(1, SurfaceKind::BSpline, surface)]);
+    let (mut renderer, tracer) = (renderer(), Tracer::new(&model));
+    for (shift, turn) in [(DVec2::ZERO, 0.0), (DVec2::new(0.003, 0.008), 0.3), (DVec2::new(-0.007, 0.002), 1.9)] {
+        let target = shift.extend(0.0);
+        let camera = Camera {
+            eye: target + DVec3::Z * 10.0,
+            target,
+            up: DVec2::from_angle(turn).extend(0.0),
+            projection: Projection::Orthographic { height: 1.8 },
+            depth_range: (1.0, 20.0),
+            size: SIZE,
+        };
+        let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
+        let picture = draw_next(&mut renderer, (&model, with(settings)), &camera);
+        let asked = DrawingSettings { sharp: false, smooth: false, ..DrawingSettings::default() };
+        let image = LineImage { lines: &picture.edge, width: WIDTH, section_width: WIDTH };
+        let found = judge_lines(&model, &tracer, &camera, &asked, image).unwrap();
+        assert!(found.visible > 60, "{found:?}");
+        assert_eq!((found.missing, found.stray), (0, 0), "turned by {turn}: {found:?}");
+    }
+    assert_silent(renderer);
 }

@@ -29,6 +29,7 @@ use super::instance::{Shown, stretch};
 use super::sub_patches::VIEW_PX;
 use super::view_cell::view_cell;
 use super::whole_view::Ball;
+use crate::abi;
 use crate::model::{Bounds, Camera, Face, Instance, Model, Part, Solid, TrimLoop};
 use crate::spline::{Patch, PatchGrid};
 use crate::trim::{LoopIndex, RectSide};
@@ -100,6 +101,8 @@ pub(super) struct Source {
     pub instance: usize,
     /// Faces of that instance's part.
     pub faces: Vec<usize>,
+    /// Sides of each at which a window of it ends, but not the surface: `BORDER_*`.
+    pub goes_on: Vec<u32>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -355,9 +358,11 @@ impl DeepZoom {
         let Seen { sight, faces, .. } = seen;
         let numbers: Vec<usize> = faces.iter().filter(|(_, close)| !close).map(|(f, _)| *f).collect();
         let whole: Vec<Face> = numbers.iter().map(|f| part.faces[*f].clone()).collect();
-        let mut push = |(faces, numbers): (Vec<Face>, Vec<usize>), meshes: Vec<crate::model::Mesh>, pixels: f64| {
+        let mut push = |(faces, numbers, goes_on): (Vec<Face>, Vec<usize>, Vec<u32>),
+                        meshes: Vec<crate::model::Mesh>,
+                        pixels: f64| {
             let Cut { model, extents, sources, .. } = &mut *near;
-            sources.push(Source { instance: seen.placed, faces: numbers });
+            sources.push(Source { instance: seen.placed, faces: numbers, goes_on });
             extents.push(VIEW_PX / pixels);
             model.instances.push(Instance { part: model.parts.len(), ..instance.clone() });
             model.parts.push(Part { name: part.name.clone(), faces, meshes, closed: part.closed, ..Part::default() });
@@ -365,7 +370,8 @@ impl DeepZoom {
         if !(whole.is_empty() && part.meshes.is_empty()) {
             let seen = faces.iter().filter(|(_, close)| !close);
             let pixels = seen.filter_map(|(f, _)| sight.of_box(self.faces[instance.part][*f].bounds));
-            push((whole, numbers), part.meshes.clone(), pixels.fold(f64::INFINITY, f64::min));
+            let goes_on = vec![0; numbers.len()];
+            push((whole, numbers, goes_on), part.meshes.clone(), pixels.fold(f64::INFINITY, f64::min));
         }
         for (f, _) in faces.iter().filter(|(_, close)| *close) {
             let face = &part.faces[*f];
@@ -375,8 +381,8 @@ impl DeepZoom {
                 halve(&p.patch, Window { u: p.u, v: p.v }, sight, MOST_DEPTH, &mut windows);
             }
             for (window, pixels) in windows {
-                if let Some(face) = window_face(face, grid, index, window) {
-                    push((vec![face], vec![*f]), Vec::new(), pixels);
+                if let Some((face, goes_on)) = window_face(face, grid, index, window) {
+                    push((vec![face], vec![*f], vec![goes_on]), Vec::new(), pixels);
                 }
             }
         }
@@ -452,9 +458,9 @@ fn halve(patch: &Patch, window: Window, sight: &Sight, depth: u32, windows: &mut
     halve(&b, high, sight, depth - 1, windows);
 }
 
-/// The face over a window; `None` if it is trimmed away. The whole face if the window is so small that its knots
-/// coincide.
-fn window_face(face: &Face, grid: &PatchGrid, index: &LoopIndex, window: Window) -> Option<Face> {
+/// The face over a window, and the sides beyond which the surface goes on; `None` if it is trimmed away. The whole face
+/// if the window is so small that its knots coincide.
+fn window_face(face: &Face, grid: &PatchGrid, index: &LoopIndex, window: Window) -> Option<(Face, u32)> {
     let ((u0, u1), (v0, v1)) = face.surface.domain();
     let u = (window.u.0.max(u0), window.u.1.min(u1));
     let v = (window.v.0.max(v0), window.v.1.min(v1));
@@ -465,9 +471,12 @@ fn window_face(face: &Face, grid: &PatchGrid, index: &LoopIndex, window: Window)
         RectSide::Inside => Vec::new(),
         RectSide::Boundary => face.loops.iter().filter_map(|l| loops::clipped(l, lo, hi)).collect(),
     };
+    let sides = [u.0 > u0, u.1 < u1, v.0 > v0, v.1 < v1];
+    let borders = [abi::BORDER_U0, abi::BORDER_U1, abi::BORDER_V0, abi::BORDER_V1];
+    let goes_on = sides.iter().zip(borders).filter(|(on, _)| **on).fold(0, |bits, (_, border)| bits | border);
     Some(match grid.within(face.surface.degrees(), u, v) {
-        Ok(surface) => Face { surface, loops, ..face.clone() },
-        Err(_) => face.clone(),
+        Ok(surface) => (Face { surface, loops, ..face.clone() }, goes_on),
+        Err(_) => (face.clone(), 0),
     })
 }
 

@@ -193,3 +193,28 @@ fn a_view_that_hardly_moves_keeps_what_was_cut() {
     assert_eq!(deep_zoom.of(&model, &all_of(&model), &whole), DeepZoomUpload::Whole);
     assert_eq!(deep_zoom.of(&model, &all_of(&model), &whole), DeepZoomUpload::Same);
 }
+
+/// A window ends where the surface does, or says that the surface goes on.
+#[test]
+fn windows_say_where_the_surface_goes_on() {
+    let model = wavy();
+    let mut ends = [0; 2]; // of the surface; of windows
+    for uv in [DVec2::new(0.45, 0.2), DVec2::new(0.0, 1.0)] {
+        let camera = camera(&model, uv, 1e-4);
+        let DeepZoomUpload::Cut(cut) = DeepZoom::new(&model).of(&model, &all_of(&model), &camera) else {
+            panic!("too close for single precision")
+        };
+        for (source, part) in cut.sources.iter().zip(&cut.model.parts) {
+            assert_eq!(source.goes_on.len(), part.faces.len());
+            for (sides, face) in source.goes_on.iter().zip(&part.faces) {
+                let ((u0, u1), (v0, v1)) = face.surface.domain();
+                let borders = [abi::BORDER_U0, abi::BORDER_U1, abi::BORDER_V0, abi::BORDER_V1];
+                for (border, is_inside) in borders.into_iter().zip([u0 > 0.0, u1 < 1.0, v0 > 0.0, v1 < 1.0]) {
+                    assert_eq!(sides & border != 0, is_inside);
+                    ends[usize::from(is_inside)] += 1;
+                }
+            }
+        }
+    }
+    assert!(ends[0] > 0 && ends[1] > 4, "{ends:?}");
+}
