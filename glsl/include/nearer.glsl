@@ -28,7 +28,8 @@ bool all_nearer(uvec2 first, uvec2 last, uint side, float z) {
 bool all_pixels_nearer(uvec2 low, uvec2 high, float z) {
     uint side = TILE * BLOCK;
     if (all(lessThan(high / TILE - low / TILE, uvec2(MOST_SQUARES)))) side = TILE;
-    if (all(lessThan(high / SQUARE - low / SQUARE, uvec2(MOST_SQUARES)))) side = SQUARE;
+    uint least = square_side(frame);
+    if (all(lessThan(high / least - low / least, uvec2(MOST_SQUARES)))) side = least;
     return all_nearer(low / side, high / side, side, z);
 }
 

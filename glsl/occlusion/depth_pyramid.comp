@@ -1,8 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `depth_pyramid`: the farthest visible depth in each square of 4 x 4 pixels, in each tile, and in each block of
-// tiles. One workgroup a block, one thread a tile. Twin: src/twin/occlusion.rs.
+// Pass `depth_pyramid`: the farthest visible depth in each square of few pixels, in each tile, and in each block of tiles. One workgroup a block, one thread a tile. Twin: src/twin/occlusion.rs.
 #include "scene.glsl"
 #include "tiles.glsl"
 #include "depth_pyramid.glsl"
@@ -25,13 +24,15 @@ float of_square(ivec2 corner, ivec2 end) {
 void main() {
     uint n = gl_LocalInvocationID.x;
     uvec2 tile = gl_WorkGroupID.xy * BLOCK + uvec2(n % BLOCK, n / BLOCK);
-    uvec2 squares = square_count(frame, SQUARE);
+    uint side = square_side(frame);
+    uint per_tile = TILE / side;
+    uvec2 squares = square_count(frame, side);
     float least = 1.0;
-    for (uint k = 0u; k < TILE / SQUARE * (TILE / SQUARE); ++k) {
-        uvec2 square = tile * (TILE / SQUARE) + uvec2(k % (TILE / SQUARE), k / (TILE / SQUARE));
+    for (uint k = 0u; k < per_tile * per_tile; ++k) {
+        uvec2 square = tile * per_tile + uvec2(k % per_tile, k / per_tile);
         if (any(greaterThanEqual(square, squares))) continue;
-        ivec2 corner = ivec2(square * SQUARE);
-        float here = of_square(corner, min(corner + ivec2(SQUARE), ivec2(frame.size)));
+        ivec2 corner = ivec2(square * side);
+        float here = of_square(corner, min(corner + ivec2(side), ivec2(frame.size)));
         farthest[square.y * squares.x + square.x] = here;
         least = min(least, here);
     }

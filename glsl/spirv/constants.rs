@@ -94,6 +94,8 @@ pub mod coverage {
     pub const TOUCHES: f32 = 1e-5;
 }
 pub mod depth_pyramid {
+    pub const SMALL_PICTURE: u32 = 131072;
+    pub const SMALL_SQUARE: u32 = 2;
     pub const SQUARE: u32 = 4;
 }
 pub mod dispatch_arguments {

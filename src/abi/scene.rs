@@ -2,7 +2,7 @@
 
 pub use crate::abi::constants::behind::OUTSIDE_CELLS;
 pub use crate::abi::constants::border_cells::BORDER_BANDS;
-pub use crate::abi::constants::depth_pyramid::SQUARE;
+use crate::abi::constants::depth_pyramid::{SMALL_PICTURE, SMALL_SQUARE, SQUARE};
 pub use crate::abi::constants::scene::{
     BORDER_U0, BORDER_U1, BORDER_V0, BORDER_V1, FACE_CLOSED_U, FACE_CLOSED_V, FACE_GOES_ON, FACE_MEETS_U, FACE_MEETS_V,
     FACE_OPERAND, FACE_POINTS, FACE_SAME_SENSE, FACE_SOLID, FACE_TRIMMED, MESH_NORMALS, MESH_SOLID,
@@ -19,6 +19,11 @@ pub enum Side {
     Inside = 1,
     /// A trim curve may meet it.
     Boundary = 2,
+}
+
+/// Pixels along the sides of the smallest squares of farthest depths, in a picture of this size.
+pub fn square_side(size: [u32; 2]) -> u32 {
+    if u64::from(size[0]) * u64::from(size[1]) <= u64::from(SMALL_PICTURE) { SMALL_SQUARE } else { SQUARE }
 }
 
 /// One Bézier patch.

@@ -5,7 +5,7 @@ use super::harness::{Gpu, Mismatch, SceneBuffers, same};
 use super::shapes::model_and_cameras;
 use super::squares::drawn;
 use super::{Case, Random};
-use crate::abi::{Counters, SQUARE};
+use crate::abi::{Counters, square_side};
 use crate::frame::occlusion::cull_early;
 use crate::frame::occlusion::cull_late;
 use crate::frame::occlusion::depth_pyramid;
@@ -69,7 +69,8 @@ fn parity_of_hide_is_exact_and_sees_a_difference() {
 /// The pass over drawn triangles; `change` modifies the twin's input.
 fn compare_farthest(gpu: &Gpu, case: &Case, change: impl FnOnce(&mut [f32])) -> Result<Farthest, Mismatch> {
     let size = (case.frame.size[0] as u32, case.frame.size[1] as u32);
-    assert!(!(size.0.is_multiple_of(SQUARE) && size.1.is_multiple_of(SQUARE)), "some squares are cut off: {size:?}");
+    let side = square_side(size.into());
+    assert!(!(size.0.is_multiple_of(side) && size.1.is_multiple_of(side)), "some squares are cut off: {size:?}");
     let mut picture = drawn(gpu, case, &mut Random::new(3), 40, size);
     change(&mut picture.depths);
     let twin = Farthest::new(size.into(), &picture.depths);
@@ -84,20 +85,24 @@ fn compare_farthest(gpu: &Gpu, case: &Case, change: impl FnOnce(&mut [f32])) -> 
 }
 
 /// A picture that ends within its last squares, tiles and blocks.
-fn cut_off(case: &Case) -> Case {
+fn cut_off(case: &Case, size: [u32; 2]) -> Case {
     let mut case = case.clone();
-    case.frame.size = [477.0, 359.0];
+    case.frame.size = size.map(|pixels| pixels as f32);
     case
 }
 
 #[test]
 fn parity_of_farthest_is_exact_and_sees_a_difference() {
     let gpu = Gpu::new();
-    let case = cut_off(&crowd()[0]);
-    let twin = compare_farthest(&gpu, &case, |_| {}).unwrap();
-    assert!(twin.depths.contains(&0.0) && twin.depths.iter().any(|d| *d > 0.0));
-    let at = 100 * 477 + 200;
-    compare_farthest(&gpu, &case, |depths| depths[at] = -1.0).unwrap_err();
+    let crowd = crowd();
+    for (size, side) in [([477, 359], 4), ([243, 177], 2)] {
+        assert_eq!(square_side(size), side);
+        let case = cut_off(&crowd[0], size);
+        let twin = compare_farthest(&gpu, &case, |_| {}).unwrap();
+        assert!(twin.depths.contains(&0.0) && twin.depths.iter().any(|d| *d > 0.0));
+        let at = (100 * size[0] + 200) as usize;
+        compare_farthest(&gpu, &case, |depths| depths[at] = -1.0).unwrap_err();
+    }
     gpu.finish();
 }
 

@@ -33,7 +33,7 @@ use super::{MAX_PUSH, Scene};
 use crate::abi::constants::behind::{self, MOST_CELLS};
 use crate::abi::constants::nearer::MOST_SQUARES;
 pub use crate::abi::constants::scene::TAU_HIDDEN;
-use crate::abi::{self, BLOCK, Frame, OUTSIDE_CELLS, SQUARE, Side, TILE};
+use crate::abi::{self, BLOCK, Frame, OUTSIDE_CELLS, Side, TILE, square_side};
 use crate::spline::Patch;
 use glam::{DVec2, DVec3, DVec4};
 use std::ops::RangeInclusive;
@@ -71,7 +71,7 @@ pub fn cull_late(tau: u32, lies_behind: bool) -> (u32, u32, bool) {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Farthest {
     size: [u32; 2],
-    /// Depths of squares of [`SQUARE`] pixels, row by row, then of tiles, then of blocks of tiles.
+    /// Depths of squares of [`square_side`] pixels a side, row by row, then of tiles, then of blocks of tiles.
     pub depths: Vec<f32>,
 }
 
@@ -88,13 +88,13 @@ impl Farthest {
             let [across, down] = size.map(|pixels| pixels.div_ceil(side));
             (0..down).flat_map(move |y| (0..across).map(move |x| (x, y))).map(move |(x, y)| least(x, y, side))
         };
-        Self { size, depths: of(SQUARE).chain(of(TILE)).chain(of(TILE * BLOCK)).collect() }
+        Self { size, depths: of(square_side(size)).chain(of(TILE)).chain(of(TILE * BLOCK)).collect() }
     }
 
     /// Whether all of these squares with this side are nearer than `z`.
     fn all_nearer(&self, columns: RangeInclusive<u32>, rows: RangeInclusive<u32>, side: u32, z: f64) -> bool {
         let count = |side: u32| self.size.map(|pixels| pixels.div_ceil(side));
-        let smaller = [SQUARE, TILE].into_iter().filter(|s| *s < side);
+        let smaller = [square_side(self.size), TILE].into_iter().filter(|s| *s < side);
         let first: u32 = smaller.map(|s| count(s)[0] * count(s)[1]).sum();
         let depth = |x: u32, y: u32| f64::from(self.depths[(first + y * count(side)[0] + x) as usize]);
         rows.into_iter().all(|y| columns.clone().all(|x| depth(x, y) > z))
@@ -104,7 +104,7 @@ impl Farthest {
     pub fn all_pixels_nearer(&self, pixels: &[RangeInclusive<u32>; 2], z: f64) -> bool {
         let squares = |side: u32| pixels.clone().map(|p| p.start() / side..=p.end() / side);
         let few = |side: &u32| squares(*side).iter().all(|range| range.end() - range.start() < MOST_SQUARES);
-        let side = [SQUARE, TILE].into_iter().find(few).unwrap_or(TILE * BLOCK);
+        let side = [square_side(self.size), TILE].into_iter().find(few).unwrap_or(TILE * BLOCK);
         let [columns, rows] = squares(side);
         self.all_nearer(columns, rows, side, z)
     }
@@ -274,17 +274,27 @@ mod tests {
 
     #[test]
     fn a_square_has_the_farthest_of_its_pixels() {
-        let size = [37, 21];
-        let mut depth = vec![0.5; (size[0] * size[1]) as usize];
-        depth[(20 * size[0] + 36) as usize] = 0.25;
-        let farthest = Farthest::new(size, &depth);
-        let squares = 10 * 6;
-        assert_eq!(farthest.depths.len(), squares + 3 * 2 + 1);
-        let low: Vec<usize> = farthest.depths.iter().enumerate().filter(|(_, d)| **d == 0.25).map(|(i, _)| i).collect();
-        assert_eq!(low, [squares - 1, squares + 5, squares + 6], "the last square, tile and block");
-        assert!(farthest.all_nearer(0..=8, 0..=5, SQUARE, 0.4));
-        assert!(!farthest.all_nearer(0..=9, 0..=5, SQUARE, 0.4) && !farthest.all_nearer(0..=0, 0..=0, SQUARE, 0.5));
-        assert!(farthest.all_nearer(0..=2, 0..=0, TILE, 0.4) && !farthest.all_nearer(2..=2, 1..=1, TILE, 0.4));
+        // (columns, rows) of squares, tiles and blocks
+        let small = ([37, 21], 2, [19, 11], [3, 2], 1);
+        let large = ([477, 359], 4, [120, 90], [30, 23], 4 * 3);
+        for (size, side, squares, tiles, blocks) in [small, large] {
+            assert_eq!(square_side(size), side);
+            let mut depth = vec![0.5; (size[0] * size[1]) as usize];
+            *depth.last_mut().unwrap() = 0.25;
+            let farthest = Farthest::new(size, &depth);
+            let ends = [squares[0] * squares[1], tiles[0] * tiles[1], blocks];
+            let last = [ends[0] - 1, ends[0] + ends[1] - 1, ends.iter().sum::<u32>() - 1];
+            assert_eq!(farthest.depths.len() as u32 - 1, last[2]);
+            let low: Vec<u32> = (0..).zip(&farthest.depths).filter(|(_, d)| **d == 0.25).map(|(i, _)| i).collect();
+            assert_eq!(low, last, "the last square, tile and block");
+            let [columns, rows] = squares.map(|n| n - 1);
+            assert!(farthest.all_nearer(0..=columns - 1, 0..=rows, side, 0.4));
+            assert!(!farthest.all_nearer(0..=columns, 0..=rows, side, 0.4));
+            assert!(!farthest.all_nearer(0..=0, 0..=0, side, 0.5));
+            let [columns, rows] = tiles.map(|n| n - 1);
+            assert!(farthest.all_nearer(0..=columns, 0..=rows - 1, TILE, 0.4));
+            assert!(!farthest.all_nearer(columns..=columns, rows..=rows, TILE, 0.4));
+        }
     }
 
     #[test]

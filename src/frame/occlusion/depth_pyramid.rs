@@ -1,4 +1,4 @@
-//! Pass `depth_pyramid`: the farthest visible depth in each square of 4 x 4 pixels, in each tile, and in each block of
+//! Pass `depth_pyramid`: the farthest visible depth in each square of few pixels, in each tile, and in each block of
 //! tiles.
 //!
 //! Reads: `frame`, the depth image. Writes: `depth_pyramid`. Twin: `src/twin/occlusion.rs`.

@@ -27,7 +27,7 @@ mod parts;
 use super::common::room::Room;
 use super::common::{PatchList, reset};
 use super::{Frame, WRITE_TO_READ};
-use crate::abi::{BLOCK, LIST_FIRST, SQUARE, TILE};
+use crate::abi::{BLOCK, LIST_FIRST, TILE, square_side};
 use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, barrier};
 use crate::scene::SceneData;
 use parts::Parts;
@@ -91,7 +91,7 @@ pub(crate) struct Occlusion {
 
 impl Occlusion {
     pub(super) fn new(room: &Room<'_>, passes: &Arc<Passes>) -> Result<Self, GpuError> {
-        let levels = [SQUARE, TILE, TILE * BLOCK].map(|side| room.squares(side));
+        let levels = [square_side(room.size.into()), TILE, TILE * BLOCK].map(|side| room.squares(side));
         Ok(Self {
             passes: Arc::clone(passes),
             hidden: room.words("hidden patches", room.counts.patch_instances)?,
