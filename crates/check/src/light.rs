@@ -19,6 +19,9 @@ pub const KEY: DVec3 = DVec3::new(-0.65, 0.46, 0.60);
 const FILL: DVec3 = DVec3::new(0.21, 0.33, 0.92);
 const RIM: DVec3 = DVec3::new(0.50, 0.50, -0.70);
 
+/// Of the fill beside the lamp.
+const FILL_STRENGTH: f64 = 0.34;
+
 /// What a black face reflects.
 const BLACK: f64 = 0.03;
 
@@ -27,7 +30,8 @@ const BLACK: f64 = 0.03;
 /// Twin of `shade.glsl`.
 pub fn studio(colour: DVec3, n: DVec3, camera: &Camera, key: Key) -> DVec3 {
     let v = in_view(n, camera);
-    let (key, shine) = match key {
+    let fill = if key == Key::Lamp { FILL_STRENGTH } else { 0.20 };
+    let (light, shine) = match key {
         Key::Shadow => (0.0, 0.0),
         Key::Lamp => (lamp(v, KEY, 0.86), v.dot((KEY + DVec3::Z).normalize())),
         Key::Sun(towards) => {
@@ -35,13 +39,13 @@ pub fn studio(colour: DVec3, n: DVec3, camera: &Camera, key: Key) -> DVec3 {
             (0.62 * n.dot(towards).max(0.0), v.dot(half_way))
         }
     };
-    toned(reflected(colour, v, key) + 0.10 * shine.max(0.0).powi(48))
+    toned(reflected(colour, v, light, fill) + 0.10 * shine.max(0.0).powi(48))
 }
 
 /// The same of a face of clay, which has no highlight.
 pub fn clay(n: DVec3, camera: &Camera) -> DVec3 {
     let v = in_view(n, camera);
-    toned(reflected(DVec3::new(0.58, 0.52, 0.46), v, lamp(v, KEY, 0.86)))
+    toned(reflected(DVec3::new(0.58, 0.52, 0.46), v, lamp(v, KEY, 0.86), FILL_STRENGTH))
 }
 
 fn in_view(d: DVec3, camera: &Camera) -> DVec3 {
@@ -53,10 +57,10 @@ fn lamp(v: DVec3, towards: DVec3, strength: f64) -> f64 {
     strength * v.dot(towards).max(0.0).powi(2)
 }
 
-fn reflected(colour: DVec3, v: DVec3, key: f64) -> DVec3 {
+fn reflected(colour: DVec3, v: DVec3, key: f64, fill: f64) -> DVec3 {
     let sky = 0.12 + (0.20 - 0.12) * (0.5 + 0.5 * v.y);
     let colour = colour + (BLACK - colour.max_element()).max(0.0);
-    colour * (key + lamp(v, FILL, 0.34) + lamp(v, RIM, 0.25) + sky)
+    colour * (key + lamp(v, FILL, fill) + lamp(v, RIM, 0.25) + sky)
 }
 
 /// The sRGB colour of a curvature that is this share of the largest on the scale: from blue hollows over light grey to red
