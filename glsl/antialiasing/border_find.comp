@@ -118,6 +118,7 @@ void main() {
     for (; listed != 0u; listed &= listed - 1u) {
         ivec2 at = first + ivec2(0, findLSB(listed));
         list[n].pixel = uint(at.x) | uint(at.y) << 16;
+        list[n].sliver = NO_SLIVER;
         ++n;
     }
     uvec3 pixels = grid_of(last / GROUP + 1u);

@@ -35,7 +35,7 @@ void main() {
         bool was_followed = (pixel.bits >> k & 1u) != 0u;
         if (was_followed) shown = followed_points[next].sheets >> FOLLOWED_SHOWN;
         if (was_followed) ++next;
-        sum += shown_at(at, k, shown, pixel.bits >> BORDER_POINTS);
+        sum += shown_at(at, k, shown, pixel.bits >> BORDER_POINTS, list[pixel.place].sliver);
     }
     list[pixel.place].mean = packed_mean(sum);
 }

@@ -43,7 +43,7 @@ void main() {
     for (uint k = 0u; k < BORDER_POINTS; ++k) {
         BorderPoint seen = seen_points[n * BORDER_POINTS + k];
         uint shown = own && own_depth < UNSEEN && seen.depth >= own_depth ? OWN : seen.shown;
-        sum += shown_at(at, k, shown, unsampled);
+        sum += shown_at(at, k, shown, unsampled, list[n].sliver);
     }
     list[n].mean = packed_mean(sum);
 }

@@ -18,6 +18,7 @@ struct BorderPoint {
 const uint BORDER_POINTS = 16u;
 const uint AROUND = 9u; // pixels, the own one in the middle
 const uint OWN = 4u;
+const uint SLIVER = 9u; // a pixel farther away, which sees a sliver
 const uint NOBODY = 15u;
 
 // Rows of the points, four bits each, found by a random search: the share of points beside a straight line is 0.025 off
@@ -32,6 +33,12 @@ vec2 point_of(uint k) {
 }
 
 ivec2 around(ivec2 at, uint n) { return at + ivec2(n % 3u, n / 3u) - 1; }
+
+// Pixel `n` around, or the one that sees the sliver.
+ivec2 around_or_far(ivec2 at, uint n, uint sliver) {
+    ivec2 way = ivec2(bitfieldExtract(int(sliver), 0, 16), int(sliver) >> 16);
+    return n == SLIVER ? at + way : around(at, n);
+}
 
 // Which pixel, of those whose bit is set, is nearest to a point of the own one; NOBODY of none.
 uint nearest_of(uint pixels, vec2 from) {

@@ -116,12 +116,13 @@ void main() {
     if (thread >= followed.point_count) return;
     FollowedPoint point = followed_points[thread];
     uint i = point.point % BORDER_POINTS;
-    ivec2 at = pixel_of(list[point.point / BORDER_POINTS]);
+    BorderPixel border = list[point.point / BORDER_POINTS];
+    ivec2 at = pixel_of(border);
     float depth = point.depth;
     uint shown = point.sheets >> FOLLOWED_SHOWN;
     for (uint left = point.sheets & ((1u << FOLLOWED_SHOWN) - 1u); left != 0u; left >>= 4u) {
         uint from = (left & 15u) - 1u;
-        float there = exact_depth_at(around(at, from), vec2(at) + 0.5 + point_of(i));
+        float there = exact_depth_at(around_or_far(at, from, border.sliver), vec2(at) + 0.5 + point_of(i));
         bool nearer = there < depth;
         if (nearer) depth = there;
         if (nearer) shown = from;

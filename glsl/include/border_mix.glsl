@@ -53,6 +53,7 @@ layout(scalar, push_constant) uniform Push { uint capacity; }; // points that fo
 
 #include "border_seen.glsl"
 #include "border_reach.glsl"
+#include "border_sliver.glsl"
 // BORDER_POINTS a pixel of the list. Only scenes with meshes or Boolean solids have them.
 layout(scalar, binding = 11) writeonly buffer SeenPoints { BorderPoint seen_points[]; };
 
@@ -229,10 +230,17 @@ void main() {
         met[met_count] = face;
         met_from[met_count++] = from;
     }
+    uint sliver = NO_SLIVER;
+    if (met_count > 0u && met_count < MOST_SHEETS) sliver = sliver_along(at, placed);
+    if (sliver != NO_SLIVER) {
+        list[n].sliver = sliver;
+        met[met_count] = (placed_face_at(around_or_far(at, SLIVER, sliver)) - 1u) << 1;
+        met_from[met_count++] = SLIVER;
+    }
     uvec2 open = uvec2(0u); // bits of points, of two sheets a word
     // a separate loop: threads that run together find their sheets at different pixels
     for (uint n = 0u; n < met_count; ++n) {
-        Sheet s = sheet_at(around(at, met_from[n]), vec2(at) + 0.5);
+        Sheet s = sheet_at(around_or_far(at, met_from[n], sliver), vec2(at) + 0.5);
         for (uint i = 0u; i < BORDER_POINTS; ++i) {
             bool is_open;
             float depth = depth_at(s, vec2(at) + 0.5 + point_of(i), is_open);
@@ -281,6 +289,6 @@ void main() {
         return;
     }
     vec4 sum = vec4(0.0);
-    for (uint k = 0u; k < BORDER_POINTS; ++k) sum += shown_at(at, k, shown[k], no_patch);
+    for (uint k = 0u; k < BORDER_POINTS; ++k) sum += shown_at(at, k, shown[k], no_patch, sliver);
     list[n].mean = packed_mean(sum);
 }

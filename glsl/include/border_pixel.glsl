@@ -5,7 +5,12 @@
 struct BorderPixel {
     uint pixel; // column, row << 16
     uvec2 mean; // linear colour times opacity, and opacity: four halves
+    uint sliver; // way to a pixel that sees a sliver (border_sliver.glsl): column, row << 16; NO_SLIVER
 };
+
+const uint NO_SLIVER = 0xffffffffu;
+
+uint way_of_sliver(ivec2 way) { return uint(way.x) & 0xffffu | uint(way.y) << 16; }
 
 // How many pixels the list has, and the grids of the next passes: of a thread a pixel, and of a thread a point.
 struct BorderGrids {

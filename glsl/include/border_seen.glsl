@@ -7,11 +7,11 @@
 #include "border_around.glsl"
 
 // Colour of point `k`, for which the pixel `shown` has one. `unasked`: bits of the pixels around that see what no point was
-// asked for.
-vec4 shown_at(ivec2 at, uint k, uint shown, uint unasked) {
+// asked for. `sliver`: of the pixel in the list.
+vec4 shown_at(ivec2 at, uint k, uint shown, uint unasked, uint sliver) {
     if (shown == NOBODY) shown = nearest_of(unasked, point_of(k));
     if (shown == NOBODY) shown = OWN; // a gap between faces
-    return unmixed_at(around(at, shown));
+    return unmixed_at(around_or_far(at, shown, sliver));
 }
 
 uvec2 packed_mean(vec4 sum) {

@@ -38,6 +38,7 @@ pub mod border_around {
     pub const OWN: u32 = 4;
     pub const ROWS_OF_FIRST: u32 = 0x50c84f2a;
     pub const ROWS_OF_LAST: u32 = 0x6b1e73d9;
+    pub const SLIVER: u32 = 9;
 }
 pub mod border_cells {
     pub const BAND_ROUNDING: f32 = 1e-4;
@@ -66,11 +67,15 @@ pub mod border_mix {
 pub mod border_pixel {
     pub const JUMP_OF_CLIMB: f32 = 0.5;
     pub const JUMP_PX: f32 = 2.0;
+    pub const NO_SLIVER: u32 = 0xffffffff;
 }
 pub mod border_reach {
     pub const ASIDE: f32 = 0.015625;
     pub const MOST_FROM_MIDDLE: f32 = 1.5;
     pub const REMAINDER_PX: f32 = 0.125;
+}
+pub mod border_sliver {
+    pub const FAR_ROWS: u32 = 7;
 }
 pub mod bound {
     pub const DEPTH_SHARE: f32 = 1.5;
@@ -357,15 +362,18 @@ pub mod segments {
     pub const MAX_SEGMENTS: f32 = 65536.0;
 }
 pub mod shade {
-    pub const FILL_STRENGTH: f32 = 0.22;
+    pub const BLACK: f32 = 0.03;
+    pub const FILL_STRENGTH: f32 = 0.34;
     pub const GLOSS: f32 = 0.10;
     pub const GROUND_STRENGTH: f32 = 0.12;
     pub const ISOPHOTE_BANDS: f32 = 18.0;
-    pub const KEY_STRENGTH: f32 = 0.62;
-    pub const RIM_STRENGTH: f32 = 0.30;
+    pub const KEY_STRENGTH: f32 = 0.86;
+    pub const RIM_STRENGTH: f32 = 0.25;
     pub const SHININESS: f32 = 48.0;
     pub const SHOULDER: f32 = 0.76;
-    pub const SKY_STRENGTH: f32 = 0.26;
+    pub const SKY_STRENGTH: f32 = 0.20;
+    pub const SUN_FILL_STRENGTH: f32 = 0.20;
+    pub const SUN_STRENGTH: f32 = 0.62;
     pub const UNSEEN: f32 = 3.0e38;
     pub const ZEBRA_STRIPES: f32 = 12.0;
 }

@@ -5,7 +5,8 @@ const _: () = assert!(core::mem::offset_of!(crate::abi::BorderGrids, points) == 
 const _: () = assert!(core::mem::size_of::<crate::abi::BorderGrids>() == 28);
 const _: () = assert!(core::mem::offset_of!(crate::abi::BorderPixel, pixel) == 0);
 const _: () = assert!(core::mem::offset_of!(crate::abi::BorderPixel, mean) == 4);
-const _: () = assert!(core::mem::size_of::<crate::abi::BorderPixel>() == 12);
+const _: () = assert!(core::mem::offset_of!(crate::abi::BorderPixel, sliver) == 12);
+const _: () = assert!(core::mem::size_of::<crate::abi::BorderPixel>() == 16);
 const _: () = assert!(core::mem::offset_of!(crate::abi::BorderPoint, depth) == 0);
 const _: () = assert!(core::mem::offset_of!(crate::abi::BorderPoint, shown) == 4);
 const _: () = assert!(core::mem::size_of::<crate::abi::BorderPoint>() == 8);

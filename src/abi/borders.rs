@@ -8,6 +8,7 @@ use bytemuck::{Pod, Zeroable};
 pub struct BorderPixel {
     pub pixel: u32,
     pub mean: [u32; 2],
+    pub sliver: u32,
 }
 
 /// How many there are, and the grids of passes over them.

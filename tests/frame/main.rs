@@ -56,6 +56,7 @@ mod sequence;
 mod shadows;
 #[path = "../shapes/mod.rs"]
 mod shapes;
+mod slivers;
 mod smooth;
 mod smooth_borders;
 mod smooth_trims;

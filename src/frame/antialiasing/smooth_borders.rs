@@ -29,10 +29,10 @@ use crate::shaders::TrimTest;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Pixels of a band, whose list takes 48 MB; with points a pixel takes eleven times as much.
+/// Pixels of a band, whose list takes 64 MB; with points a pixel takes eight times as much.
 const BAND_PIXELS: u64 = 1 << 22;
 const BAND_PIXELS_WITH_POINTS: u64 = 1 << 18;
-/// Rows of the least band.
+/// Rows of the least band: a pixel looks for slivers in as many less one.
 const LEAST_ROWS: u32 = 16;
 
 /// The passes.
