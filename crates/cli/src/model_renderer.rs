@@ -103,7 +103,7 @@ impl ModelRenderer {
         let scene = SceneSettings {
             samples: edges.samples,
             smooth: edges.smooth(),
-            ambient: Ambient::radius(look.ao, edges.samples, model),
+            ambient: during("measuring the model", || Ambient::radius(look.ao, edges.samples, model)),
             curvature: look.style.is_curvature(),
             edges: lines,
             ..SceneSettings::default()

@@ -3,27 +3,33 @@
 use indicatif::{HumanBytes, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use selvedge_io::import::Stage;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc;
+use std::sync::{OnceLock, mpsc};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-/// Nothing is shown before this: short work needs no comment.
+/// Nothing is shown before this since the first work began: short work needs no comment.
 const SILENCE: Duration = Duration::from_secs(1);
+/// The same of work after that: a line that comes and goes at once is no comment.
+const NEXT: Duration = Duration::from_millis(100);
+
+/// When the first work began.
+static BEGUN: OnceLock<Instant> = OnceLock::new();
 
 /// Work of unknown length.
-const SPINNER: &str = "{spinner} {msg}";
+const SPINNER: &str = "{spinner} {msg}, {elapsed_precise}";
 /// Work that counts.
-const COUNTER: &str = "{spinner} {msg}: {human_pos}";
-/// Work of known length.
-const BAR: &str = "{spinner} {msg} {bar:30} {human_pos} of {human_len}, {eta} left";
+const COUNTER: &str = "{spinner} {msg}: {human_pos}, {elapsed_precise}";
+/// Work of known length. The last step may have no length: the time goes on.
+const BAR: &str = "{spinner} {msg} {bar:30} {human_pos} of {human_len}, {elapsed_precise}, {eta} left";
 
 /// Files, whose times differ.
 const FILES: &str = "{bar:30} {human_pos} of {human_len} files, {per_sec}, {eta} left; {msg}";
 
 /// The same of bytes.
-const BYTES: &str = "{spinner} {msg} {bar:30} {bytes} of {total_bytes}, {eta} left";
+const BYTES: &str = "{spinner} {msg} {bar:30} {bytes} of {total_bytes}, {elapsed_precise}, {eta} left";
 
-/// Runs `work`; past one second `what` turns on standard error, where that is a terminal.
+/// Runs `work`; past one second of all work `what` turns on standard error, with the seconds that it takes, where that
+/// is a terminal.
 pub fn during<T>(what: &str, work: impl FnOnce() -> T) -> T {
     spin(what, SPINNER, |_| work())
 }
@@ -85,7 +91,8 @@ fn spin<T>(what: &str, template: &str, work: impl FnOnce(&ProgressBar) -> T) -> 
         scope.spawn(|| {
             let ended = ended;
             let alone = !MANY.load(Ordering::Relaxed);
-            if alone && ended.recv_timeout(SILENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
+            let silence = SILENCE.saturating_sub(BEGUN.get_or_init(Instant::now).elapsed()).max(NEXT);
+            if alone && ended.recv_timeout(silence) == Err(mpsc::RecvTimeoutError::Timeout) {
                 bar.set_draw_target(ProgressDrawTarget::stderr());
                 bar.enable_steady_tick(Duration::from_millis(100));
                 let _ = ended.recv(); // only ever fails: nothing is sent, the sender is dropped

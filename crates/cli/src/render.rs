@@ -8,7 +8,9 @@ mod task;
 pub use task::named_for;
 
 use crate::args::{Aov, RenderArgs};
+use crate::heap;
 use crate::model_renderer::{self, Measured, ModelRenderer};
+use crate::progress::during;
 use crate::sheet::Sheet;
 use crate::{Outcome, output, reading, target};
 use anyhow::{Error, Result};
@@ -75,6 +77,7 @@ fn pictures(
     record: &mut dyn FnMut(&Drawn) -> Result<()>,
 ) -> Result<ModelRenderer> {
     let preparing = limits.begin(Work::Preparing);
+    heap::trim(); // what the import has freed
     let outputs = task.outputs();
     target::check_read(&import, &outputs)?;
     args.shown.apply(&mut import.model)?;
@@ -86,7 +89,7 @@ fn pictures(
         Some(direction) => args.camera.standard(direction, &import, size),
         None => args.camera.of(&import),
     };
-    let cameras = task.shots.iter().map(camera).collect::<Result<Vec<_>>>()?;
+    let cameras = during("framing the views", || task.shots.iter().map(camera).collect::<Result<Vec<_>>>())?;
     // the renderer shares it: large models are there once
     let model = Arc::new(std::mem::take(&mut import.model));
     let begun = Instant::now();

@@ -161,6 +161,12 @@ impl Visibility {
             if again || drawn && self.meshes_and_solids.is_none() { Load::Keep } else { Load::ColourU32([0; 4]) };
         let visibility = Attachment { image: &self.image, load: colour };
         let depth = Attachment { image: &self.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
-        pass.record(cmd, &bindings, (visibility, depth), frame.capacities.tessellation.draws);
+        let between = || {
+            self.drawn_again(cmd, &self.image);
+            if let Some(border_depths) = border_depths {
+                barrier::images(cmd, &[(border_depths, Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE)]);
+            }
+        };
+        pass.record(cmd, &bindings, (visibility, depth), frame.capacities.tessellation.draws, between);
     }
 }

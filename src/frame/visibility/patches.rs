@@ -7,11 +7,14 @@
 //!        trimmed  frag  trim test of one way          ▶ patch instance, (u, v)   depth, depths of skirts
 //! ```
 //!
+//! Each list is drawn by several renderings of [`DRAWS_OF_A_RENDERING`] draws, one after another: drivers that sort
+//! triangles into tiles keep all triangles of a rendering, and the pictures of a large scene would take gigabytes.
+//!
 //! Reads: everything that `Bindings` names except the images. Writes: the visibility image and depth (reversed: 1 at
 //! the near plane), which begin cleared or with meshes and solids; `border_depths`, cleared before.
 
 use crate::abi::Counters;
-use crate::abi::constants::scene::CORNER_LIST;
+use crate::abi::constants::scene::{CORNER_LIST, PLAIN_LIST, TRIMMED_LIST};
 use crate::bindings::{Placed, Primitives};
 use crate::frame::common::draw::Draw;
 use crate::gpu::{
@@ -26,6 +29,9 @@ use std::mem::offset_of;
 pub(crate) const VISIBILITY_FORMAT: vk::Format = vk::Format::R32G32_UINT;
 /// Format of the pass's own depth image.
 pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
+
+/// Most draws of a rendering. Devices whose draws may have any number of vertices need one a list.
+const DRAWS_OF_A_RENDERING: u32 = 256;
 
 /// The pass: one pipeline for each kind of patch in the scene.
 pub(crate) struct Visibility {
@@ -125,39 +131,56 @@ impl Visibility {
         })
     }
 
-    /// Draws all lists; `draw_capacity` draws of each lie in `draws`: plain, trimmed, by corners.
+    /// Draws all lists; `draw_capacity` draws of each lie in `draws`: plain, trimmed, by corners. `between` makes what a
+    /// rendering has drawn visible to the next.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
         (visibility, depth): (Attachment<'_>, Attachment<'_>),
         draw_capacity: u32,
+        between: impl Fn(),
     ) {
-        let bytes = u64::from(draw_capacity) * size_of::<vk::DrawIndirectCommand>() as u64;
         let lists = [b.sub_patches.into(), b.instances.into()];
         let volume = || b.volume.iter().flat_map(Primitives::resources);
         let placed = || [b.frame.into()].into_iter().chain(b.placed.resources());
         let shared = || placed().chain([b.factors.into()]).chain(lists);
-        cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
-            if let Some(plain) = &self.plain {
-                let last = volume().chain(b.links.map(Into::into));
-                cmd.bind(plain, &shared().chain(last).collect::<Vec<_>>(), &[]);
-                let count = offset_of!(Counters, plain_draws) as u64;
-                cmd.draw_indirect_count(b.draws, 0, b.counters, count, draw_capacity);
+        let mut drawn: Vec<(&Pipeline, Vec<Resource<'_>>, u32, usize)> = Vec::new();
+        if let Some(plain) = &self.plain {
+            let last = volume().chain(b.links.map(Into::into));
+            drawn.push((plain, shared().chain(last).collect(), PLAIN_LIST, offset_of!(Counters, plain_draws)));
+        }
+        if let Some(corners) = &self.corners {
+            let resources = placed().chain(lists).chain(volume()).collect();
+            drawn.push((corners, resources, CORNER_LIST, offset_of!(Counters, corner_draws)));
+        }
+        if let (Some(trimmed), Some(border_depths)) = (&self.trimmed, b.border_depths) {
+            let test = b.trim.iter().copied().chain(volume());
+            let resources = shared().chain([border_depths.into()]).chain(test).collect();
+            drawn.push((trimmed, resources, TRIMMED_LIST, offset_of!(Counters, trimmed_draws)));
+        }
+        let firsts = || (0..draw_capacity).step_by(DRAWS_OF_A_RENDERING as usize);
+        let pieces: Vec<_> = drawn.iter().flat_map(|of_list| firsts().map(move |first| (first, of_list))).collect();
+        // lists of one piece share a rendering; patches of equal depth keep their order
+        let mut renderings: Vec<_> = pieces.chunk_by(|_, (first, _)| *first == 0).collect();
+        if renderings.is_empty() {
+            renderings.push(&[]); // clears the images
+        }
+        let (mut visibility, mut depth) = (visibility, depth);
+        for (nth, rendering) in renderings.into_iter().enumerate() {
+            if nth > 0 {
+                between();
+                (visibility, depth) = (visibility.again(), depth.again());
             }
-            if let Some(corners) = &self.corners {
-                cmd.bind(corners, &placed().chain(lists).chain(volume()).collect::<Vec<_>>(), &[]);
-                let count = offset_of!(Counters, corner_draws) as u64;
-                let first = u64::from(CORNER_LIST) * bytes;
-                cmd.draw_indirect_count(b.draws, first, b.counters, count, draw_capacity);
-            }
-            if let (Some(trimmed), Some(border_depths)) = (&self.trimmed, b.border_depths) {
-                let test = b.trim.iter().copied().chain(volume());
-                let resources: Vec<_> = shared().chain([border_depths.into()]).chain(test).collect();
-                cmd.bind(trimmed, &resources, &[]);
-                let count = offset_of!(Counters, trimmed_draws) as u64;
-                cmd.draw_indirect_count(b.draws, bytes, b.counters, count, draw_capacity);
-            }
-        });
+            cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
+                for (first, (pipeline, resources, list, count)) in rendering {
+                    cmd.bind(pipeline, resources, &[]);
+                    let at = u64::from(list * draw_capacity + first) * size_of::<vk::DrawIndirectCommand>() as u64;
+                    // draws beyond the count have no vertices, so that of the whole list serves each piece
+                    let most = DRAWS_OF_A_RENDERING.min(draw_capacity - first);
+                    cmd.draw_indirect_count(b.draws, at, b.counters, *count as u64, most);
+                }
+            });
+        }
     }
 }
