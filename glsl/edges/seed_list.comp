@@ -26,8 +26,6 @@ layout(scalar, binding = 12) writeonly buffer ChordSeeds { uint chord_seeds[]; }
 #include "refine.glsl"
 #include "fold_near.glsl"
 
-const uint MAX_HOPS = 8u;
-const float BEYOND = 1e-4;
 #include "line_seed.glsl"
 
 const float SPACING_PX = 1.0;

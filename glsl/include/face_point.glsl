@@ -5,10 +5,6 @@
 
 #include "on_pixel.glsl"
 
-// Most patches of a face that a surface is followed across: a patch may be smaller than a pixel.
-const uint MAX_HOPS = 8u;
-// Share of a patch's width: a point less far beyond its side lies on the side, up to rounding.
-const float BEYOND = 1e-4;
 // The same for the end of a face without trims: single precision, and the error of Newton's method after 100 pixels.
 const float ROUNDED = 1e-5;
 

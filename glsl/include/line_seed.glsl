@@ -1,5 +1,4 @@
-// Where the search for a fold beside an edge begins. Needs placed.glsl, patch_place.glsl, edges.glsl; MAX_HOPS and BEYOND
-// are those of face_point.glsl.
+// Where the search for a fold beside an edge begins. Needs placed.glsl, patch_place.glsl, edges.glsl.
 #ifndef LINE_SEED_GLSL
 #define LINE_SEED_GLSL
 

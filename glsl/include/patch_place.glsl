@@ -2,6 +2,11 @@
 #ifndef PATCH_PLACE_GLSL
 #define PATCH_PLACE_GLSL
 
+// Most patches of a face that a surface is followed across: a patch may be smaller than a pixel.
+const uint MAX_HOPS = 8u;
+// Share of a patch's width: a point less far beyond its side lies on the side, up to rounding.
+const float BEYOND = 1e-4;
+
 // Column and row of the `n`th patch of a face.
 ivec2 place_of(Face face, int n) {
     int across = int(max(face.count_u, 1u));

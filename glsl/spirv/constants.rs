@@ -177,8 +177,6 @@ pub mod exact {
     pub const MARGIN: f32 = 0.25;
 }
 pub mod face_point {
-    pub const BEYOND: f32 = 1e-4;
-    pub const MAX_HOPS: u32 = 8;
     pub const ROUNDED: f32 = 1e-5;
 }
 pub mod face_sheet {
@@ -286,6 +284,10 @@ pub mod patch_normal {
     pub const FIRST_INWARDS: f32 = 1e-3;
     pub const MOST_INWARDS: f32 = 0.3;
 }
+pub mod patch_place {
+    pub const BEYOND: f32 = 1e-4;
+    pub const MAX_HOPS: u32 = 8;
+}
 pub mod push {
     pub const MAX_PUSH: f32 = 0.5;
 }
@@ -351,9 +353,7 @@ pub mod scene {
     pub const TRIMMED_LIST: u32 = 1;
 }
 pub mod seed_list {
-    pub const BEYOND: f32 = 1e-4;
     pub const LEAST_PLACES: f32 = 3.0;
-    pub const MAX_HOPS: u32 = 8;
     pub const MOST_PLACES: f32 = 32.0;
     pub const SPACING_PX: f32 = 1.0;
 }
