@@ -13,7 +13,7 @@
 //                                     c0 and c1: cosines between n within the slice and the horizons; 0 on a plane
 //
 // A pixel takes SLICES slices. The eight pixels of a square of 4 x 4 take different slices; pass `ambient_write` takes
-// a mean in which they count alike.
+// their mean.
 #include "scene.glsl"
 #include "view.glsl"
 #include "shade.glsl"

@@ -1,10 +1,9 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `ambient_write`: darkens each pixel by the hidden share of its sky. The share is the mean over the pixels of a
-// square of 7 x 7 that pass `ambient_find` has looked from. Their weights fall evenly from the middle, as of two means of
-// 4 x 4 one after the other: each of the eight pixels of such a square, which look along different slices, counts alike.
-// Pixels off the plane through this one have less weight. One thread a pixel.
+// Pass `ambient_write`: darkens each pixel by the hidden share of its sky. The share is the mean over the eight pixels
+// of a square of 4 x 4 that pass `ambient_find` has looked from, each along other slices. Pixels off the plane through
+// this one have less weight. One thread a pixel.
 #include "scene.glsl"
 #include "view.glsl"
 #include "shade.glsl"
@@ -40,14 +39,13 @@ void main() {
     vec2 slopes = vec2(slope(at, ivec2(1, 0), own.y), slope(at, ivec2(0, 1), own.y));
     float sum = 0.0;
     float weights = 0.0;
-    for (int i = 0; i < 28; ++i) {
-        ivec2 way = ivec2(i % 7, i / 7 << 1) - 3;
+    for (int i = 0; i < 8; ++i) {
+        ivec2 way = ivec2(i & 3, i >> 2 << 1) - 2;
         way.y += (at.x + at.y + way.x + way.y) & 1; // column and row of the pixel have an even sum
-        if (way.y > 3 || !is_in_picture(at + way)) continue;
+        if (!is_in_picture(at + way)) continue;
         vec2 there = imageLoad(ambient, at + way).xy;
         float off = abs(there.y - own.y - dot(slopes, vec2(way)));
-        vec2 tent = 4.0 - abs(vec2(way));
-        float weight = tent.x * tent.y * max(1.0 - off / (OFF * push.radius), 0.0);
+        float weight = max(1.0 - off / (OFF * push.radius), 0.0);
         sum += weight * there.x;
         weights += weight;
     }

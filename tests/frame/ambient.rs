@@ -85,41 +85,6 @@ fn a_wall_hides_what_it_hides_from_rays() {
     }
 }
 
-/// A wall that runs across the picture at a slant: what it hides has no grain. From two columns to the left and two to
-/// the right the hidden share goes on within a fiftieth, of which rounding to eight bits is a third.
-#[test]
-fn the_hidden_share_has_no_grain() {
-    let parts = [block([-1.0, -8.0, -1.0], [0.0, 8.0, 4.0]), block([-1.0, -8.0, -1.0], [8.0, 8.0, 0.0])];
-    let solids = folded(Op::Union, parts.into());
-    let camera = Camera {
-        eye: DVec3::new(14.0, 7.0, 12.0),
-        target: DVec3::ZERO,
-        up: DVec3::Z,
-        projection: Projection::Orthographic { height: 6.0 },
-        depth_range: (5.0, 60.0),
-        size: (320, 240),
-    };
-    let [before, after] = [None, Some(1.0)].map(|r| draw(&solids, settings(r), &camera, Style::Clay));
-    let hidden = |i: usize| {
-        let [b, a] = [&before, &after].map(|p| srgb::decoded(f64::from(p.colour[i][1]) / 255.0));
-        (1.0 - a / b) / STRENGTH
-    };
-    let is_floor = |i: usize| before.depth[i].is_finite() && before.normal[i][2] > 0.9;
-    let (mut judged, mut worst) = (0, 0.0f64);
-    for i in 4 * 320..236 * 320 {
-        // a pixel beside the crease is mixed, and its neighbours see a wall close by
-        let is_inside = (4..316).contains(&(i % 320)) && (i - 4..=i + 4).all(is_floor);
-        let is_inside = is_inside && [i - 1280, i - 640, i + 640, i + 1280].into_iter().all(is_floor);
-        if !is_inside || hidden(i) < 0.05 {
-            continue;
-        }
-        worst = worst.max((hidden(i) - 0.5 * (hidden(i - 2) + hidden(i + 2))).abs());
-        judged += 1;
-    }
-    println!("{judged} pixels, {worst}");
-    assert!(judged > 2000 && worst < 0.02, "{judged} pixels, {worst}");
-}
-
 /// A floor alone is as light as before, to a step of eight bits: nothing hides the sky.
 #[test]
 fn a_floor_sees_all_of_the_sky() {

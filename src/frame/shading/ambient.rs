@@ -1,7 +1,7 @@
 //! Passes `ambient_find` and `ambient_write`: less of the sky's light reaches points near other surfaces.
 //!
 //! ```text
-//!   resolved ──find──▶ ambient: hidden share of every second pixel ──write──▶ mean within 7 x 7 pixels ──▶ resolved
+//!   resolved ──find──▶ ambient: hidden share of every second pixel ──write──▶ mean within 4 x 4 pixels ──▶ resolved
 //! ```
 //!
 //! `find` reads `frame` and `resolved`, and writes `ambient`. `write` reads `frame`, `ambient` and `resolved`, and
