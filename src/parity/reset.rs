@@ -11,7 +11,8 @@ use crate::twin::emit::Draw;
 fn compare(gpu: &Gpu, draws_only: bool, given: &Frame, expected: &Frame) -> Result<(), Mismatch> {
     let count = (expected.patch_lists() * expected.draw_capacity) as usize;
     let old = [Draw { vertex_count: UNTOUCHED, ..Default::default() }].repeat(count);
-    let old_counters: Counters = bytemuck::cast([UNTOUCHED; size_of::<Counters>() / 4]);
+    let words = [UNTOUCHED; size_of::<Counters>() / 4];
+    let old_counters: Counters = bytemuck::pod_read_unaligned(bytemuck::cast_slice(&words));
     let (frame, draws) = (gpu.upload("frame", &[*given]), gpu.upload("draws", &old));
     let counters = gpu.upload("counters", &[old_counters]);
     let pass = Reset::new(gpu.device(), draws_only).unwrap();
