@@ -116,6 +116,7 @@ const NO_PASSES: &[&str] = &[
     "src/frame/common/border_list.rs",
     "src/frame/common/draw.rs",
     "src/frame/common/kernel.rs",
+    "src/frame/common/line_items.rs",
     "src/frame/common/room.rs",
     "src/frame/edges/capacities.rs",
     "src/frame/gaps/capacities.rs",
@@ -372,8 +373,9 @@ fn no_file_is_too_long_to_read() {
         path.extension().is_some_and(|e| kinds.iter().any(|kind| e == *kind))
     };
     let sources = ["src", "glsl", "tests", "build", "crates"].into_iter().flat_map(files).filter(written);
+    // the build writes glsl/spirv
     let text =
-        sources.filter(|p| !p.to_string_lossy().ends_with(".spv")).map(|p| (relative(&p), fs::read_to_string(p)));
+        sources.map(|p| (relative(&p), fs::read_to_string(p))).filter(|(name, _)| !name.starts_with("glsl/spirv/"));
     let long: Vec<_> = text.filter(|(_, text)| text.as_ref().unwrap().lines().count() > MOST_LINES).collect();
     let names: Vec<_> = long.iter().map(|(name, _)| name).collect();
     assert!(names.is_empty(), "longer than {MOST_LINES} lines: {names:?}");

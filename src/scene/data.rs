@@ -174,16 +174,11 @@ impl SceneData {
 
     /// The arrays of a cut for a close view. The shadows are those of the whole model.
     pub(crate) fn cut_from(whole: &Model, cut: &Cut, request: impl Into<SceneRequest>) -> Result<Self, UndrawnSolid> {
-        let data = Self::of(whole, &cut.model, (request.into(), &|_| ()), |part, _| cut.extents[part])?;
-        let mut data = data.complete();
+        let mut data = Self::of(whole, &cut.model, (request.into(), &|_| ()), |part, _| cut.extents[part])?.complete();
         for source in data.sources.iter_mut().filter(|source| source[1] > 0) {
             *source = cut.source_of(source[1] as usize - 1, whole);
         }
-        for (source, &(_, first)) in cut.sources.iter().zip(&data.parts) {
-            for (face, sides) in data.faces[first..].iter_mut().zip(&source.goes_on) {
-                face.flags |= sides << abi::FACE_GOES_ON;
-            }
-        }
+        cut.mark_ends(&mut data);
         Ok(data)
     }
 

@@ -36,6 +36,7 @@ mod lengths;
 mod light;
 mod living;
 mod look;
+mod many_draws;
 mod mesh_lines;
 mod meshes;
 mod met_lines;

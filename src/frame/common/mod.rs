@@ -5,6 +5,7 @@ pub(crate) mod draw;
 pub(crate) mod gate;
 pub(crate) mod kernel;
 pub(crate) mod layer_faces;
+pub(crate) mod line_items;
 pub(crate) mod reset;
 pub(crate) mod room;
 pub mod scan;

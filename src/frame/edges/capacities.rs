@@ -1,9 +1,9 @@
 //! How many chords of lines there is room for, and how many pixels to look at.
 
-use super::list::item_bytes;
 use crate::abi::constants::edges::LINE_SOLID;
 use crate::abi::{Chord, Counters, LineList};
 use crate::frame::capacities::grown;
+use crate::frame::common::line_items::item_bytes;
 use crate::frame::counts::{Counts, SMALLER, TooMany};
 
 /// Chords of a curved piece over the root of the picture's diagonal in pixels. Those of a part in full view, nist_pmi_2.stp,

@@ -17,8 +17,6 @@ use bytemuck::{Pod, Zeroable};
 
 /// Words of the draw and of how many there are.
 pub(crate) const DRAW_WORDS: u32 = 5;
-/// Bytes before the number of draws.
-pub(super) const COUNT_OFFSET: u64 = 16;
 
 /// The passes.
 pub(crate) struct Divide {

@@ -7,10 +7,10 @@
 //! Two steps, each with a thread for each entry of its list: few searches find a fold. Reads: everything that `Bindings`
 //! names. Writes: folds of `starts`; `best`, as pass `edge_line`.
 
-use super::list::List;
 use crate::abi::constants::line_list::{STEP_FOUND, STEP_LOOK};
 use crate::bindings::{Placed, SeenSolids};
 use crate::frame::common::kernel::Kernel;
+use crate::frame::common::line_items::LineItems;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource};
 use crate::scene::MeshBuffers;
 use crate::shaders::{self, TrimTest, constant};
@@ -33,7 +33,7 @@ pub(crate) struct Bindings<'a> {
     pub best: &'a Image,
     pub meshes: Option<&'a MeshBuffers>,
     pub solids: SeenSolids<'a>,
-    pub starts: &'a List,
+    pub starts: &'a LineItems,
     /// What the trim test reads, in its order.
     pub trim: &'a [Resource<'a>],
 }

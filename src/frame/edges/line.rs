@@ -9,10 +9,10 @@
 //! Each step has a thread for each entry of its list. Reads: everything that `Bindings` names. Writes: folds of `seeds`;
 //! `best`, cleared to 0 before.
 
-use super::list::List;
 use crate::abi::constants::line_list::{STEP_FOUND, STEP_LOOK, STEP_TEST};
 use crate::bindings::{Placed, Primitives, SeenSolids};
 use crate::frame::common::kernel::Kernel;
+use crate::frame::common::line_items::LineItems;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource, TexelBuffer};
 use crate::scene::{EdgeBuffers, MeshBuffers};
 use crate::shaders::{EDGE_LINE_PLAIN, TrimTest, constant};
@@ -46,8 +46,8 @@ pub(crate) struct Bindings<'a> {
     pub edges: &'a EdgeBuffers,
     pub best: &'a Image,
     pub meshes: Option<&'a MeshBuffers>,
-    pub points: &'a List,
-    pub seeds: &'a List,
+    pub points: &'a LineItems,
+    pub seeds: &'a LineItems,
     /// Read where no volume trims the scene.
     pub solids: SeenSolids<'a>,
     /// What the trim test reads, in its order.
@@ -103,7 +103,7 @@ impl Line {
         let seen = [b.visibility.into(), b.meshes_and_solids.into(), Resource::from(&e.face_keys), b.sources.into()];
         let edges = [b.chords, &e.piece_instances, &e.pieces, &e.lines, &e.own_faces].map(Resource::from);
         let meshes = b.meshes.map_or([b.frame; 3], |m| [&m.instances, &m.triangles, &m.positions]);
-        let step = |kernel: &Kernel, list: &List, (arguments, offset): (&Buffer, u64)| {
+        let step = |kernel: &Kernel, list: &LineItems, (arguments, offset): (&Buffer, u64)| {
             let resources: Vec<_> = [b.frame.into()]
                 .into_iter()
                 .chain(placed)

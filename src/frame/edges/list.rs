@@ -9,54 +9,18 @@
 //!
 //! Reads: everything that the bindings name. Writes: `chord_seeds`; `points`, `seeds`; `starts`; `counters`.
 
-use super::divide::COUNT_OFFSET;
-use crate::abi::LineList;
 use crate::abi::constants::fold_list::FOLD_ROWS;
-use crate::abi::constants::line_list::{FOUND_WORDS, LINE_ITEM_WORDS};
 use crate::bindings::Placed;
 use crate::frame::common::draw::Draw;
 use crate::frame::common::kernel::Kernel;
-use crate::frame::common::room::Room;
+use crate::frame::common::line_items::LineItems;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource};
 use crate::scene::EdgeBuffers;
 use crate::shaders::{self, Shader, constant};
 use bytemuck::{Pod, Zeroable};
-use std::mem::offset_of;
 
-/// A list of pixels, and of folds that were found from there.
-pub(crate) struct List {
-    /// [`LineList`], items, folds.
-    pub buffer: Buffer,
-    /// Items that there is room for.
-    pub capacity: u32,
-}
-
-/// Bytes of an item, with those of a fold that it may find.
-pub(super) const fn item_bytes(finds: bool) -> usize {
-    size_of::<u32>() * (LINE_ITEM_WORDS + if finds { FOUND_WORDS } else { 0 }) as usize
-}
-
-impl List {
-    pub(super) fn new(room: &Room<'_>, name: &str, capacity: u32, finds: bool) -> Result<Self, GpuError> {
-        let words = (size_of::<LineList>() + capacity as usize * item_bytes(finds)) / size_of::<u32>();
-        Ok(Self { buffer: room.indirect::<u32>(name, words as u32)?, capacity })
-    }
-
-    /// Before each drawing.
-    pub(super) fn clear(&self, cmd: &Commands<'_>) {
-        cmd.fill_first(&self.buffer, (size_of::<LineList>() / size_of::<u32>()) as u64, 0);
-    }
-
-    /// The arguments of a thread an item.
-    pub(super) fn of_items(&self) -> (&Buffer, u64) {
-        (&self.buffer, offset_of!(LineList, grid) as u64)
-    }
-
-    /// The arguments of a thread a fold.
-    pub(super) fn of_found(&self) -> (&Buffer, u64) {
-        (&self.buffer, offset_of!(LineList, found_grid) as u64)
-    }
-}
+/// Bytes before the number of draws.
+const COUNT_OFFSET: u64 = 16;
 
 /// Those of the constants that a shader has.
 fn of_shader(constants: &[(u32, u32)], shader: &Shader) -> Vec<(u32, u32)> {
@@ -106,8 +70,8 @@ pub(crate) struct OfChords {
 pub(crate) struct ChordBindings<'a> {
     pub frame: &'a Buffer,
     pub chords: &'a Buffer,
-    pub points: &'a List,
-    pub seeds: &'a List,
+    pub points: &'a LineItems,
+    pub seeds: &'a LineItems,
     pub counters: &'a Buffer,
     /// What pass `seed_list` wrote, where outlines are drawn.
     pub chord_seeds: &'a Buffer,
@@ -154,7 +118,7 @@ pub(crate) struct PixelBindings<'a> {
     pub visibility: &'a Image,
     pub meshes_and_solids: &'a Image,
     pub operand_uv: &'a Image,
-    pub starts: &'a List,
+    pub starts: &'a LineItems,
     pub counters: &'a Buffer,
 }
 

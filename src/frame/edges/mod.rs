@@ -23,6 +23,7 @@ mod solid_lines;
 
 pub(crate) use capacities::Capacities;
 
+use super::common::line_items::LineItems;
 use super::common::room::{COUNTED, Room};
 use super::shading::numbers::NUMBER_FORMAT;
 use super::shading::resolve;
@@ -109,9 +110,9 @@ pub(crate) struct EdgeStage {
     /// Beside which of them folds may be.
     chord_seeds: Buffer,
     /// Pixels that lines cover, and those beside which folds are looked for: from edges, and from pixels around.
-    points: list::List,
-    seeds: list::List,
-    fold_starts: list::List,
+    points: LineItems,
+    seeds: LineItems,
+    fold_starts: LineItems,
     /// Each pixel's best line.
     best: Image,
     /// Of lines of Boolean solids; where there are some.
@@ -149,9 +150,9 @@ impl EdgeStage {
             chords: room.structs::<Chord>("edge chords", room.capacities.edges.chords)?,
             draw: room.indirect::<u32>("edge draw", divide::DRAW_WORDS)?,
             chord_seeds: room.words("edge chord seeds", room.capacities.edges.chords)?,
-            points: list::List::new(room, "line points", room.capacities.edges.points, false)?,
-            seeds: list::List::new(room, "line seeds", room.capacities.edges.seeds, true)?,
-            fold_starts: list::List::new(room, "fold starts", room.capacities.edges.starts, true)?,
+            points: LineItems::new(room, "line points", room.capacities.edges.points, false)?,
+            seeds: LineItems::new(room, "line seeds", room.capacities.edges.seeds, true)?,
+            fold_starts: LineItems::new(room, "fold starts", room.capacities.edges.starts, true)?,
             best: room.image("best lines", BEST_FORMAT, COUNTED)?,
             solids: passes.solids.as_ref().map(|solids| solid_lines::Images::new(room, solids)).transpose()?,
         })
@@ -219,6 +220,8 @@ impl EdgeStage {
             passes.list.record(cmd, &bindings, v.image.size(), self.half_px);
         }
         if let Some((list, _)) = &passes.fold {
+            // the image of best lines stands in for that of operands
+            barrier::images(cmd, &[(&self.best, (Access::FRAGMENT_READ | r).discarded(), r)]);
             let placed = s.placed(frame.views);
             let parts = frame.solids().map(|solids| solids.resolve(frame));
             let bindings = list::PixelBindings {
@@ -243,11 +246,11 @@ impl EdgeStage {
         let (w, r) = WRITE_TO_READ;
         let parts = frame.solids().map(|solids| solids.resolve(frame));
         let solids = seen_solids(parts.as_ref(), &s.placed(frame.views), &self.best);
-        barrier::images(cmd, &[(&self.best, read.discarded(), Access::TRANSFER_WRITE)]);
+        barrier::images(cmd, &[(&self.best, (read | r).discarded(), Access::TRANSFER_WRITE)]);
         cmd.clear(&self.best, 0);
         barrier::images(cmd, &[(&self.best, Access::TRANSFER_WRITE, w)]);
         let trim = frame.trim_test();
-        let found = |list: &list::List| {
+        let found = |list: &LineItems| {
             barrier::buffers(cmd, &[(&list.buffer, w, r | w | Access::INDIRECT_READ)]);
             barrier::images(cmd, &[(&self.best, w, w)]);
         };

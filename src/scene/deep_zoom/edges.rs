@@ -72,6 +72,15 @@ impl Cut {
         let instance = self.sources[instance].instance;
         [whole.instances[instance].part as u32 + 1, instance as u32 + 1]
     }
+
+    /// Tells the faces of the cut at which of their sides the surface goes on.
+    pub(in crate::scene) fn mark_ends(&self, data: &mut SceneData) {
+        for (source, &(_, first)) in self.sources.iter().zip(&data.parts) {
+            for (face, sides) in data.faces[first..].iter_mut().zip(&source.goes_on) {
+                face.flags |= sides << abi::FACE_GOES_ON;
+            }
+        }
+    }
 }
 
 impl SceneData {
