@@ -61,7 +61,6 @@ const bool OWN_PATCHES_HIDE = true;
 #include "fold.glsl"
 #include "fold_beside.glsl"
 
-
 // Whether a face reaches a fold, of its domain or beyond a seam, where a pixel beside it sees the face at (u, v) of a
 // patch. Beyond a window of a deep zoom the trims are those at its side.
 bool reaches(FaceInstance fi, Face face, uint patch_instance, Patch patch_, vec2 fold, vec2 uv) {

@@ -29,7 +29,6 @@ layout(scalar, binding = 18) readonly buffer MeshInstances { MeshInstance mesh_i
 layout(scalar, binding = 19) readonly buffer Triangles { uint triangles[]; };
 layout(scalar, binding = 20) readonly buffer Positions { vec3 positions[]; };
 
-
 layout(scalar, push_constant) uniform Push {
     vec3 half_px; // of lines: full, thin, bold
     uint hidden;  // 1: hidden ones are drawn, too
