@@ -1,5 +1,5 @@
-// The farthest visible depths: of squares of square_side(frame) pixels a side, row by row, then of tiles, then of blocks of
-// tiles. Needs scene.glsl and tiles.glsl. Twin: src/twin/occlusion.rs.
+// The farthest visible depths: of squares of square_side(frame) pixels a side, row by row, then of tiles, then of
+// blocks of tiles. Needs scene.glsl and tiles.glsl. Twin: src/twin/occlusion.rs.
 #ifndef FARTHEST_GLSL
 #define FARTHEST_GLSL
 

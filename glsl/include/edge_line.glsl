@@ -1,5 +1,5 @@
 // Pass `edge_line`: each pixel's best line. Where several cover it, the one that is seen, then the one that covers most
-// of it, then the last one counts: the same whatever the order in which they are drawn.
+// of it, then the last one counts: the same whatever the order of the lists.
 //
 //    ●━━━━━━━━━━━━●   chord        distance of the pixel's centre ─▶ share of the pixel
 //        │            its point nearest to the centre ─▶ parameter ─▶ the exact point of the edge ─▶ seen, or hidden

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `depth_pyramid`: the farthest visible depth in each square of few pixels, in each tile, and in each block of tiles. One workgroup a block, one thread a tile. Twin: src/twin/occlusion.rs.
+// Pass `depth_pyramid`: the farthest visible depth in each square of few pixels, in each tile, and in each block of
+// tiles. One workgroup a block, one thread a tile. Twin: src/twin/occlusion.rs.
 #include "scene.glsl"
 #include "tiles.glsl"
 #include "depth_pyramid.glsl"

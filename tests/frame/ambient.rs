@@ -72,12 +72,10 @@ fn a_wall_hides_what_it_hides_from_rays() {
             if !(0.1..2.0).contains(&point.x) || point.y.abs() > 2.0 {
                 continue;
             }
-            // colours are rounded to eight bits
-            let light = |p: &Picture, off: f64| srgb::decoded((f64::from(p.colour[i][1]) + off) / 255.0);
-            let hidden_at = |off: f64| (1.0 - light(&after, -off) / light(&before, off)) / STRENGTH;
-            let [low, hidden, high] = [-0.5, 0.0, 0.5].map(hidden_at);
+            let [b, a] = [&before, &after].map(|p| srgb::decoded(f64::from(p.colour[i][1]) / 255.0));
+            let hidden = (1.0 - a / b) / STRENGTH;
             let (least, most) = (hidden_by_wall(point.x / (0.75 * radius)), hidden_by_wall(point.x / radius));
-            off = [off[0].max(least - high), off[1].max(low - most)];
+            off = [off[0].max(least - hidden), off[1].max(hidden - most)];
             seen = [seen[0].max(hidden), seen[1].min(hidden)];
             judged += 1;
         }

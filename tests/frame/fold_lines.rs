@@ -63,8 +63,8 @@ fn a_fold_beyond_another_trim_is_no_line() {
     assert_silent(renderer);
 }
 
-/// A cylinder so near that windows are cut out of it, of which half a pixel is seen beyond a place at this angle, between
-/// the centres of pixels: the outline's wrong pixels.
+/// The outline's wrong pixels, of a cylinder so near that windows are cut out of it. Half a pixel of the cylinder is seen
+/// beyond the place at this angle. No pixel's centre lies in that half.
 fn faults_close_beyond(angle: f64) -> (usize, usize) {
     let model = shapes::cylinder();
     let (radius, height) = shapes::CYLINDER;
@@ -104,8 +104,8 @@ fn an_outline_close_beyond_a_window_is_a_line_in_a_deep_zoom() {
     assert_eq!(faults_close_beyond(FRAC_PI_4), (0, 0));
 }
 
-/// A sheet whose picture is Whitney's cusp, (x³ - y x, y): two folds meet in the middle of the picture, of which the sheet
-/// hides one. Beyond the cusp it is seen nearly edge-on, and folds nowhere.
+/// The picture of this sheet is Whitney's cusp, (x³ - y x, y). Two folds meet in the middle of the picture. The sheet
+/// hides one of them. Beyond the cusp the sheet is seen nearly edge-on, and folds nowhere.
 #[test]
 fn an_outline_ends_at_its_cusp() {
     let (x, x3, y) = ([-1.0, -1.0 / 3.0, 1.0 / 3.0, 1.0], [-1.0, 1.0, -1.0, 1.0], [-1.0, 1.0]);
