@@ -1,5 +1,6 @@
 """The judge by the kernel's rays, with made-up faces: no file is read. Skipped without the kernel's package."""
 
+import math
 import unittest
 
 from report.sections import surfaces
@@ -57,6 +58,30 @@ class Edges(unittest.TestCase):
         image = numpy.array([[50, 40, 60]])
         truth, widened = {(x, 0): [5] for x in range(3)}, {(x, 0): 4 for x in range(3)}
         self.assertEqual(kernel.readings(image, {4: 40, 5: 50, 6: 60}, truth, widened), [1, 1, 1])
+
+
+class Hidden(unittest.TestCase):
+    def test_a_face_that_another_just_hides_is_as_far_off_as_its_border(self):
+        # face 1 covers the left of the picture, and hides face 2, which ends before it does
+        class Covered(Strips):
+            def depth(self, x, y):
+                return 3.0 if x < 9.8 else math.inf
+
+            def before(self, x, y, depth):
+                return [face for face, at, end in ((1, 3.0, 9.8), (2, 3.1, 9.7)) if x < end and at < depth]
+
+        rays = Covered([(0, 1), (9.8, -1)])
+        image = numpy.full((20, 20), 10)
+        image[:, 10:] = 0
+        names = {1: 10, 2: 20, -1: 0}
+        # the picture shows face 2 at a pixel of the background
+        image[4, 10] = 20
+        found = kernel.judged(rays, image, names, {(10, 4)}, 20, 60)
+        self.assertEqual((found["beyond"], found["uncovered"], found["worst_px"]), (0, 1, 1.0))
+        # and at one that face 1 hides where face 2 goes on behind it
+        image[4, 9] = 20
+        found = kernel.judged(rays, image, names, {(9, 4)}, 20, 60)
+        self.assertEqual((found["beyond"], found["uncovered"], found["worst_px"]), (1, 0, 16.0))
 
 
 class Distances(unittest.TestCase):

@@ -3,7 +3,7 @@
     job      model, seconds (for the rays of the truth, and for the searches of each picture),
              views: {name: {camera, pictures: {name: {path, own}}}}
     results  {view, boundary, sampled, alone, widened, edge_mm,
-             pictures: {name: {worst_px, p999_px, off, searched, beyond, distances_px, readings}}}, one a view
+             pictures: {name: {worst_px, p999_px, off, searched, beyond, uncovered, distances_px, readings}}}, one a view
 
 Sampled are the pixels at changes of face, found by halving the cells of a grid whose corners see different faces,
 cell by cell in random order until the time is up. Where a picture shows another face than the ray at a pixel's
@@ -11,6 +11,10 @@ centre, the picture's face is looked for around it: the least distance at which 
 `p999_px` is the error that one in a thousand of the boundary's pixels exceeds. Errors are distances of the list
 below, rounded up; beyond the last one, a pixel counts as `beyond`, and as twice that distance. `distances_px` are those
 of all pixels searched, ascending.
+
+A face that another one just hides may be seen beside it where the border of one of the two is a little off. No ray sees
+it then. Its error is the least distance at which a ray meets it, hidden or not, in front of what the ray at the pixel's
+centre meets: so far one of the borders is off. Such pixels are counted as `uncovered`.
 
 The kernel counts a point as one of a face if it is within the tolerance of an edge, too. That tolerance bounds the
 distance between an edge's curves at the same parameter: curves in one place that run at other speeds make it wide.
@@ -78,6 +82,15 @@ class View:
     def centre(self, pixel):
         return self.at(pixel[0] + 0.5, pixel[1] + 0.5)
 
+    def depth(self, x, y):
+        """Where the ray through a point meets the first face; infinite if it meets none. None: faces that others hide
+        are not known."""
+        return None
+
+    def before(self, x, y, depth):
+        """Numbers of the faces that the ray through a point meets in front of a depth, hidden ones among them."""
+        return []
+
 
 class Rays(View):
     """The camera's rays against faces, which stand in tiles of the picture."""
@@ -112,20 +125,31 @@ class Rays(View):
 
     def at(self, x, y):
         """Numbers of the faces that the ray through a point meets first: several where faces meet."""
+        hits, wide = self.hits(x, y)
+        first, front = self.first(hits), self.first(wide)
+        if front[0] != first[0]:
+            self.widened[x, y] = front[0]
+        return first
+
+    def depth(self, x, y):
+        return min((depth for depth, _ in self.hits(x, y)[0]), default=math.inf)
+
+    def before(self, x, y, depth):
+        return [number for at, number in self.hits(x, y)[0] if at < depth]
+
+    def hits(self, x, y):
+        """Depths and numbers of all faces that the ray through a point meets, by their curves, and within the
+        tolerances of their edges."""
         faces = self.tiles.get((int(x) // TILE, int(y) // TILE), [])
         if not faces:
-            return [-1]
+            return [], []
         line = gp_Lin(gp_Pnt(*map(float, self.eye)), gp_Dir(*map(float, self.ray(x, y))))
         wide = [(number, *hit) for number in faces for hit in self.met(number, line, True)]
         # on an edge, or only within its tolerance
         doubted = {number for number, _, state in wide if state == TopAbs_ON}
         hits = [(depth, number) for number, depth, _ in wide if number not in doubted]
         hits += [(depth, number) for number in doubted for depth, _ in self.met(number, line, False)]
-        first = self.first(hits)
-        front = self.first([(depth, number) for number, depth, _ in wide])
-        if front[0] != first[0]:
-            self.widened[x, y] = front[0]
-        return first
+        return hits, [(depth, number) for number, depth, _ in wide]
 
     def met(self, number, line, wide):
         """Depths and states at which a line meets a face, with the tolerances of its edges or without."""
@@ -214,7 +238,7 @@ def named(rays, images):
 
 def unnamed(rays, pixel, names):
     """The nearest face beside a pixel's centre that has no name; None if there is none."""
-    return next((faces[0] for _, faces in around(rays, pixel, SLIVER) if faces[0] not in names), None)
+    return next((faces[0] for _, faces in around(rays.at, pixel, SLIVER) if faces[0] not in names), None)
 
 
 def judged(rays, image, names, wrong, count, seconds):
@@ -222,13 +246,19 @@ def judged(rays, image, names, wrong, count, seconds):
     name = lambda face: names.get(face) if names is not None else face
     order = list(wrong)
     random.Random(2).shuffle(order)
-    end, found = time.monotonic() + seconds, []
+    end, found, uncovered = time.monotonic() + seconds, [], 0
     for pixel in order[:SEARCHES]:
         if time.monotonic() > end:
             break
         drawn = int(image[pixel[1], pixel[0]])
-        found.append(shift(rays, pixel, lambda faces: any(name(face) == drawn for face in faces)))
+        right = lambda faces: any(name(face) == drawn for face in faces)
+        distance = shift(rays, pixel, right)
+        if math.isinf(distance):
+            distance = hidden_shift(rays, pixel, right)
+            uncovered += not math.isinf(distance)
+        found.append(distance)
     result = {"off": len(wrong), "searched": len(found), "beyond": sum(math.isinf(s) for s in found)}
+    result["uncovered"] = uncovered
     found = sorted(min(s, 2 * DISTANCES[-1]) for s in found)
     result["distances_px"] = found
     result["worst_px"] = found[-1] if found else 0.0
@@ -238,18 +268,29 @@ def judged(rays, image, names, wrong, count, seconds):
     return result
 
 
-def around(rays, pixel, most):
-    """Distances up to the most, and the faces that a ray meets there."""
+def around(seen, pixel, most):
+    """Distances up to the most, and the faces that are seen at points there."""
     for distance in (d for d in DISTANCES if d <= most):
         for k in range(DIRECTIONS):
             turn = 2 * math.pi * k / DIRECTIONS
             x, y = pixel[0] + 0.5 + distance * math.cos(turn), pixel[1] + 0.5 + distance * math.sin(turn)
-            yield distance, rays.at(x, y)
+            yield distance, seen(x, y)
+
+
+def least(seen, pixel, right):
+    """The least of the distances at which the right face is seen; infinite beyond them."""
+    return next((distance for distance, faces in around(seen, pixel, DISTANCES[-1]) if right(faces)), math.inf)
 
 
 def shift(rays, pixel, right):
-    """The least of the distances at which a ray meets the right face; infinite beyond them."""
-    return next((distance for distance, faces in around(rays, pixel, DISTANCES[-1]) if right(faces)), math.inf)
+    """The least of the distances at which a ray meets the right face first."""
+    return least(rays.at, pixel, right)
+
+
+def hidden_shift(rays, pixel, right):
+    """The least of the distances at which a ray meets it at all, in front of what is seen at the pixel's centre."""
+    depth = rays.depth(pixel[0] + 0.5, pixel[1] + 0.5)
+    return math.inf if depth is None else least(lambda x, y: rays.before(x, y, depth), pixel, right)
 
 
 def readings(image, names, truth, widened):

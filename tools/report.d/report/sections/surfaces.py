@@ -59,7 +59,8 @@ the others from the first byte read to the first frame, without the start of the
 is a frame of a turn by three degrees each: of ours with the picture read back to host memory, of the others until it
 is shown. *Standing* is a frame of a view that stands, as a viewer draws it; of ours it is one frame a round. Errors
 are judged by the kernel's rays against surfaces and trims, at pixels where the face changes; one in a thousand of them
-exceeds *99.9 %*. One picture of the triangles is judged for all viewers that draw them.
+exceeds *99.9 %*. A face that another one just hides is seen beside it where a border is off: by that distance. One
+picture of the triangles is judged for all viewers that draw them.
 
 The others draw one sample a pixel. Our first picture has ambient occlusion and smooth borders, as the program draws it
 without options, and our frames have smooth borders, passes `borders` and `show`. *Plain first picture* is ours without
