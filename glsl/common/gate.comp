@@ -13,4 +13,5 @@ void main() {
     counters.plain_draws = 0u;
     counters.trimmed_draws = 0u;
     counters.corner_draws = 0u;
+    counters.trimmed_corner_draws = 0u;
 }

@@ -25,10 +25,11 @@ void main() {
         counters.plain_draws = 0u;
         counters.trimmed_draws = 0u;
         counters.corner_draws = 0u;
+        counters.trimmed_corner_draws = 0u;
     }
     if (draw == 0u && !DRAWS_ONLY) {
         counters = Counters(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u,
-                            0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+                            0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
     }
-    if (draw < (2u + frame.corner_list) * frame.draw_capacity) draws[draw] = Draw(0u, 1u, 0xffffffffu, 0u);
+    if (draw < (2u + frame.corner_lists) * frame.draw_capacity) draws[draw] = Draw(0u, 1u, 0xffffffffu, 0u);
 }

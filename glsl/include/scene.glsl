@@ -171,7 +171,7 @@ struct Frame {
     uint encode_srgb;   // 1: the shader encodes sRGB for the colour target; ENCODE_SUMMED
     uint sub_patch_capacity;
     uint draw_capacity; // of each list of draws
-    uint corner_list;   // 1: plain patches of one segment a side have a list of their own
+    uint corner_lists;  // of patches of one segment a side: 0, 1: of plain ones, 2: of trimmed ones, too
     uint row_capacity;
     uint intercept_capacity;
     uint gap_candidate_capacity;
@@ -215,10 +215,11 @@ const uint ENCODE_SUMMED = 2u;
 struct Counters {
     uint plain;        // sub-patches without and with a trim test
     uint trimmed;
-    uint corners;      // of those without a test: drawn by their corners (visibility_corners.vert)
+    uint corners;      // of both: drawn by their corners (visibility_corners.vert)
     uint plain_draws;
     uint trimmed_draws;
     uint corner_draws;
+    uint trimmed_corner_draws;
     uint rows;
     uint segments;
     uint wanted_rows;  // rows before they were cut to the capacity
@@ -301,7 +302,9 @@ const uint CORNER_VERTICES = 6u; // of a patch that is drawn by its corners: two
 // Lists of sub-patches, and of draws.
 const uint PLAIN_LIST = 0u;
 const uint TRIMMED_LIST = 1u;
-const uint CORNER_LIST = 2u; // only with Frame.corner_list: plain patches of one segment a side
+// as many of these as Frame.corner_lists says: patches of one segment a side
+const uint CORNER_LIST = 2u;
+const uint TRIMMED_CORNER_LIST = 3u;
 const uint MAX_ROWS = 65536u;  // scan lines of one strip
 
 // All faces of an operand determine a ray's way through it, so they do not end at the far plane.

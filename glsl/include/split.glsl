@@ -61,10 +61,10 @@ void write(uint place, uint patch_instance, uint patch_) {
     if (most != uvec2(1u)) most = max(most, 2u);
     uint sub_patches = drawn ? splits.x * splits.y : 0u;
     bool plain = side_of(patches[patch_].shape) == SIDE_INSIDE;
-    bool by_corners = plain && segments == uvec2(1u) && frame.corner_list != 0u;
-    uint list = by_corners ? CORNER_LIST : plain ? PLAIN_LIST : TRIMMED_LIST;
+    bool by_corners = segments == uvec2(1u) && frame.corner_lists > (plain ? 0u : 1u);
+    uint list = (by_corners ? CORNER_LIST : PLAIN_LIST) + (plain ? 0u : 1u);
     uint vertices = sub_patches * (by_corners ? CORNER_VERTICES : (most.x + 1u) * (most.y + 1u));
-    for (uint k = 0u; k < 2u + frame.corner_list; ++k) {
+    for (uint k = 0u; k < 2u + frame.corner_lists; ++k) {
         uint slot = k * frame.listed_patch_instances + place;
         sub_patch_counts[slot] = k == list ? sub_patches : 0u;
         vertex_counts[slot] = k == list ? vertices : 0u;

@@ -12,6 +12,9 @@ vec4 unmixed(vec4 seen) {
     return vec4(frame.background.rgb * opacity, opacity);
 }
 
+// The same of what later passes made of it: in mixed pixels, colour times opacity and the negative opacity.
+vec4 shown(vec4 seen) { return seen.a < 0.0 ? vec4(seen.rgb, -seen.a) : unmixed(seen); }
+
 vec4 unmixed_at(ivec2 at) { return unmixed(imageLoad(resolved, at)); }
 
 #endif

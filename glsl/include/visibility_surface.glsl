@@ -15,7 +15,7 @@ layout(scalar, binding = 0) uniform Frames { Frame frame; };
 
 #include "placed.glsl"
 #include "patch.glsl"
-#include "push.glsl"
+#include "border_vertex.glsl"
 #ifdef LINK_BINDING
 #include "link.glsl"
 #endif
@@ -28,12 +28,6 @@ layout(location = 4) patch in uvec2 in_splits;
 layout(location = 5) patch in uvec4 in_edges;
 layout(location = 0) out vec2 out_uv; // of the patch
 layout(location = 1) flat out uint out_patch_instance;
-
-// Borders are pushed outwards by at most MAX_PUSH of a patch's width, by at most a segment, and only as far as the
-// surface stays within this share of deviation_px of its tangent. Beside a silhouette, even a step of many pixels does
-// not move the border across itself, and triangles of that length would be off by pixels. Triangles at the border then
-// deviate by at most (1 + sqrt(MAX_BEND) / 2)^2 deviation_px along the step.
-const float MAX_BEND = 0.25;
 
 float along_side(float x, uint place, uint splits, uint edge) {
     uint n = edge / splits;
@@ -83,35 +77,7 @@ void main() {
         right = right && (borders & BORDER_U1) != 0u;
         bottom = bottom && (borders & BORDER_V0) != 0u;
         top = top && (borders & BORDER_V1) != 0u;
-        if (left || right || bottom || top) {
-            vec4 q = to_pixel(view, vec4(jet.point, 1.0));
-            vec4 qu = to_pixel(view, vec4(jet.du, 0.0));
-            vec4 qv = to_pixel(view, vec4(jet.dv, 0.0));
-            vec2 pu, pv;
-            pixel_speeds(frame, q, qu, qv, pu, pv);
-            vec2 push = border_push(frame, pu, pv);
-            // at the end of a shared side, both of its patches must push by the same bits: along that side
-            bool shared_u = (uv.x == 0.0 || uv.x == 1.0) && !(left || right);
-            bool shared_v = (uv.y == 0.0 || uv.y == 1.0) && !(bottom || top);
-            if (shared_u) push.y = 2.0 * frame.gap_radius_px / max(length(pv), 1e-12);
-            if (shared_v) push.x = 2.0 * frame.gap_radius_px / max(length(pu), 1e-12);
-            push = min(min(vec2(MAX_PUSH), 1.0 / segments_across(uv)), push);
-            vec2 step_ = vec2(right ? push.x : left ? -push.x : 0.0, top ? push.y : bottom ? -push.y : 0.0);
-            vec3 there = patch_jet(patch_.first, patch_.shape, uv + step_).point;
-            vec4 straight = q + step_.x * qu + step_.y * qv;
-            vec4 bent = to_pixel(view, vec4(there, 1.0));
-            float near = frame.perspective != 0u ? frame.near : 0.0;
-            if (min(straight.w, bent.w) > near) {
-                float bend = distance(straight.xy / straight.w, bent.xy / bent.w);
-                float most = MAX_BEND * frame.deviation_px;
-                if (bend > most) {
-                    step_ *= sqrt(most / bend);
-                    there = patch_jet(patch_.first, patch_.shape, uv + step_).point;
-                }
-            }
-            uv += step_;
-            jet.point = there;
-        }
+        push_border(patch_, view, bvec4(left, bottom, right, top), segments_across(uv), uv, jet);
     }
     vec4 q = to_pixel(view, vec4(jet.point, 1.0));
     gl_Position = DRAWS_OPERANDS ? to_clip_unending(frame, q) : to_clip(frame, q);

@@ -28,7 +28,7 @@ void main() {
         frame.listed_patch_instances = patch_instances;
         frame.run_count = part_starts[2u * push.parts] - patch_instances;
         dispatches.threads = grid_of((patch_instances + THREADS - 1u) / THREADS);
-        uint scanned = (2u + frame.corner_list) * patch_instances + 1u;
+        uint scanned = (2u + frame.corner_lists) * patch_instances + 1u;
         dispatches.blocks = grid_of((scanned + SCAN_BLOCK - 1u) / SCAN_BLOCK);
         dispatches.scanned = scanned;
         if (push.list != LIST_ALL) counters.listed_patches += patch_instances;

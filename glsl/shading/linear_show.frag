@@ -14,6 +14,5 @@ layout(binding = 1, rgba32f) readonly uniform image2D resolved;
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
-    vec4 seen = imageLoad(resolved, at);
-    write_mean(seen.a < 0.0 ? vec4(seen.rgb, -seen.a) : unmixed(seen));
+    write_mean(shown(imageLoad(resolved, at)));
 }

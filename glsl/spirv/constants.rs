@@ -77,6 +77,9 @@ pub mod border_reach {
 pub mod border_sliver {
     pub const FAR_ROWS: u32 = 7;
 }
+pub mod border_vertex {
+    pub const MAX_BEND: f32 = 0.25;
+}
 pub mod bound {
     pub const DEPTH_SHARE: f32 = 1.5;
 }
@@ -350,6 +353,7 @@ pub mod scene {
     pub const STYLE_TECHNICAL: u32 = 5;
     pub const STYLE_ZEBRA: u32 = 3;
     pub const TAU_HIDDEN: u32 = 0x8000;
+    pub const TRIMMED_CORNER_LIST: u32 = 3;
     pub const TRIMMED_LIST: u32 = 1;
 }
 pub mod seed_list {
@@ -485,9 +489,6 @@ pub mod view {
 }
 pub mod visibility_corners {
     pub const CORNER_ORDER: u32 = 0xe58;
-}
-pub mod visibility_surface {
-    pub const MAX_BEND: f32 = 0.25;
 }
 pub mod visibility_trimmed {
     pub const GROWTH: f32 = 0.25;

@@ -9,7 +9,8 @@
 //
 // A draw starts with the first sub-patch of its interval, so none holds more than draw_vertices and
 // one sub-patch more. If one draw covers a list, one thread writes it: millions of atomics on one word take longer than
-// all else. A vertex of a draw is a sub-patch, or a corner of one in list CORNER_LIST. Twin: src/twin/emit.rs.
+// all else. A vertex of a draw is a sub-patch, or a corner of one in a list of those that are drawn by their
+// corners. Twin: src/twin/emit.rs.
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
@@ -37,21 +38,23 @@ uint vertices_of(uint list) {
 }
 
 // Vertices of a draw for each of its sub-patches.
-uint vertices_of_one(uint list) { return list == CORNER_LIST ? CORNER_VERTICES : 1u; }
+uint vertices_of_one(uint list) { return list >= CORNER_LIST ? CORNER_VERTICES : 1u; }
 
 // `used` draws of the list are not empty, or more.
 void use_draws(uint list, uint used) {
     if (list == PLAIN_LIST) atomicMax(counters.plain_draws, used);
     else if (list == TRIMMED_LIST) atomicMax(counters.trimmed_draws, used);
-    else atomicMax(counters.corner_draws, used);
+    else if (list == CORNER_LIST) atomicMax(counters.corner_draws, used);
+    else atomicMax(counters.trimmed_corner_draws, used);
 }
 
 // The first thread alone: the counters, and the draws of lists that one draw covers.
 void count_all() {
     uint n = frame.listed_patch_instances;
-    uint lists = 2u + frame.corner_list;
+    uint lists = 2u + frame.corner_lists;
     uint total = sub_patch_starts[lists * n];
-    uint trimmed = sub_patch_starts[2u * n] - sub_patch_starts[n];
+    uint trimmed_by_corners = frame.corner_lists > 1u ? total - sub_patch_starts[3u * n] : 0u;
+    uint trimmed = sub_patch_starts[2u * n] - sub_patch_starts[n] + trimmed_by_corners;
     counters.plain += total - trimmed;
     counters.trimmed += trimmed;
     counters.corners += total - sub_patch_starts[2u * n];
@@ -73,7 +76,7 @@ void main() {
     if (place == 0u) count_all();
     uint list = 0u;
     uint slot = place;
-    while (list < 1u + frame.corner_list && sub_patch_starts[slot + 1u] == sub_patch_starts[slot]) {
+    while (list < 1u + frame.corner_lists && sub_patch_starts[slot + 1u] == sub_patch_starts[slot]) {
         ++list;
         slot += n;
     }

@@ -39,7 +39,7 @@ pub struct Frame {
     pub encode_srgb: u32,
     pub sub_patch_capacity: u32,
     pub draw_capacity: u32,
-    pub corner_list: u32,
+    pub corner_lists: u32,
     pub row_capacity: u32,
     pub intercept_capacity: u32,
     pub gap_candidate_capacity: u32,
@@ -68,9 +68,9 @@ pub struct Frame {
 
 #[cfg(any(test, feature = "baselines"))]
 impl Frame {
-    /// Lists of sub-patches, and of draws: plain, trimmed, and patches that are drawn by their corners, if they have one.
+    /// Lists of sub-patches, and of draws: plain, trimmed, and those of patches that are drawn by their corners.
     pub fn patch_lists(&self) -> u32 {
-        2 + self.corner_list
+        2 + self.corner_lists
     }
 }
 
@@ -96,6 +96,7 @@ pub struct Counters {
     pub plain_draws: u32,
     pub trimmed_draws: u32,
     pub corner_draws: u32,
+    pub trimmed_corner_draws: u32,
     pub rows: u32,
     pub segments: u32,
     pub wanted_rows: u32,

@@ -56,7 +56,7 @@ pub struct SceneOptions {
     /// `visibility untested` shows the cost of the tests. Only in scenes with nothing but patches, some of them
     /// trimmed.
     pub untested: bool,
-    /// Plain patches of one segment a side are drawn by their corners, or not, in a scene of any size. `None`: in
-    /// scenes of many patches.
+    /// Patches of one segment a side are drawn by their corners, or not, in a scene of any size. `None`: in scenes of
+    /// many patches.
     pub corners: Option<bool>,
 }

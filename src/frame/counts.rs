@@ -12,8 +12,8 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Counts {
     pub patch_instances: u32,
-    /// Plain patches of one segment a side have a list of their own.
-    pub corner_list: bool,
+    /// Lists of patches of one segment a side: of plain ones, and of trimmed ones.
+    pub corner_lists: u32,
     /// Groups of faces of placed parts.
     pub placed_groups: u32,
     pub cells: u32,
@@ -78,7 +78,7 @@ impl Counts {
         let by_view = !matches!(data.trim_way(), None | Some(TakenWay::Exact)) || data.has_lines();
         Self {
             patch_instances: data.patch_instances.len() as u32,
-            corner_list: data.draws_corners(),
+            corner_lists: data.corner_lists(),
             placed_groups: data.placed_groups(),
             cells: data.cell_instances.len() as u32,
             bins: data.bin_count,
@@ -152,7 +152,7 @@ impl Counts {
 
     /// Lists of sub-patches, and of draws: plain, trimmed, and patches that are drawn by their corners.
     pub(crate) fn patch_lists(self) -> u32 {
-        2 + u32::from(self.corner_list)
+        2 + self.corner_lists
     }
 
     /// The crossings of rays with operands are stored.

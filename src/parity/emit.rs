@@ -2,7 +2,7 @@
 
 use super::chain::{Chain, UNTOUCHED_SUB_PATCH};
 use super::harness::{Gpu, Mismatch, same};
-use super::shapes::{cases, three_lists};
+use super::shapes::{cases, four_lists};
 use crate::abi::{Counters, Frame, PatchRun};
 use crate::frame::tessellation::emit::{Bindings, Emit};
 use crate::twin;
@@ -54,15 +54,15 @@ fn parity() {
     }
 }
 
-/// With a list of patches that are drawn by their corners: one draw a list, many, and no room.
+/// With lists of patches that are drawn by their corners: one draw a list, many, and no room.
 #[test]
-fn parity_of_three_lists() {
+fn parity_of_four_lists() {
     let gpu = Gpu::new();
-    let (case, taus) = three_lists();
+    let (case, taus) = four_lists();
     let (chain, n) = (Chain::of_taus(&case, &taus), taus.len());
-    let corners = chain.sub_patch_starts[3 * n] - chain.sub_patch_starts[2 * n];
+    let corners = chain.sub_patch_starts[4 * n] - chain.sub_patch_starts[2 * n];
     assert!(corners > 5, "{corners} patches drawn by their corners");
-    let total = chain.sub_patch_starts[3 * n];
+    let total = chain.sub_patch_starts[4 * n];
     for (draw_vertices, sub_patch_capacity) in
         [(u32::MAX, 1 << 16), (5000, 1 << 16), (25, 1 << 16), (u32::MAX, total - 3)]
     {
@@ -71,7 +71,7 @@ fn parity_of_three_lists() {
     }
     // later corner patches come one draw later
     let frame = Frame { draw_vertices: 25, ..case.frame };
-    let slot = (2 * n..3 * n).find(|slot| chain.split.sub_patch_counts[*slot] > 0).unwrap();
+    let slot = (2 * n..4 * n).find(|slot| chain.split.sub_patch_counts[*slot] > 0).unwrap();
     let mut other = chain.clone();
     other.vertex_starts[slot + 1..].iter_mut().for_each(|start| *start += frame.draw_vertices);
     assert_eq!(compare(&gpu, &frame, &other, &chain).unwrap_err().buffer, "draws");

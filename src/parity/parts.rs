@@ -48,8 +48,8 @@ fn compare(gpu: &Gpu, list: u32, given: &Parts, expected: &Parts) -> Result<(), 
     let n = expected.in_sight.len();
     let push = PartList { parts: n as u32, list };
     let old = Counters { hidden_parts: 1 << 20, listed_patches: 5, plain: 7, ..Counters::default() };
-    let corner_list = u32::from(list == LIST_APPEARING);
-    let old_frame = Frame { most_groups: 3, near: 0.5, corner_list, ..Frame::default() };
+    let corner_lists = if list == LIST_APPEARING { 2 } else { 0 };
+    let old_frame = Frame { most_groups: 3, near: 0.5, corner_lists, ..Frame::default() };
     let (frame, counters) = (gpu.upload("frame", &[old_frame]), gpu.upload("counters", &[old]));
     // one more of each, which no pass touches: there may be no part in sight
     let parts_in_sight = gpu.upload("parts in sight", &[given.in_sight.as_slice(), &[PartInSight::default()]].concat());

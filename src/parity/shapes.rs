@@ -196,16 +196,17 @@ pub(super) fn cases() -> Vec<Case> {
     cases
 }
 
-/// The first case with a list of corner patches, and segments that give all three lists members: one segment for most
+/// The first case with lists of corner patches, and segments that give all four lists members: one segment for most
 /// faces, many for the others, and some patches out of sight.
 #[cfg(feature = "headless")]
-pub(super) fn three_lists() -> (Case, Vec<u32>) {
+pub(super) fn four_lists() -> (Case, Vec<u32>) {
     let mut case = cases().swap_remove(0);
-    case.frame.corner_list = 1;
+    case.frame.corner_lists = 2;
     // the drop and the second ball are plain, the second plate is trimmed
     let tau = |(nth, face): (usize, &u32)| match (nth % 7, face % 3) {
         (0, _) => 0,
         (_, 1) => 3 | 70 << 16,
+        _ if nth % 40 == 3 => 3 | 2 << 16,
         _ => 1 | 1 << 16,
     };
     let taus = case.data.patch_instances.iter().enumerate().map(tau).collect();

@@ -2,7 +2,7 @@
 
 use super::chain::{Chain, UNTOUCHED};
 use super::harness::{Gpu, Mismatch, SceneBuffers, same};
-use super::shapes::{cases, three_lists};
+use super::shapes::{cases, four_lists};
 use super::{Case, Random, cages};
 use crate::abi::{Factors, Frame};
 use crate::frame::tessellation::split::Split;
@@ -72,18 +72,20 @@ fn parity_of_shared_sides() {
     gpu.finish();
 }
 
-/// With a list of patches that are drawn by their corners.
+/// With lists of patches that are drawn by their corners: of plain ones, of trimmed ones.
 #[test]
-fn parity_of_three_lists() {
+fn parity_of_four_lists() {
     let gpu = Gpu::new();
-    let (case, taus) = three_lists();
+    let (case, taus) = four_lists();
     compare(&gpu, &case, &taus, &taus).unwrap();
     let (twin, n) = (Chain::of_taus(&case, &taus).split, taus.len());
     let members =
         |list: usize| twin.sub_patch_counts[list * n..(list + 1) * n].iter().filter(|count| **count > 0).count();
-    assert!((0..3).all(|list| members(list) > 1), "{:?}", twin.sub_patch_counts);
-    let two_lists = Case { frame: Frame { corner_list: 0, ..case.frame }, ..case.clone() };
-    compare(&gpu, &two_lists, &taus, &taus).unwrap();
+    assert!((0..4).all(|list| members(list) > 1), "{:?}", twin.sub_patch_counts);
+    for corner_lists in [0, 1] {
+        let fewer = Case { frame: Frame { corner_lists, ..case.frame }, ..case.clone() };
+        compare(&gpu, &fewer, &taus, &taus).unwrap();
+    }
     gpu.finish();
 }
 

@@ -53,7 +53,7 @@ pub(super) fn constants(
         encode_srgb: u32::from(!encodes(formats)),
         sub_patch_capacity: room.tessellation.sub_patches,
         draw_capacity: room.tessellation.draws,
-        corner_list: counts.corner_list.into(),
+        corner_lists: counts.corner_lists,
         row_capacity: room.trim.rows,
         intercept_capacity: room.trim.intercepts,
         gap_candidate_capacity: room.gaps.candidates,

@@ -18,7 +18,7 @@ mod surface;
 use super::face::pack_colour;
 use crate::abi;
 use crate::csg::Blist;
-use crate::model::{Bounds, Items, Primitive, Shape, Solid, SolidError, SurfaceTable};
+use crate::model::{Bounds, Items, Shape, Solid, SolidError, SurfaceTable};
 use crate::picture::{SolidWay, TakenWay};
 pub(crate) use blister::{Asked, Blister};
 pub(super) use boundary_operand::Operand;
@@ -142,13 +142,12 @@ impl SolidData {
         data.push_list(&mut shared, &union, 0, 0, &reaches);
         data.followed = data.leaves.len() as u32;
         let mut first = 0;
-        // a followed item needs all of its primitives, not only the parts that the union shows
-        let boxes: Vec<Bounds> = shared.whole.primitives().iter().map(Primitive::bounds).collect();
         for (k, solid) in lists.solids.iter().enumerate() {
             if k >= lists.followed {
                 let list = Blist::new(solid.tree()).map_err(SolidError::from)?;
                 let flags = if k < lists.clear { abi::LEAF_ELSEWHERE } else { 0 };
-                data.push_list(&mut shared, &list, first, flags, &boxes[first as usize..]);
+                // a ray that follows it meets what the union hides
+                data.push_list(&mut shared, &list, first, flags, &solid.reaches());
             }
             first += solid.primitives().len() as u32;
         }

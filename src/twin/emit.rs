@@ -7,7 +7,9 @@
 //!
 //! Only sums and extrema: the order of the patch instances does not matter.
 
-use super::{CORNER_LIST, CORNER_VERTICES, FAILED_DRAWS, FAILED_SUB_PATCHES, PLAIN_LIST, TRIMMED_LIST};
+use super::{
+    CORNER_LIST, CORNER_VERTICES, FAILED_DRAWS, FAILED_SUB_PATCHES, PLAIN_LIST, TRIMMED_CORNER_LIST, TRIMMED_LIST,
+};
 use crate::abi::{Counters, Factors, Frame, SubPatch};
 use bytemuck::{Pod, Zeroable};
 
@@ -38,11 +40,12 @@ pub fn emit(
     counters: &mut Counters,
 ) {
     let (n, lists) = (frame.listed_patch_instances as usize, frame.patch_lists());
-    let total = |list: u32| sub_patch_starts[(list as usize + 1) * n] - sub_patch_starts[list as usize * n];
-    let corners = if lists > CORNER_LIST { total(CORNER_LIST) } else { 0 };
-    counters.plain += total(PLAIN_LIST) + corners;
-    counters.trimmed += total(TRIMMED_LIST);
-    counters.corners += corners;
+    let starts = |list: u32| sub_patch_starts[list as usize * n];
+    let total = |list: u32| if list < lists { starts(list + 1) - starts(list) } else { 0 };
+    let corners = [CORNER_LIST, TRIMMED_CORNER_LIST].map(total);
+    counters.plain += total(PLAIN_LIST) + corners[0];
+    counters.trimmed += total(TRIMMED_LIST) + corners[1];
+    counters.corners += corners[0] + corners[1];
     if sub_patch_starts[lists as usize * n] > frame.sub_patch_capacity {
         counters.failed |= FAILED_SUB_PATCHES;
     }
@@ -66,14 +69,15 @@ pub fn emit(
             let used = match list {
                 PLAIN_LIST => &mut counters.plain_draws,
                 TRIMMED_LIST => &mut counters.trimmed_draws,
-                _ => &mut counters.corner_draws,
+                CORNER_LIST => &mut counters.corner_draws,
+                _ => &mut counters.trimmed_corner_draws,
             };
             *used = (*used).max((draw + 1).min(frame.draw_capacity));
             if draw >= frame.draw_capacity {
                 counters.failed |= FAILED_DRAWS;
                 break;
             }
-            let of_one = if list == CORNER_LIST { CORNER_VERTICES } else { 1 };
+            let of_one = if list >= CORNER_LIST { CORNER_VERTICES } else { 1 };
             let draw = &mut draws[(draw + list * frame.draw_capacity) as usize];
             draw.vertex_count += of_one;
             draw.first_vertex = draw.first_vertex.min(of_one * at);

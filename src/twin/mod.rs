@@ -51,7 +51,7 @@ pub mod view;
 pub use crate::abi::constants::push::MAX_PUSH;
 pub use crate::abi::constants::scene::{
     CORNER_LIST, CORNER_VERTICES, FAILED_DRAWS, FAILED_INTERCEPTS, FAILED_ROWS, FAILED_SUB_PATCHES, MAX_FACTOR,
-    MAX_SPLIT, PLAIN_LIST, TRIMMED_LIST,
+    MAX_SPLIT, PLAIN_LIST, TRIMMED_CORNER_LIST, TRIMMED_LIST,
 };
 use crate::abi::{Cell, Curve, Face, FaceInstance, Instance, Link, Patch, View};
 

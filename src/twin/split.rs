@@ -26,7 +26,9 @@
 //! along the axis is not affected.
 
 use super::occlusion::is_drawn;
-use super::{CORNER_LIST, CORNER_VERTICES, MAX_FACTOR, MAX_SPLIT, PLAIN_LIST, Scene, TRIMMED_LIST};
+use super::{
+    CORNER_LIST, CORNER_VERTICES, MAX_FACTOR, MAX_SPLIT, PLAIN_LIST, Scene, TRIMMED_CORNER_LIST, TRIMMED_LIST,
+};
 use crate::abi::{FACE_CLOSED_U, FACE_CLOSED_V, Factors, Frame, Side};
 
 /// What the pass writes.
@@ -54,12 +56,13 @@ pub fn split(frame: &Frame, scene: &Scene<'_>, taus: &[u32]) -> Split {
             is_drawn(taus[patch_instance]),
         );
         out.factors.push(factors);
-        let (list, vertices) = match patch.side() {
-            Side::Inside if frame.corner_list != 0 && is_one_cell(&factors) => {
-                (CORNER_LIST, CORNER_VERTICES * sub_patches)
-            }
-            Side::Inside => (PLAIN_LIST, vertices),
-            Side::Outside | Side::Boundary => (TRIMMED_LIST, vertices),
+        let (list, by_corners) = match patch.side() {
+            Side::Inside => (PLAIN_LIST, CORNER_LIST),
+            Side::Outside | Side::Boundary => (TRIMMED_LIST, TRIMMED_CORNER_LIST),
+        };
+        let (list, vertices) = match by_corners < frame.patch_lists() && is_one_cell(&factors) {
+            true => (by_corners, CORNER_VERTICES * sub_patches),
+            false => (list, vertices),
         };
         let slot = list as usize * n + patch_instance;
         out.sub_patch_counts[slot] = sub_patches;

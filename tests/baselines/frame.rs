@@ -224,6 +224,15 @@ fn slefes_make_a_picture() {
     assert!(drawn[0] != drawn[1] && drawn[1] != drawn[2], "{drawn:?}");
 }
 
+/// Whether a pixel or one beside it shows the face.
+fn has_beside(picture: &Picture, k: usize, face: u32) -> bool {
+    let (width, height) = (picture.size.0 as usize, picture.size.1 as usize);
+    let (x, y) = (k % width, k / width);
+    let rows = y.saturating_sub(1)..=(y + 1).min(height - 1);
+    rows.flat_map(|y| (x.saturating_sub(1)..=(x + 1).min(width - 1)).map(move |x| y * width + x))
+        .any(|k| picture.face[k] == face)
+}
+
 /// Whether two depths are the same to 1e-4 of themselves; nothing's is infinite.
 fn near(a: f32, b: f32) -> bool {
     a == b || (a - b).abs() <= 1e-4 * a.abs().min(b.abs())
@@ -232,12 +241,13 @@ fn near(a: f32, b: f32) -> bool {
 /// Patches of one segment a side have the same triangles by their corners as by the tessellator: the same faces are seen,
 /// from turn to turn, so that patches also appear that were hidden. (u, v) between the corners may be rounded otherwise;
 /// Newton's method then ends elsewhere within 5e-4 px of the pixel's centre, so depths are the same to 1e-4 of
-/// themselves (1e-5 measured). Vulkan leaves the triangles to the driver; elsewhere than on llvmpipe the faces of a few
-/// pixels in a thousand may differ.
+/// themselves (1e-5 measured). Trims are tested at (u, v): where a trim curve passes a centre by a rounding, the pixel may
+/// show the face on its other side (5 pixels measured). Vulkan leaves the triangles to the driver; elsewhere than on
+/// llvmpipe the faces of a few pixels in a thousand may differ.
 #[test]
 fn patches_by_their_corners_make_the_same_pictures() {
     // trimmed faces, some of them in pieces; a linked surface beside a mesh
-    for (name, fewest) in [("assembly.step", 0), ("gallery/subdivided.toml", 20)] {
+    for (name, fewest, most_at_borders) in [("assembly.step", 20, 10), ("gallery/subdivided.toml", 20, 0)] {
         let model = sample(name);
         let mut ways = [true, false].map(|corners| {
             watched_with(
@@ -247,7 +257,7 @@ fn patches_by_their_corners_make_the_same_pictures() {
             )
         });
         let named = |renderer: &HeadlessRenderer| renderer.objects().iter().any(|name| name.contains("by corners"));
-        assert!((named(&ways[0]) || fewest == 0) && !named(&ways[1]), "{name}");
+        assert!(named(&ways[0]) && !named(&ways[1]), "{name}");
         for (nth, levels) in [Levels::Bound, Levels::Bound, Levels::Fixed(1)].into_iter().enumerate() {
             let direction = DVec3::new(1.0, -1.6 + 0.4 * nth as f64, 1.1);
             let camera = Camera::around(model.control_bounds(), direction, DVec3::Z, 35f64.to_radians(), SIZE);
@@ -260,9 +270,13 @@ fn patches_by_their_corners_make_the_same_pictures() {
                 corners[1] == 0 && (levels == Levels::Bound || corners[0] >= fewest),
                 "{name}, view {nth}: {corners:?}"
             );
-            let other = with.face.iter().zip(&without.face).filter(|(a, b)| a != b).count();
+            let others: Vec<usize> = (0..with.face.len()).filter(|k| with.face[*k] != without.face[*k]).collect();
             let most = if with.stats.driver.contains("llvmpipe") { 0 } else { with.face.len() / 500 };
-            assert!(other <= most, "{name}, view {nth}: {other} pixels");
+            let at_border =
+                |k: &usize| has_beside(&without, *k, with.face[*k]) && has_beside(&with, *k, without.face[*k]);
+            let far = others.iter().filter(|k| !at_border(k)).count();
+            println!("{name}, view {nth}: {} pixels, {far} of them at no border", others.len());
+            assert!(far <= most && others.len() <= most + most_at_borders, "{name}, view {nth}: {others:?}");
             let is_off = |k: &usize| with.face[*k] == without.face[*k] && !near(with.depth[*k], without.depth[*k]);
             let off = (0..with.face.len()).filter(is_off).count();
             assert!(off <= most, "{name}, view {nth}: {off} depths");

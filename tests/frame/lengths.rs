@@ -4,10 +4,10 @@ use crate::layers::{
     AROUND, BLUE, EDGE_PX, SIZE, STEEL, centre, gear, glass, in_glass, is_at_edge, model, one, painted, tracer,
 };
 use crate::shapes::operands::part;
-use crate::shapes::solids::{ball, stone};
+use crate::shapes::solids::{ball, blunt_blocks, stone};
 use crate::shapes::sphere;
 use crate::support::{assert_silent, orthographic, perspective, render, watched, watched_for, watched_with};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use selvedge::model::{Model, Solid};
 use selvedge::picture::{FrameSettings, Highlight, Outputs, SceneSettings};
 use selvedge_check::solids::LayerTracer;
@@ -64,6 +64,31 @@ fn thickness() {
                 seen += usize::from(exact > 0.0);
             }
             assert!(seen > 2000 || m.solids.is_empty(), "{name}: {seen}");
+        }
+    }
+    assert_silent(renderer);
+}
+
+/// A ray that is followed through a solid meets a half-space only within what it cuts. If each were in the list of every
+/// tile, as one that stands alone is, drivers would end the walks of these.
+#[test]
+fn thickness_of_many_pieces_that_half_spaces_cut() {
+    let n = 7;
+    let model = blunt_blocks(n);
+    let exact = tracer(&model);
+    let mut renderer = watched(&Model::default());
+    for camera in [perspective(&model, SIZE), orthographic(&model, SIZE)] {
+        renderer.upload(&model).unwrap();
+        let outputs = Outputs { thickness: true, ..Outputs::default() };
+        let picture = renderer.render(&camera, &FrameSettings::default(), outputs).unwrap();
+        assert_eq!(picture.stats.clamps, 0);
+        for k in 0..n * n {
+            let middle = 3.0 * DVec3::new(f64::from(k % n), f64::from(k / n), 0.0);
+            let pixel = camera.project(middle).unwrap().0.floor();
+            let (o, d) = camera.ray(pixel + 0.5);
+            let length = exact.union().trace(o, d).thickness(0.0, f64::INFINITY);
+            let drawn = f64::from(picture.thickness[(pixel.y * f64::from(SIZE.0) + pixel.x) as usize]);
+            assert!(length > 1.0 && (drawn - length).abs() < 1e-4, "{k} at {pixel}: {drawn}, truly {length}");
         }
     }
     assert_silent(renderer);

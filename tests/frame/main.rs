@@ -11,6 +11,7 @@ mod borders;
 #[path = "../shapes/cages.rs"]
 mod cages;
 mod ceilings;
+mod clear_lines;
 mod closed;
 mod cuts;
 mod distance;

@@ -115,6 +115,27 @@ pub fn stone() -> Model {
     Model { solids: vec![Solid::new(all, b.finish(root).unwrap()).unwrap()], ..Model::default() }
 }
 
+/// `n` by `n` blocks, 3 apart, each without its eight corners.
+pub fn blunt_blocks(n: u32) -> Model {
+    let (mut all, mut b, mut blocks) = (Vec::new(), Builder::new(), Vec::new());
+    for k in 0..n * n {
+        let centre = 3.0 * DVec3::new(f64::from(k % n), f64::from(k / n), 0.0);
+        let leaf = b.leaf(all.len() as u32);
+        all.push(block((centre - 1.0).to_array(), (centre + 1.0).to_array()));
+        let corners = (0..8u32).map(|i| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { -1.0 } else { 1.0 }));
+        let cut = corners.map(|corner| {
+            let normal = DVec3::from(corner).normalize();
+            all.push(below(normal, 1.3 + normal.dot(centre)));
+            b.leaf(all.len() as u32 - 1)
+        });
+        let leaves = [leaf].into_iter().chain(cut).collect::<Vec<_>>();
+        blocks.push(b.fold(Op::Intersection, leaves));
+    }
+    let root = b.fold(Op::Union, blocks);
+    (1..).zip(&mut all).for_each(|(id, p)| p.id = id);
+    Model { solids: vec![Solid::new(all, b.finish(root).unwrap()).unwrap()], ..Model::default() }
+}
+
 /// Nested balls, each subtracted from the one around it, cut open.
 pub fn onion() -> Model {
     let mut b = Builder::new();

@@ -287,8 +287,8 @@ pub struct SweepArgs {
     #[arg(long, value_name = "LIST", value_parser = clap::value_parser!(u8).range(1..=9), value_delimiter = ',')]
     pub degrees: Vec<u8>,
     /// How patches are divided: bound, a level from 1 to 64, or slefe: by slefes of 3 segments, or of the number behind
-    /// it, up to slefe9; corners and tessellated: by the bound, with untrimmed patches of one segment a side drawn by
-    /// their corners, or none; several, with commas
+    /// it, up to slefe9; corners and tessellated: by the bound, with patches of one segment a side drawn by their
+    /// corners, or none; several, with commas
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "bound")]
     pub factors: Vec<Divided>,
     /// Tolerances in pixels

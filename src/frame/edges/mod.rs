@@ -294,6 +294,7 @@ impl EdgeStage {
             solids.draw(frame, cmd, (images, &self.best), self.half_px);
         }
         barrier::images(cmd, &[(&self.best, written, read)]);
+        let stays = !matches!(frame.colour[0].load, Load::Discard); // the host's picture
         let bindings = show::Bindings {
             frame: frame.constants,
             best: &self.best,
@@ -301,6 +302,7 @@ impl EdgeStage {
             edges: s.edges.as_ref(),
             visibility: &v.image,
             meshes_and_solids: v.of_meshes_and_solids(),
+            resolved: frame.stages.unmixed().filter(|_| !stays),
         };
         let colours = show::Colours { seen: passes.settings.colour, hidden: passes.settings.hidden_colour };
         let numbers = frame.numbers.iter().filter(|_| passes.has_edge_image);

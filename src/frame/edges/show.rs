@@ -2,6 +2,7 @@
 //!
 //! ```text
 //!   best line ─▶ share, seen or hidden ─▶ colour and opacity ──over──▶ the host's colour
+//!                                  resolved ──┘ where it is shown as it is: the target may be see-through
 //!            └─▶ chord ─▶ edge ─▶ number ─▶ the host's image of edges
 //! ```
 //!
@@ -16,7 +17,10 @@ use bytemuck::{Pod, Zeroable};
 
 /// The pass.
 pub(crate) struct Show {
-    pipeline: Pipeline,
+    /// Blends lines over the target.
+    over: Pipeline,
+    /// Writes lines over `resolved`, in scenes that have that image.
+    over_resolved: Option<Pipeline>,
 }
 
 /// Its buffers and images, in binding order.
@@ -28,6 +32,8 @@ pub(crate) struct Bindings<'a> {
     pub edges: Option<&'a EdgeBuffers>,
     pub visibility: &'a Image,
     pub meshes_and_solids: &'a Image,
+    /// If the target shows it over the scene's background.
+    pub resolved: Option<&'a Image>,
 }
 
 /// Of the colour, and of the image of numbers where there is one.
@@ -43,16 +49,23 @@ pub(crate) struct Colours {
 
 impl Show {
     pub(crate) fn new(device: &Device, data: &SceneData, (colour, numbers): Formats) -> Result<Self, GpuError> {
-        let over = ColourTarget { format: colour, blend: Blend::Over };
         let number = numbers.map(|format| ColourTarget { format, blend: Blend::Replace });
-        let colour: Vec<_> = [over].into_iter().chain(number).collect();
         let meshes_and_solids = data.has_meshes() || data.solids.kinds().is_some();
-        let constants = [
-            (constant::HAS_EDGE_IMAGE, u32::from(numbers.is_some())),
-            (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(meshes_and_solids)),
-        ];
-        let draw = Draw::new("edge_show", &shaders::RESOLVE_VERT, &shaders::EDGE_SHOW_FRAG);
-        Ok(Self { pipeline: Draw { constants: &constants, colour: &colour, ..draw }.pipeline(device)? })
+        let pipeline = |name, blend, fragment| {
+            let colour: Vec<_> = [ColourTarget { format: colour, blend }].into_iter().chain(number).collect();
+            let constants = [
+                (constant::HAS_EDGE_IMAGE, u32::from(numbers.is_some())),
+                (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(meshes_and_solids)),
+            ];
+            let draw = Draw::new(name, &shaders::RESOLVE_VERT, fragment);
+            Draw { constants: &constants, colour: &colour, ..draw }.pipeline(device)
+        };
+        let over_resolved = || pipeline("edge_show (resolved)", Blend::Replace, &shaders::EDGE_SHOW_RESOLVED_FRAG);
+        let has_resolved = data.is_mixed() && !data.smooths_trims();
+        Ok(Self {
+            over: pipeline("edge_show", Blend::Over, &shaders::EDGE_SHOW_FRAG)?,
+            over_resolved: has_resolved.then(over_resolved).transpose()?,
+        })
     }
 
     /// One triangle over the targets.
@@ -60,10 +73,16 @@ impl Show {
         // not read without
         let edges = b.edges.map_or([b.frame; 3], |e| [&e.piece_instances, &e.pieces, &e.lines]).map(Resource::from);
         let lists = [b.frame.into(), b.best.into(), b.chords.into()].into_iter().chain(edges);
-        let images = [b.visibility, b.meshes_and_solids].map(Resource::from);
-        let resources: Vec<_> = lists.chain(images).collect();
+        let over_resolved = self.over_resolved.as_ref().zip(b.resolved);
+        // with it, the target and not what is seen says whether a pixel is empty
+        let images = match over_resolved {
+            Some((_, resolved)) => vec![resolved],
+            None => vec![b.visibility, b.meshes_and_solids],
+        };
+        let pipeline = over_resolved.map_or(&self.over, |(pipeline, _)| pipeline);
+        let resources: Vec<_> = lists.chain(images.into_iter().map(Resource::from)).collect();
         cmd.rendering(b.visibility.size(), into, None, || {
-            cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&colours));
+            cmd.bind(pipeline, &resources, bytemuck::bytes_of(&colours));
             cmd.draw(3, 0, 1);
         });
     }

@@ -29,7 +29,7 @@ impl Passes {
         let kinds = Kinds {
             rational: data.has_rational,
             plain: data.has_plain,
-            corner_list: data.draws_corners(),
+            corner_lists: data.corner_lists(),
             linked: !data.links.is_empty(),
             trimmed: test,
             bins: !data.wide_strips.is_empty(),

@@ -14,7 +14,7 @@
 //! the near plane), which begin cleared or with meshes and solids; `border_depths`, cleared before.
 
 use crate::abi::Counters;
-use crate::abi::constants::scene::{CORNER_LIST, PLAIN_LIST, TRIMMED_LIST};
+use crate::abi::constants::scene::{CORNER_LIST, PLAIN_LIST, TRIMMED_CORNER_LIST, TRIMMED_LIST};
 use crate::bindings::{Placed, Primitives};
 use crate::frame::common::draw::Draw;
 use crate::gpu::{
@@ -36,9 +36,10 @@ const DRAWS_OF_A_RENDERING: u32 = 256;
 /// The pass: one pipeline for each kind of patch in the scene.
 pub(crate) struct Visibility {
     plain: Option<Pipeline>,
-    /// Plain patches of one segment a side, if they have a list of their own.
-    corners: Option<Pipeline>,
     trimmed: Option<Pipeline>,
+    /// The same of patches of one segment a side, if they have lists of their own.
+    plain_corners: Option<Pipeline>,
+    trimmed_corners: Option<Pipeline>,
 }
 
 /// The kinds of patches in the scene.
@@ -46,8 +47,8 @@ pub(crate) struct Visibility {
 pub(crate) struct Kinds<'a> {
     pub rational: bool,
     pub plain: bool,
-    /// Plain patches of one segment a side have a list of their own.
-    pub corner_list: bool,
+    /// Lists of patches of one segment a side: of plain ones, and of trimmed ones.
+    pub corner_lists: u32,
     /// Faces share sides.
     pub linked: bool,
     /// The trim test; `None` if no face is trimmed.
@@ -61,7 +62,7 @@ pub(crate) struct Kinds<'a> {
 }
 
 impl Kinds<'_> {
-    /// The pipeline of trimmed patches, or of plain ones. With `corners`, it draws plain patches by their corners.
+    /// The pipeline of trimmed patches, or of plain ones. With `corners`, it draws them by their corners.
     fn pipeline(self, device: &Device, trimmed: Option<&TrimTest>, corners: bool) -> Result<Pipeline, GpuError> {
         let within = self.volume.is_some();
         let (fragment, kind) = match trimmed {
@@ -122,17 +123,18 @@ pub(crate) struct Bindings<'a> {
 
 impl Visibility {
     pub(crate) fn new(device: &Device, kinds: Kinds<'_>) -> Result<Self, GpuError> {
-        let plain = || kinds.pipeline(device, None, false);
-        let corners = || kinds.pipeline(device, None, true);
+        let plain = |corners| kinds.plain.then(|| kinds.pipeline(device, None, corners)).transpose();
+        let trimmed = |corners| kinds.trimmed.map(|test| kinds.pipeline(device, Some(test), corners)).transpose();
         Ok(Self {
-            plain: kinds.plain.then(plain).transpose()?,
-            corners: kinds.corner_list.then(corners).transpose()?,
-            trimmed: kinds.trimmed.map(|test| kinds.pipeline(device, Some(test), false)).transpose()?,
+            plain: plain(false)?,
+            trimmed: trimmed(false)?,
+            plain_corners: if kinds.corner_lists > 0 { plain(true)? } else { None },
+            trimmed_corners: if kinds.corner_lists > 1 { trimmed(true)? } else { None },
         })
     }
 
-    /// Draws all lists; `draw_capacity` draws of each lie in `draws`: plain, trimmed, by corners. `between` makes what a
-    /// rendering has drawn visible to the next.
+    /// Draws all lists; `draw_capacity` draws of each lie in `draws`: plain, trimmed, and both by corners. `between` makes
+    /// what a rendering has drawn visible to the next.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
@@ -144,20 +146,26 @@ impl Visibility {
         let lists = [b.sub_patches.into(), b.instances.into()];
         let volume = || b.volume.iter().flat_map(Primitives::resources);
         let placed = || [b.frame.into()].into_iter().chain(b.placed.resources());
-        let shared = || placed().chain([b.factors.into()]).chain(lists);
+        let by_corners = || placed().chain(lists);
+        let tessellated = || placed().chain([b.factors.into()]).chain(lists);
+        let links = || b.links.map(Into::into);
+        let test = || b.border_depths.map(Into::into).into_iter().chain(b.trim.iter().copied()).chain(volume());
         let mut drawn: Vec<(&Pipeline, Vec<Resource<'_>>, u32, usize)> = Vec::new();
         if let Some(plain) = &self.plain {
-            let last = volume().chain(b.links.map(Into::into));
-            drawn.push((plain, shared().chain(last).collect(), PLAIN_LIST, offset_of!(Counters, plain_draws)));
+            let resources = tessellated().chain(volume()).chain(links()).collect();
+            drawn.push((plain, resources, PLAIN_LIST, offset_of!(Counters, plain_draws)));
         }
-        if let Some(corners) = &self.corners {
-            let resources = placed().chain(lists).chain(volume()).collect();
+        if let Some(corners) = &self.plain_corners {
+            let resources = by_corners().chain(volume()).collect();
             drawn.push((corners, resources, CORNER_LIST, offset_of!(Counters, corner_draws)));
         }
-        if let (Some(trimmed), Some(border_depths)) = (&self.trimmed, b.border_depths) {
-            let test = b.trim.iter().copied().chain(volume());
-            let resources = shared().chain([border_depths.into()]).chain(test).collect();
+        if let Some(trimmed) = self.trimmed.as_ref().filter(|_| b.border_depths.is_some()) {
+            let resources = tessellated().chain(test()).collect();
             drawn.push((trimmed, resources, TRIMMED_LIST, offset_of!(Counters, trimmed_draws)));
+        }
+        if let Some(corners) = self.trimmed_corners.as_ref().filter(|_| b.border_depths.is_some()) {
+            let resources = by_corners().chain(test()).collect();
+            drawn.push((corners, resources, TRIMMED_CORNER_LIST, offset_of!(Counters, trimmed_corner_draws)));
         }
         let firsts = || (0..draw_capacity).step_by(DRAWS_OF_A_RENDERING as usize);
         let pieces: Vec<_> = drawn.iter().flat_map(|of_list| firsts().map(move |first| (first, of_list))).collect();

@@ -11,7 +11,7 @@ struct Grid {
     face: Face,
     taus: Vec<u32>,
     sides: Vec<Side>,
-    corner_list: u32,
+    corner_lists: u32,
     out: Split,
 }
 
@@ -37,8 +37,8 @@ impl Grid {
         let sides: Vec<Side> = (0..patches).map(|_| random.pick(&any)).collect();
         let shape = |side: &Side| Patch { shape: Patch::pack_shape((1, 1), false, *side, 0), ..Default::default() };
         let shapes: Vec<Patch> = sides.iter().map(shape).collect();
-        let corner_list = random.integer(0, 1);
-        let frame = Frame { listed_patch_instances: patches as u32, corner_list, ..Default::default() };
+        let corner_lists = random.integer(0, 2);
+        let frame = Frame { listed_patch_instances: patches as u32, corner_lists, ..Default::default() };
         let scene = Scene {
             face_instances: &[FaceInstance::default()],
             faces: &[face],
@@ -47,7 +47,7 @@ impl Grid {
             ..Default::default()
         };
         let out = split(&frame, &scene, &taus);
-        Self { face, taus, sides, corner_list, out }
+        Self { face, taus, sides, corner_lists, out }
     }
 
     /// Index of the patch one step along `axis`, around a closed face; `None` at a border.
@@ -119,11 +119,12 @@ fn sub_patches_are_within_the_hardware_s_factor() {
                 assert!(even || powers, "a side of another factor is joined by powers of two");
             }
             let of_list = |counts: &[u32], list: u32| counts[list as usize * g.taus.len() + n];
-            let total = |counts: &[u32]| (0..2 + g.corner_list).map(|list| of_list(counts, list)).sum::<u32>();
+            let total = |counts: &[u32]| (0..2 + g.corner_lists).map(|list| of_list(counts, list)).sum::<u32>();
             let drawn = if g.taus[n] == 0 { 0 } else { splits[0] * splits[1] };
             let plain = g.sides[n] == Side::Inside;
-            let one_cell = g.corner_list == 1 && plain && (splits, most) == ([1, 1], [1, 1]);
-            let list = if one_cell { 2 } else { u32::from(!plain) };
+            let has_list = g.corner_lists > u32::from(!plain);
+            let one_cell = has_list && (splits, most) == ([1, 1], [1, 1]);
+            let list = u32::from(!plain) + if one_cell { 2 } else { 0 };
             assert_eq!((total(&g.out.sub_patch_counts), of_list(&g.out.sub_patch_counts, list)), (drawn, drawn));
             let vertices = if one_cell { 6 } else { vertices(most) };
             assert_eq!(total(&g.out.vertex_counts), drawn * vertices);

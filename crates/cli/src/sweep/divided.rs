@@ -18,7 +18,7 @@ pub enum Divided {
     By(Factors),
     /// By slefes of so many segments.
     Slefe(usize),
-    /// By the bound. Whether plain patches of one segment a side are drawn by their corners, in a scene of any size.
+    /// By the bound. Whether patches of one segment a side are drawn by their corners, in a scene of any size.
     Corners(bool),
 }
 
