@@ -10,8 +10,8 @@ const FEWEST: usize = 1 << 17;
 const FEWEST_TRIMMED: usize = 1 << 13;
 
 impl SceneData {
-    /// None, that of plain patches, or that of trimmed ones, too. Operands of Boolean solids are drawn out of the list of plain patches
-    /// (`frame/solids/operand_patch.rs`), so a scene with patches of operands has no other.
+    /// None, that of plain patches, or that of trimmed ones, too. Operands of Boolean solids are drawn out of the list of
+    /// plain patches (`frame/solids/operand_patch.rs`), so a scene with patches of operands has no other.
     pub(crate) fn corner_lists(&self) -> u32 {
         let (plain, trimmed) = (self.has_plain, self.trim_way().is_some());
         let wanted = self.patch_instances.len() >= if trimmed { FEWEST_TRIMMED } else { FEWEST };
