@@ -98,6 +98,17 @@ class Names(unittest.TestCase):
         image[:, 9], image[:, 10:] = 20, 30
         self.assertEqual(kernel.named(rays, [image]), {1: 10, 2: 20, 3: 30, -1: 0})
 
+    def test_a_face_that_is_hidden_beside_its_pixel_has_its_name(self):
+        # face 1 hides face 2, and a picture shows face 2 at a pixel between them
+        class Covered(Strips):
+            def before(self, x, y, depth):
+                return [1, 2, 4] if 9.0 < x < 9.8 else [face for face in self.at(x, y) if face >= 0]
+
+        rays = Covered([(0, 1), (10, 3)])
+        image = numpy.full((20, 20), 10)
+        image[4, 9], image[:, 10:] = 20, 30
+        self.assertEqual(kernel.named(rays, [image]), {1: 10, 2: 20, 3: 30, -1: 0})
+
     def test_a_face_that_is_not_there_has_no_name(self):
         rays = Strips([(0, 1), (9.52, 3)])
         image = numpy.full((20, 20), 10)

@@ -41,7 +41,7 @@ from OCP.TopAbs import TopAbs_IN, TopAbs_ON
 from . import job, shapes, tell
 
 # the tolerances that are judged are among them
-DISTANCES = [1 / 16, 0.1, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 3 / 4, 1, 1.5, 2, 3, 4, 6, 8]
+DISTANCES = [1 / 64, 1 / 32, 1 / 16, 0.1, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 3 / 4, 1, 1.5, 2, 3, 4, 6, 8]
 DIRECTIONS = 16
 # cells of the grid that is halved, and tiles of faces, pixels
 CELL, TILE = 16, 32
@@ -88,7 +88,8 @@ class View:
         return None
 
     def before(self, x, y, depth):
-        """Numbers of the faces that the ray through a point meets in front of a depth, hidden ones among them."""
+        """Numbers of the faces that the ray through a point meets in front of a depth, the nearest first, hidden ones
+        among them."""
         return []
 
 
@@ -135,7 +136,7 @@ class Rays(View):
         return min((depth for depth, _ in self.hits(x, y)[0]), default=math.inf)
 
     def before(self, x, y, depth):
-        return [number for at, number in self.hits(x, y)[0] if at < depth]
+        return [number for at, number in sorted(self.hits(x, y)[0]) if at < depth]
 
     def hits(self, x, y):
         """Depths and numbers of all faces that the ray through a point meets, by their curves, and within the
@@ -237,8 +238,11 @@ def named(rays, images):
 
 
 def unnamed(rays, pixel, names):
-    """The nearest face beside a pixel's centre that has no name; None if there is none."""
-    return next((faces[0] for _, faces in around(rays.at, pixel, SLIVER) if faces[0] not in names), None)
+    """The nearest face beside a pixel's centre that has no name: one that a ray meets first, else one that the first
+    hides; None if there is none."""
+    behind = lambda x, y: rays.before(x, y, math.inf)[1:2]
+    beside = (face for look in (rays.at, behind) for _, faces in around(look, pixel, SLIVER) for face in faces[:1])
+    return next((face for face in beside if face not in names), None)
 
 
 def judged(rays, image, names, wrong, count, seconds):
