@@ -75,6 +75,19 @@ Covering covering(uvec2 seen, vec2 pixel) {
     return c;
 }
 
+// Whether a pixel beside sees the sheet of the face that is seen here: near in the face, and turned to the eye by the
+// same side. Beside a fold its two sheets are near each other in the face.
+bool on_sheet(uvec2 seen, Covering here) {
+    uint patch_instance = seen_patch_instance(seen.x);
+    FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
+    Patch patch_ = patch_at(face_at(fi.face).first_patch + patch_instance - fi.first_patch_instance);
+    vec2 uv = unpack_uv(seen.y);
+    if (length(here.along * (face_uv(patch_, uv) - here.uv)) >= SAME_SHEET_PX) return false;
+    View view = view_at(fi.instance);
+    Sample s = sample_at(patch_, net_of(patch_), view, uv, vec2(0.0));
+    return determinant(pixels_along(s, view)) * determinant(here.along) >= 0.0;
+}
+
 vec4 mixed(ivec2 at, uvec2 own, uint own_face) {
     vec2 pixel = vec2(at) + 0.5;
     float depth = imageLoad(resolved, at).a;
@@ -93,13 +106,7 @@ vec4 mixed(ivec2 at, uvec2 own, uint own_face) {
         uvec2 seen = imageLoad(visibility, beside).xy;
         uint face = placed_face(seen);
         if (face != own_face) other = beside;
-        bool known = face == 0u || (face == own_face && !here.cover.cut);
-        if (face == own_face && here.cover.cut) {
-            uint patch_instance = seen_patch_instance(seen.x);
-            FaceInstance fi = face_instance_at(face_instance_of(patch_instance));
-            Patch patch_ = patch_at(face_at(fi.face).first_patch + patch_instance - fi.first_patch_instance);
-            known = length(here.along * (face_uv(patch_, unpack_uv(seen.y)) - here.uv)) < SAME_SHEET_PX;
-        }
+        bool known = face == 0u || (face == own_face && (!here.cover.cut || on_sheet(seen, here)));
         for (uint i = 0u; i < met_count; ++i) known = known || met[i] == face;
         if (known || met_count == MOST_FACES) continue;
         met[met_count++] = face;
@@ -132,7 +139,9 @@ vec4 mixed(ivec2 at, uvec2 own, uint own_face) {
         float size = max(abs(outward.x), abs(outward.y));
         ivec2 beyond = at + (size > 0.0 ? ivec2(roundEven(outward / size)) : ivec2(0));
         // a border may leave the picture, and a slit be narrower than a pixel
-        if (!is_in_picture(beyond) || placed_face(imageLoad(visibility, beyond).xy) == own_face) beyond = other;
+        if (!is_in_picture(beyond)) beyond = other;
+        uvec2 seen = imageLoad(visibility, beyond).xy;
+        if (placed_face(seen) == own_face && (!here.cover.cut || on_sheet(seen, here))) beyond = other;
         sum += rest * unmixed_at(beyond);
     }
     return sum;

@@ -186,6 +186,14 @@ void mix_later(FollowedPixel pixel) {
 // the other side. `ahead` and `back` are the depths of these two less `own`.
 bool jumps_to(float ahead, float back, float own) { return abs(ahead) >= abs(back) && jumps(back, ahead, own); }
 
+// Whether what two pixels around see of a face is so far apart in depth that it may be two sheets: a steep sheet is
+// evaluated twice.
+bool are_apart(uint a, uint b, float depth_a, float depth_b) {
+    float px = (frame.perspective != 0u ? depth_a : 1.0) / frame.focal;
+    ivec2 way = around(ivec2(0), a) - around(ivec2(0), b);
+    return abs(depth_a - depth_b) > JUMP_PX * px * length(vec2(way));
+}
+
 void main() {
     uint n = thread_number();
     if (n >= grids.count) return;
@@ -204,11 +212,11 @@ void main() {
     uint met_from[MOST_SHEETS];
     uint met_count = 0u;
     uint placed[AROUND]; // the placed face of each pixel around, from 1 on
-    float ahead[AROUND]; // depth of each pixel around less the own one; 0 beside the picture
+    float depths_around[AROUND]; // of pixels beside the picture the own one
     for (uint n = 0u; n < AROUND; ++n) {
         ivec2 beside = around(at, n);
         placed[n] = 0u;
-        ahead[n] = is_in_picture(beside) ? imageLoad(resolved, beside).a - own_depth : 0.0;
+        depths_around[n] = is_in_picture(beside) ? imageLoad(resolved, beside).a : own_depth;
     }
     for (uint k = 0u; k < AROUND; ++k) {
         uint from = (k + OWN) % AROUND; // the pixel itself first
@@ -222,7 +230,8 @@ void main() {
         uint face = face_instance_of(seen_patch_instance(seen)) << 1;
         placed[from] = (face >> 1) + 1u;
         // a second sheet of the pixel's own face
-        bool jump = jumps_to(ahead[from], ahead[AROUND - 1u - from], own_depth);
+        uint opposite = AROUND - 1u - from;
+        bool jump = jumps_to(depths_around[from] - own_depth, depths_around[opposite] - own_depth, own_depth);
         if (own_patch && k > 0u && face == met[0] && jump) face |= 1u;
         bool known = met_count == MOST_SHEETS;
         for (uint i = 0u; i < met_count; ++i) known = known || met[i] == face;
@@ -236,6 +245,21 @@ void main() {
         list[n].sliver = sliver;
         met[met_count] = (placed_face_at(around_or_far(at, SLIVER, sliver)) - 1u) << 1;
         met_from[met_count++] = SLIVER;
+    }
+    // A second sheet of a face that the pixel does not see, as in a notch between a fold and a border. It comes last: of
+    // steep faces it is the first one once more.
+    for (uint n = 0u; n < AROUND && met_count < MOST_SHEETS; ++n) {
+        if (placed[n] == 0u || placed[n] == placed[OWN]) continue;
+        uint face = (placed[n] - 1u) << 1;
+        uint first = n; // sees the first sheet
+        bool known = false;
+        for (uint i = 0u; i < met_count; ++i) {
+            if (met[i] == face && met_from[i] != SLIVER) first = met_from[i];
+            known = known || met[i] == (face | 1u);
+        }
+        if (known || !are_apart(n, first, depths_around[n], depths_around[first])) continue;
+        met[met_count] = face | 1u;
+        met_from[met_count++] = n;
     }
     uvec2 open = uvec2(0u); // bits of points, of two sheets a word
     // a separate loop: threads that run together find their sheets at different pixels

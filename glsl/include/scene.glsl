@@ -299,7 +299,7 @@ struct GapBand {
 const uint MAX_FACTOR = 64u;   // the hardware's tessellation factor
 const uint MAX_SPLIT = 64u;    // sub-patches along one side
 const uint CORNER_VERTICES = 6u; // of a patch that is drawn by its corners: two triangles
-// Lists of sub-patches, and of draws.
+// Lists of sub-patches, and of draws. A list of trimmed patches follows that of plain ones: `split` adds 1.
 const uint PLAIN_LIST = 0u;
 const uint TRIMMED_LIST = 1u;
 // as many of these as Frame.corner_lists says: patches of one segment a side

@@ -1,18 +1,23 @@
-// A neutral studio: a key light from the upper left behind the viewer, a fill from the right, a rim from behind on the
-// right, which lights only surfaces turned away from the viewer, a sky above a darker ground. Directions are unit vectors
-// in view space and travel with the camera.
+// A neutral studio: a key light from the left, a fill from above the viewer, a rim from behind on the right, which lights
+// only surfaces turned away from the viewer, a sky above a darker ground. Directions are unit vectors in view space and
+// travel with the camera. A lamp's light falls with the square of the cosine: a surface that turns away has no corner
+// where a lamp's light ends.
 // Twin: `studio` of the judge.
 #ifndef SHADE_GLSL
 #define SHADE_GLSL
 
-const vec3 KEY = vec3(-0.42, 0.57, 0.71);
-const vec3 FILL = vec3(0.71, 0.14, 0.69);
-const vec3 RIM = vec3(0.64, 0.48, -0.60);
-const float KEY_STRENGTH = 0.62;
-const float FILL_STRENGTH = 0.22;
-const float RIM_STRENGTH = 0.30;
-const float SKY_STRENGTH = 0.26;
+const vec3 KEY = vec3(-0.65, 0.46, 0.60);
+const vec3 FILL = vec3(0.21, 0.33, 0.92);
+const vec3 RIM = vec3(0.50, 0.50, -0.70);
+const float KEY_STRENGTH = 0.86;
+const float FILL_STRENGTH = 0.34;
+const float RIM_STRENGTH = 0.25;
+const float SUN_STRENGTH = 0.62;      // of a sun in place of the key light, by the cosine
+const float SUN_FILL_STRENGTH = 0.20; // of the fill beside a sun, so that shadows are dark
+const float SKY_STRENGTH = 0.20;
 const float GROUND_STRENGTH = 0.12;
+// What a black surface reflects: shape is seen on black parts, too.
+const float BLACK = 0.03;
 const float GLOSS = 0.10;      // strength of the highlight
 const float SHININESS = 48.0;
 
@@ -43,12 +48,21 @@ vec3 toned(vec3 light) {
     return light * ((1.0 - rest * rest / (peak - SHOULDER + rest)) / peak);
 }
 
-// The light of a surface with normal `v` in view space, for the key light's cosines; the other lights are constant.
-vec3 studio(vec3 colour, vec3 v, float key, float shine) {
-    float fill = FILL_STRENGTH * max(dot(v, FILL), 0.0) + RIM_STRENGTH * max(dot(v, RIM), 0.0);
+// Light of a lamp in direction `towards`, in view space.
+float lamp(vec3 v, vec3 towards, float strength) {
+    float cosine = max(dot(v, towards), 0.0);
+    return strength * cosine * cosine;
+}
+
+// The light of a surface with normal `v` in view space: `key` is the key light's, `shine` the cosine of its highlight,
+// `fill_strength` the fill's.
+vec3 studio(vec3 colour, vec3 v, float key, float shine, float fill_strength) {
+    float peak = max(colour.r, max(colour.g, colour.b));
+    vec3 reflected = colour + max(BLACK - peak, 0.0);
+    float fill = lamp(v, FILL, fill_strength) + lamp(v, RIM, RIM_STRENGTH);
     float sky = mix(GROUND_STRENGTH, SKY_STRENGTH, 0.5 + 0.5 * v.y);
     float highlight = pow(shine, SHININESS) * GLOSS;
-    return toned(colour * (KEY_STRENGTH * key + fill + sky) + highlight);
+    return toned(reflected * (key + fill + sky) + highlight);
 }
 
 // Linear light for sRGB colours.
@@ -69,7 +83,7 @@ vec3 of_curvature(float share, vec3 v) {
 // if it is unknown: on triangles, and behind transparent surfaces.
 vec3 styled(uint style, vec3 v, vec3 ray) {
     if (style == STYLE_NORMALS) return decoded(0.5 + 0.5 * v);
-    if (style == STYLE_CLAY) return studio(CLAY, v, max(dot(v, KEY), 0.0), 0.0);
+    if (style == STYLE_CLAY) return studio(CLAY, v, lamp(v, KEY, KEY_STRENGTH), 0.0, FILL_STRENGTH);
     if (style == STYLE_TECHNICAL) return paper(vec3(1.0), v);
     if (style >= STYLE_MEAN_CURVATURE) return paper(vec3(0.3), v);
     if (style == STYLE_ISOPHOTES) {
@@ -90,7 +104,7 @@ vec3 shade(vec3 colour, vec3 n, Frame frame, bool two_sided, vec3 ray) {
     vec3 v = in_view(frame, n);
     if (frame.style != STYLE_SHADED) return styled(frame.style, v, normalize(in_view(frame, ray)));
     float shine = max(dot(v, normalize(KEY + vec3(0.0, 0.0, 1.0))), 0.0);
-    return studio(colour, v, max(dot(v, KEY), 0.0), shine);
+    return studio(colour, v, lamp(v, KEY, KEY_STRENGTH), shine, FILL_STRENGTH);
 }
 
 // The same with a sun as the key light, fixed in the model: `towards` it, a unit vector in model space. `n` is the
@@ -98,11 +112,11 @@ vec3 shade(vec3 colour, vec3 n, Frame frame, bool two_sided, vec3 ray) {
 vec3 shade_in_sun(vec3 colour, vec3 n, Frame frame, vec3 towards, bool reached, vec3 ray) {
     vec3 v = in_view(frame, n);
     if (frame.style != STYLE_SHADED) return styled(frame.style, v, normalize(in_view(frame, ray)));
-    if (!reached) return studio(colour, v, 0.0, 0.0);
+    if (!reached) return studio(colour, v, 0.0, 0.0, SUN_FILL_STRENGTH);
     vec3 half_way = in_view(frame, towards) + vec3(0.0, 0.0, 1.0);
     float size = length(half_way);
     float shine = size > 0.0 ? max(dot(v, half_way / size), 0.0) : 0.0;
-    return studio(colour, v, max(dot(n, towards), 0.0), shine);
+    return studio(colour, v, SUN_STRENGTH * max(dot(n, towards), 0.0), shine, SUN_FILL_STRENGTH);
 }
 
 vec4 encode(vec4 linear, uint srgb) {

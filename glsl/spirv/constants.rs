@@ -366,15 +366,18 @@ pub mod segments {
     pub const MAX_SEGMENTS: f32 = 65536.0;
 }
 pub mod shade {
-    pub const FILL_STRENGTH: f32 = 0.22;
+    pub const BLACK: f32 = 0.03;
+    pub const FILL_STRENGTH: f32 = 0.34;
     pub const GLOSS: f32 = 0.10;
     pub const GROUND_STRENGTH: f32 = 0.12;
     pub const ISOPHOTE_BANDS: f32 = 18.0;
-    pub const KEY_STRENGTH: f32 = 0.62;
-    pub const RIM_STRENGTH: f32 = 0.30;
+    pub const KEY_STRENGTH: f32 = 0.86;
+    pub const RIM_STRENGTH: f32 = 0.25;
     pub const SHININESS: f32 = 48.0;
     pub const SHOULDER: f32 = 0.76;
-    pub const SKY_STRENGTH: f32 = 0.26;
+    pub const SKY_STRENGTH: f32 = 0.20;
+    pub const SUN_FILL_STRENGTH: f32 = 0.20;
+    pub const SUN_STRENGTH: f32 = 0.62;
     pub const UNSEEN: f32 = 3.0e38;
     pub const ZEBRA_STRIPES: f32 = 12.0;
 }

@@ -9,8 +9,8 @@
 //
 // A draw starts with the first sub-patch of its interval, so none holds more than draw_vertices and
 // one sub-patch more. If one draw covers a list, one thread writes it: millions of atomics on one word take longer than
-// all else. A vertex of a draw is a sub-patch, or a corner of one in a list of those that are drawn by their
-// corners. Twin: src/twin/emit.rs.
+// all else. In the lists of patches that are drawn by their corners, a vertex of a draw is a corner; in the others it is
+// a sub-patch. Twin: src/twin/emit.rs.
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;

@@ -8,7 +8,7 @@ use crate::watched::renderer;
 use glam::{DVec2, DVec3};
 use selvedge::csg::Op;
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
-use selvedge::model::{Camera, Model, Projection, srgb};
+use selvedge::model::{Camera, Model, Primitive, Projection, srgb};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Style};
 use selvedge::renderer::RenderError;
 use std::f64::consts::PI;
@@ -52,8 +52,9 @@ fn hidden_by_wall(x: f64) -> f64 {
 #[test]
 fn a_wall_hides_what_it_hides_from_rays() {
     let radius = 1.0;
-    let parts = [block([-1.0, -8.0, -1.0], [0.0, 8.0, 4.0]), block([-1.0, -8.0, -1.0], [8.0, 8.0, 0.0])];
-    let solids = folded(Op::Union, parts.into());
+    // white, so that eight bits round what is lost by a hundredth
+    let white = |end: [f64; 3]| Primitive { colour: [1.0; 4], ..block([-1.0, -8.0, -1.0], end) };
+    let solids = folded(Op::Union, vec![white([0.0, 8.0, 4.0]), white([8.0, 8.0, 0.0])]);
     for projection in [Projection::Orthographic { height: 6.0 }, Projection::Perspective { fov_y: 0.3 }] {
         let camera = Camera {
             eye: DVec3::new(16.0, 0.0, 12.0),
@@ -72,10 +73,12 @@ fn a_wall_hides_what_it_hides_from_rays() {
             if !(0.1..2.0).contains(&point.x) || point.y.abs() > 2.0 {
                 continue;
             }
-            let [b, a] = [&before, &after].map(|p| srgb::decoded(f64::from(p.colour[i][1]) / 255.0));
-            let hidden = (1.0 - a / b) / STRENGTH;
+            // colours are rounded to eight bits
+            let light = |p: &Picture, off: f64| srgb::decoded((f64::from(p.colour[i][1]) + off) / 255.0);
+            let hidden_at = |off: f64| (1.0 - light(&after, -off) / light(&before, off)) / STRENGTH;
+            let [low, hidden, high] = [-0.5, 0.0, 0.5].map(hidden_at);
             let (least, most) = (hidden_by_wall(point.x / (0.75 * radius)), hidden_by_wall(point.x / radius));
-            off = [off[0].max(least - hidden), off[1].max(hidden - most)];
+            off = [off[0].max(least - high), off[1].max(low - most)];
             seen = [seen[0].max(hidden), seen[1].min(hidden)];
             judged += 1;
         }

@@ -10,6 +10,9 @@ use selvedge_check::Tracer;
 pub const FINE: u32 = 16;
 /// Linear contrast in a pixel from which its error is compared.
 const CONTRAST: f64 = 0.1;
+/// An edge's step between smaller pixels, as a part of the pixel's range. A shade that spans the pixel evenly has steps of
+/// a sixteenth.
+const STEP: f64 = 0.25;
 
 /// Linear, of an sRGB picture.
 pub fn linear(colour: [u8; 4]) -> DVec3 {
@@ -52,9 +55,24 @@ pub fn coverage_errors(picture: &Picture, truth: &[f64]) -> Vec<f64> {
     (0..truth.len()).filter(|&i| truth[i] > 0.0 && truth[i] < 1.0).map(|i| shown(i) - truth[i]).collect()
 }
 
-/// Mean and range of linear colours in each pixel, of the same frame [`FINE`] times as large. `outputs` are those of
-/// the renderer's other pictures: for others it would upload the model anew.
-pub fn blocks(renderer: &mut HeadlessRenderer, camera: &Camera, outputs: Outputs) -> Vec<(DVec3, DVec3)> {
+/// Linear colours in a pixel, of the same frame [`FINE`] times as large.
+pub struct Block {
+    mean: DVec3,
+    range: DVec3,
+    /// Largest difference between neighbours, in any channel.
+    step: f64,
+}
+
+impl Block {
+    /// Whether an edge runs through the pixel. A shade has contrast, too, but no step.
+    fn has_edge(&self) -> bool {
+        let range = self.range.max_element();
+        range > CONTRAST && self.step > STEP * range
+    }
+}
+
+/// Those of each pixel. `outputs` are those of the renderer's other pictures: for others it would upload the model anew.
+pub fn blocks(renderer: &mut HeadlessRenderer, camera: &Camera, outputs: Outputs) -> Vec<Block> {
     let (width, height) = camera.size;
     let large = Camera { size: (FINE * width, FINE * height), ..*camera };
     let picture = renderer.render(&large, &FrameSettings::default(), outputs).unwrap();
@@ -65,15 +83,19 @@ pub fn blocks(renderer: &mut HeadlessRenderer, camera: &Camera, outputs: Outputs
             let all: Vec<DVec3> = (0..FINE * FINE).map(|k| linear(picture.colour[at(k)])).collect();
             let low = all.iter().fold(DVec3::INFINITY, |a, b| a.min(*b));
             let high = all.iter().fold(DVec3::ZERO, |a, b| a.max(*b));
-            (all.iter().sum::<DVec3>() / all.len() as f64, high - low)
+            let fine = FINE as usize;
+            let across = (0..all.len()).filter(|k| k % fine > 0).map(|k| all[k] - all[k - 1]);
+            let up = (fine..all.len()).map(|k| all[k] - all[k - fine]);
+            let step = across.chain(up).fold(0.0f64, |most, d| most.max(d.abs().max_element()));
+            Block { mean: all.iter().sum::<DVec3>() / all.len() as f64, range: high - low, step }
         })
         .collect()
 }
 
 /// Distance from the mean as a part of the range, of pixels with an edge.
-pub fn contrast_errors(picture: &Picture, blocks: &[(DVec3, DVec3)]) -> Vec<f64> {
+pub fn contrast_errors(picture: &Picture, blocks: &[Block]) -> Vec<f64> {
     (blocks.iter().zip(&picture.colour))
-        .filter(|((_, range), _)| range.max_element() > CONTRAST)
-        .map(|((mean, range), colour)| (linear(*colour) - *mean).length() / range.length())
+        .filter(|(block, _)| block.has_edge())
+        .map(|(block, colour)| (linear(*colour) - block.mean).length() / block.range.length())
         .collect()
 }

@@ -9,7 +9,7 @@ use selvedge::headless::HeadlessError;
 use selvedge::model::{Camera, GREY, Model, Primitive, Shape, Solid, srgb};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, Style};
 use selvedge::renderer::RenderError;
-use selvedge_check::light::{Key, curvature_scale, studio};
+use selvedge_check::light::{KEY, clay, curvature_scale};
 use std::f64::consts::PI;
 
 const SIZE: (u32, u32) = (160, 120);
@@ -33,12 +33,7 @@ fn facing(picture: &Picture, camera: &Camera, pixel: usize) -> (DVec3, DVec3) {
 fn expected(style: Style, v: DVec3, ray: DVec3, n: DVec3, camera: &Camera) -> Option<DVec3> {
     match style {
         Style::Normals => Some((0.5 + 0.5 * v).map(srgb::decoded)),
-        Style::Clay => {
-            // below the tone curve's shoulder: the highlight is a summand
-            let half_way = (DVec3::new(-0.42, 0.57, 0.71) + DVec3::Z).normalize();
-            let highlight = 0.10 * v.dot(half_way).max(0.0).powi(48);
-            Some(studio(DVec3::new(0.58, 0.52, 0.46), n, camera, Key::Lamp) - highlight)
-        }
+        Style::Clay => Some(clay(n, camera)),
         Style::Zebra => {
             let height = (ray - 2.0 * ray.dot(v) * v).y.clamp(-1.0, 1.0);
             let stripe = (12.0 * height.acos() / PI).fract();
@@ -47,7 +42,7 @@ fn expected(style: Style, v: DVec3, ray: DVec3, n: DVec3, camera: &Camera) -> Op
             (!is_edge).then(|| DVec3::splat(light))
         }
         Style::Isophotes => {
-            let angle = v.dot(DVec3::new(-0.42, 0.57, 0.71).normalize()).clamp(-1.0, 1.0).acos();
+            let angle = v.dot(KEY.normalize()).clamp(-1.0, 1.0).acos();
             let band = (18.0 * angle / PI).fract();
             let is_edge = band.min((band - 0.5).abs()).min(1.0 - band) < 1e-3;
             let light = if band < 0.5 { 0.9 } else { 0.02 };

@@ -24,9 +24,9 @@ face within the curves, the widened one, and neither. The errors are those by th
 
 Pictures that are `own` number faces in another way, all in the same one: each of the kernel's faces is the number that
 most rays through the inside of the pictures' faces find, in the finest picture that shows them; for a face that no ray
-through a pixel's centre meets, the rays close beside it. A pixel at which the last picture and the last `own` one are
-both wrong is left out, and counted as `alone`: where two independent pictures agree, the kernel's ray is at fault.
-Their order is from coarse to fine.
+through a pixel's centre meets, the rays close beside it, which meet it first or right behind the first face. A pixel at
+which the last picture and the last `own` one are both wrong is left out, and counted as `alone`: where two independent
+pictures agree, the kernel's ray is at fault. Their order is from coarse to fine.
 """
 
 import math
