@@ -89,6 +89,13 @@ class Distances(unittest.TestCase):
         judged = {*surfaces.TOLERANCES_QUICK, *surfaces.TOLERANCES, *surfaces.TOLERANCES_OTHER}
         self.assertLessEqual(judged, {*kernel.DISTANCES})
 
+    def test_a_sliver_close_beside_a_centre_is_found(self):
+        rays = Strips([(0, 1), (9.512, 2), (9.53, 1)])
+        image = numpy.full((20, 20), 10)
+        image[4, 9] = 20
+        found = kernel.judged(rays, image, {1: 10, 2: 20}, {(9, 4)}, 20, 60)
+        self.assertEqual((found["beyond"], found["worst_px"]), (0, 1 / 64))
+
 
 class Names(unittest.TestCase):
     def test_a_face_between_two_centres_has_its_name(self):
