@@ -40,8 +40,8 @@ struct Layout {
 
 /// Structs of `src/abi` that shaders put together from texels alone: nothing but what is drawn with them tells that they
 /// are laid out so.
-const OF_TEXELS: [&str; 8] =
-    ["Curve", "ExactArc", "ExactBand", "ExactCell", "ExactFace", "LeafSurface", "SunFacet", "SunTriangle"];
+const OF_TEXELS: [&str; 9] =
+    ["Curve", "ExactArc", "ExactBand", "ExactCell", "ExactFace", "LeafSurface", "Patch", "SunFacet", "SunTriangle"];
 
 /// The layouts found so far.
 pub struct Layouts {

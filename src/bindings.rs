@@ -47,7 +47,7 @@ pub(crate) struct Bounded<'a> {
     pub instances: &'a Buffer,
     pub face_instances: &'a Buffer,
     pub faces: &'a Buffer,
-    pub patches: &'a Buffer,
+    pub patches: &'a TexelBuffer,
     /// Face instance of each patch instance.
     pub patch_instances: &'a Buffer,
     /// `tau_u | tau_v << 16` for each patch instance; written.
@@ -71,10 +71,10 @@ impl<'a> Bounded<'a> {
     /// In binding order.
     pub(crate) fn resources(&self) -> [Resource<'a>; 12] {
         let cones = self.cones.unwrap_or(self.frame); // not read in that case
-        let placed = [self.views, self.instances, self.face_instances, self.faces, self.patches, self.patch_instances];
-        let [views, instances, face_instances, faces, patches, patch_instances] = placed.map(Resource::from);
+        let placed = [self.views, self.instances, self.face_instances, self.faces, self.patch_instances];
+        let [views, instances, face_instances, faces, patch_instances] = placed.map(Resource::from);
         let [frame, taus, counters, cones] = [self.frame, self.taus, self.counters, cones].map(Resource::from);
-        let (points, runs) = (self.points.into(), self.runs.into());
+        let (patches, points, runs) = (self.patches.into(), self.points.into(), self.runs.into());
         [frame, views, instances, face_instances, faces, patches, patch_instances, taus, counters, cones, points, runs]
     }
 }

@@ -16,7 +16,8 @@ layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
 layout(scalar, binding = 3) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 4) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 5) readonly buffer Patches { Patch patches[]; };
+#define PATCHES_BINDING 5
+#include "patches.glsl"
 layout(scalar, binding = 6) readonly buffer PatchInstances { uint patch_instances[]; };
 layout(scalar, binding = 7) writeonly buffer Taus { uint taus[]; };
 layout(scalar, binding = 8) buffer CountersBuffer { Counters counters; };
@@ -37,7 +38,7 @@ void main() {
     FaceInstance fi = face_instances[patch_instances[patch_instance]];
     Face face = faces[fi.face];
     uint index = face.first_patch + patch_instance - fi.first_patch_instance;
-    Patch patch_ = patches[index];
+    Patch patch_ = patch_at(index);
     taus[patch_instance] = 0u;
     if (side_of(patch_.shape) == SIDE_OUTSIDE) return;
     View view = views[fi.instance];

@@ -43,7 +43,8 @@ layout(scalar, binding = 14) readonly buffer Planes { uint planes[]; };
 layout(binding = 15, r32ui) readonly uniform uimage2D operand_uv;
 layout(scalar, binding = 16) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 17) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 18) readonly buffer Patches { Patch patches[]; };
+#define PATCHES_BINDING 18
+#include "patches.glsl"
 layout(scalar, binding = 19) readonly buffer PatchInstances { uint patch_instances[]; };
 layout(binding = 20) uniform samplerBuffer points;
 // of meshes that are of no solid
@@ -64,8 +65,6 @@ layout(scalar, push_constant) uniform Push {
 #include "words.glsl"
 #include "patch.glsl"
 #include "refine.glsl"
-
-Patch patch_at(uint i) { return patches[i]; }
 
 #include "visible.glsl"
 #include "sides.glsl"

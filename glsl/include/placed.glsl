@@ -4,12 +4,13 @@
 #ifndef PLACED_GLSL
 #define PLACED_GLSL
 
+#define PATCHES_BINDING 4
+#include "patches.glsl"
 #include "words.glsl"
 
 layout(binding = 1) uniform samplerBuffer views;           // four a placed part
 layout(binding = 2) uniform usamplerBuffer face_instances; // two a placed face
 layout(binding = 3) uniform usamplerBuffer faces;          // four a face
-layout(binding = 4) uniform usamplerBuffer patches;        // four a patch
 layout(binding = 5) uniform usamplerBuffer patch_instances;          // a word a placed patch
 layout(binding = 6) uniform samplerBuffer points;          // one a control point
 
@@ -21,18 +22,6 @@ View view_at(uint i) {
 #include "faces.glsl"
 
 uint face_instance_of(uint patch_instance) { return word_at(patch_instances, patch_instance); }
-
-Patch patch_at(uint i) {
-    int at = int(i) * 4;
-    uvec4 low = texelFetch(patches, at);
-    uvec4 high = texelFetch(patches, at + 1);
-    uvec4 domain = texelFetch(patches, at + 2);
-    uvec4 bend = texelFetch(patches, at + 3);
-    return Patch(
-        uintBitsToFloat(low.xyz), low.w, uintBitsToFloat(high.xyz), high.w,
-        uintBitsToFloat(domain), uintBitsToFloat(bend.xyz), bend.w
-    );
-}
 
 #ifdef INSTANCES_BINDING
 layout(binding = INSTANCES_BINDING) uniform usamplerBuffer instances; // four a placed part

@@ -35,7 +35,8 @@ layout(binding = 12, rgba32f) readonly uniform image2D behind; // linear colour,
 layout(scalar, binding = 13) readonly buffer Views { View views[]; };
 layout(scalar, binding = 14) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 15) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 16) readonly buffer Patches { Patch patches[]; };
+#define PATCHES_BINDING 16
+#include "patches.glsl"
 layout(scalar, binding = 17) readonly buffer PatchInstances { uint patch_instances[]; };
 layout(binding = 18) uniform samplerBuffer points;
 layout(scalar, binding = 19) readonly buffer Instances { Instance instances[]; };
@@ -68,8 +69,6 @@ layout(constant_id = 17) const bool SOLIDS_HAVE_PATCHES = false;
 #include "patch.glsl"
 #include "resolved.glsl"
 #include "refine.glsl"
-
-Patch patch_at(uint i) { return patches[i]; }
 
 #include "patch_normal.glsl"
 #include "visible.glsl"

@@ -10,7 +10,8 @@ layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 2) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 3) readonly buffer Patches { Patch patches[]; };
+#define PATCHES_BINDING 3
+#include "patches.glsl"
 layout(scalar, binding = 4) readonly buffer PatchInstances { uint patch_instances[]; };
 layout(scalar, binding = 5) readonly buffer Taus { uint taus[]; };
 layout(scalar, binding = 6) writeonly buffer FactorsBuffer { Factors factors[]; };
@@ -60,7 +61,7 @@ void write(uint place, uint patch_instance, uint patch_) {
     // the tessellator makes two segments of one along an axis, unless all numbers are one
     if (most != uvec2(1u)) most = max(most, 2u);
     uint sub_patches = drawn ? splits.x * splits.y : 0u;
-    bool plain = side_of(patches[patch_].shape) == SIDE_INSIDE;
+    bool plain = side_of(patch_at(patch_).shape) == SIDE_INSIDE;
     bool by_corners = segments == uvec2(1u) && frame.corner_lists > (plain ? 0u : 1u);
     uint list = (by_corners ? CORNER_LIST : PLAIN_LIST) + (plain ? 0u : 1u);
     uint vertices = sub_patches * (by_corners ? CORNER_VERTICES : (most.x + 1u) * (most.y + 1u));

@@ -15,7 +15,8 @@ layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
 layout(scalar, binding = 3) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 4) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 5) readonly buffer Patches { Patch patches[]; };
+#define PATCHES_BINDING 5
+#include "patches.glsl"
 layout(binding = 6) uniform samplerBuffer points;
 layout(scalar, binding = 7) readonly buffer PatchInstances { uint patch_instances[]; };
 layout(scalar, binding = 8) readonly buffer Farthest { float farthest[]; };
@@ -40,7 +41,7 @@ void main() {
     }
     FaceInstance fi = face_instances[patch_instances[patch_instance]];
     uint index = faces[fi.face].first_patch + patch_instance - fi.first_patch_instance;
-    bool is_hidden = lies_behind(patches[index], views[fi.instance], instances[fi.instance].scale, tau, outside[index]);
+    bool is_hidden = lies_behind(patch_at(index), views[fi.instance], instances[fi.instance].scale, tau, outside[index]);
     hidden[patch_instance] = is_hidden ? 1u : 0u;
     bool appears = (tau & TAU_HIDDEN) != 0u && !is_hidden;
     taus[patch_instance] = appears ? tau & ~TAU_HIDDEN : tau | TAU_HIDDEN;

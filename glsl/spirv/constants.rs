@@ -206,6 +206,7 @@ pub mod fold_beside {
     pub const FOLD_REACH_PX: f32 = 1.5;
 }
 pub mod fold_list {
+    pub const FOLD_COLUMNS: i32 = 62;
     pub const FOLD_ROWS: i32 = 16;
     pub const SAME_PLACE: f32 = 0.05;
 }
@@ -243,6 +244,10 @@ pub mod gap_radius {
 pub mod gap_surface {
     pub const RADIUS_OF_INSIDE: u32 = 1;
     pub const RADIUS_OF_OUTSIDE: u32 = 2;
+}
+pub mod joints {
+    pub const JOINS_AFTER: u32 = 2;
+    pub const JOINS_BEFORE: u32 = 1;
 }
 pub mod layer_words {
     pub const HIGH_BITS: u32 = 8;

@@ -26,7 +26,7 @@ uint share(uint of_ring, Link link) {
 
 // The patch of the same face beyond a side.
 uint patch_beyond(uint patch_, uint side) {
-    Face face = faces[patches[patch_].face];
+    Face face = faces[patch_at(patch_).face];
     uint n = patch_ - face.first_patch;
     uint across = side & 1u;
     uvec2 count = uvec2(face.count_u, face.count_v);

@@ -223,7 +223,7 @@ impl Scene {
     pub(crate) fn new<'d>(device: &Device, data: &'d SceneData) -> Result<(Self, Uploads<'d>), GpuError> {
         let mut uploads = Uploads::new();
         let scene = Self {
-            patches: read_both(&mut uploads, device, "patches", &data.patches, Texel::U32x4)?,
+            patches: texels(&mut uploads, device, "patches", &data.patches, Texel::U32x4)?,
             outside: (!data.outside.is_empty())
                 .then(|| persistent(&mut uploads, device, "patches outside", &data.outside))
                 .transpose()?,

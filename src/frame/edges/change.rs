@@ -105,7 +105,9 @@ impl Change {
         let boundary_operands =
             boundary_operands.map_or([b.frame; 4], |m| [m.meshes, m.triangles, m.positions, m.planes]);
         let s = b.scene;
-        let patches: [&Buffer; 4] = [&s.face_instances, &s.faces, &s.patches, &s.patch_instances];
+        let [face_instances, faces, patch_instances]: [&Buffer; 3] = [&s.face_instances, &s.faces, &s.patch_instances];
+        let patches: [Resource<'_>; 4] =
+            [face_instances.into(), faces.into(), (&s.patches).into(), patch_instances.into()];
         let instances: &Buffer = &s.instances;
         let meshes = s.meshes.as_ref().map_or([b.frame; 3], |m| [&m.instances, &m.triangles, &m.positions]);
         let resources: Vec<_> = [b.frame.into()]
@@ -116,7 +118,7 @@ impl Change {
             .chain([instances, b.views].map(Resource::from))
             .chain(boundary_operands.map(Resource::from))
             .chain([b.operand_uv.into()])
-            .chain(patches.map(Resource::from))
+            .chain(patches)
             .chain([Resource::from(&s.points)])
             .chain(meshes.map(Resource::from))
             .chain(b.layers.map(|(layers, _)| Resource::from(layers)))

@@ -2,14 +2,14 @@
 //!
 //! ```text
 //!   chord ──seed_list──▶ faces beside it that may fold there           once a view
-//!   chord ─▶ rectangle ──line_list──▶ points: pixels that its line covers
-//!                                     seeds:  pixels beside which folds are looked for from its edge
+//!   chord ─▶ rectangle ──line_list──▶ points: pixels that its line covers, no nearer to the chord before or after it
+//!                                     seeds:  pixels beside which folds are looked for from its edge, likewise
 //!   pixel, and those around ──fold_list──▶ starts: a pixel, and one around that sees a curved face which may fold between
 //! ```
 //!
 //! Reads: everything that the bindings name. Writes: `chord_seeds`; `points`, `seeds`; `starts`; `counters`.
 
-use crate::abi::constants::fold_list::FOLD_ROWS;
+use crate::abi::constants::fold_list::{FOLD_COLUMNS, FOLD_ROWS};
 use crate::bindings::Placed;
 use crate::frame::common::draw::Draw;
 use crate::frame::common::kernel::Kernel;
@@ -75,6 +75,7 @@ pub(crate) struct ChordBindings<'a> {
     pub counters: &'a Buffer,
     /// What pass `seed_list` wrote, where outlines are drawn.
     pub chord_seeds: &'a Buffer,
+    pub edges: &'a EdgeBuffers,
     /// The draw, and its number.
     pub draw: &'a Buffer,
 }
@@ -96,8 +97,9 @@ impl OfChords {
 
     /// `size`: of the picture.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &ChordBindings<'_>, size: (u32, u32), half_px: [f32; 3]) {
-        let resources =
-            [b.frame, b.chords, &b.points.buffer, &b.seeds.buffer, b.counters, b.chord_seeds].map(Resource::from);
+        let lists = [&b.points.buffer, &b.seeds.buffer, b.counters, b.chord_seeds];
+        let edges = [&b.edges.piece_instances, &b.edges.pieces, b.draw];
+        let resources: Vec<_> = [b.frame, b.chords].into_iter().chain(lists).chain(edges).map(Resource::from).collect();
         let params = ChordParams { half_px, capacities: [b.points.capacity, b.seeds.capacity] };
         cmd.rendering(size, &[], None, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&params));
@@ -129,7 +131,7 @@ impl OfPixels {
         Ok(Self(Kernel::new(device, "fold_list", &shaders::FOLD_LIST_COMP, &constants)?))
     }
 
-    /// One thread a column of [`FOLD_ROWS`] pixels.
+    /// One thread a column of [`FOLD_ROWS`] pixels, [`FOLD_COLUMNS`] of which a workgroup lists.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &PixelBindings<'_>) {
         let (width, height) = b.visibility.size();
         let images = [b.visibility, b.meshes_and_solids, b.operand_uv].map(Resource::from);
@@ -137,6 +139,7 @@ impl OfPixels {
         let resources: Vec<_> =
             [b.frame.into()].into_iter().chain(b.placed.resources()).chain(images).chain(written).collect();
         self.0.bind(cmd, &resources, bytemuck::bytes_of(&b.starts.capacity));
-        self.0.dispatch_rows(cmd, [width, height.div_ceil(FOLD_ROWS as u32)]);
+        let groups = width.div_ceil(FOLD_COLUMNS as u32);
+        cmd.dispatch_grid([groups, height.div_ceil(FOLD_ROWS as u32), 1]);
     }
 }

@@ -191,7 +191,8 @@ impl EdgeStage {
             barrier::buffers(cmd, &[(chord_seeds, w, Access::FRAGMENT_READ)]);
         }
         let drawn = Access::VERTEX_READ | Access::FRAGMENT_READ | Access::COMPUTE_READ;
-        barrier::buffers(cmd, &[(&self.chords, w, drawn), (&self.draw, w, Access::INDIRECT_READ)]);
+        let read = Access::VERTEX_READ | Access::INDIRECT_READ;
+        barrier::buffers(cmd, &[(&self.chords, w, drawn), (&self.draw, w, read)]);
         cmd.after(w, w | Access::INDIRECT_READ);
     }
 
@@ -207,9 +208,10 @@ impl EdgeStage {
         lists.iter().for_each(|list| list.clear(cmd));
         barrier::buffers(cmd, &lists.map(|list| (&list.buffer, cleared, written)));
         barrier::buffers(cmd, &[(counters, w | Access::INDIRECT_READ, written)]);
-        if s.edges.is_some() {
+        if let Some(edges) = &s.edges {
             let bindings = list::ChordBindings {
                 frame: frame.constants,
+                edges,
                 chords: &self.chords,
                 points: &self.points,
                 seeds: &self.seeds,

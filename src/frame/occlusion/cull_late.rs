@@ -26,7 +26,7 @@ pub(crate) struct Bindings<'a> {
     pub instances: &'a Buffer,
     pub face_instances: &'a Buffer,
     pub faces: &'a Buffer,
-    pub patches: &'a Buffer,
+    pub patches: &'a TexelBuffer,
     pub points: &'a TexelBuffer,
     /// Face instance of each patch instance.
     pub patch_instances: &'a Buffer,

@@ -16,7 +16,7 @@
 //! Parity: exact.
 
 use crate::frame::common::kernel::{Kernel, Threads};
-use crate::gpu::{Buffer, Commands, Device, GpuError};
+use crate::gpu::{Buffer, Commands, Device, GpuError, Resource, TexelBuffer};
 use crate::shaders;
 
 /// The pass.
@@ -29,7 +29,7 @@ pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub face_instances: &'a Buffer,
     pub faces: &'a Buffer,
-    pub patches: &'a Buffer,
+    pub patches: &'a TexelBuffer,
     pub patch_instances: &'a Buffer,
     pub taus: &'a Buffer,
     /// [`Factors`](crate::abi::Factors) per patch instance.
@@ -58,19 +58,15 @@ impl Split {
 
     /// One thread for each listed patch instance.
     pub(crate) fn record<'t>(&self, cmd: &Commands<'_>, b: &Bindings<'_>, threads: impl Into<Threads<'t>>) {
-        let resources = [
-            b.frame,
-            b.face_instances,
-            b.faces,
-            b.patches,
-            b.patch_instances,
-            b.taus,
-            b.factors,
-            b.sub_patch_counts,
-            b.vertex_counts,
-            b.runs,
-        ];
-        let resources: Vec<_> = resources.into_iter().chain(b.links).map(Into::into).collect();
+        let written = [b.factors, b.sub_patch_counts, b.vertex_counts];
+        let resources: Vec<_> = [b.frame, b.face_instances, b.faces]
+            .map(Resource::from)
+            .into_iter()
+            .chain([b.patches.into()])
+            .chain(
+                [b.patch_instances, b.taus].into_iter().chain(written).chain([b.runs]).chain(b.links).map(Into::into),
+            )
+            .collect();
         self.kernel.record_threads(cmd, &resources, threads.into());
     }
 }

@@ -92,7 +92,7 @@ pub(crate) struct Bindings<'a> {
     pub views: &'a Buffer,
     pub face_instances: &'a Buffer,
     pub faces: &'a Buffer,
-    pub patches: &'a Buffer,
+    pub patches: &'a TexelBuffer,
     pub patch_instances: &'a Buffer,
     pub points: &'a TexelBuffer,
     pub instances: &'a Buffer,
@@ -190,7 +190,8 @@ impl SolidLayers {
         // the shader declares these bindings in every scene, and reads them only with boundary operands
         let (starts, counts, fragments) = b.fragments.unwrap_or((b.frame, b.frame, b.tile_leaves));
         let boundary_operands = b.boundary_operands.unwrap_or([b.frame; 4]);
-        let placed = [b.views, b.face_instances, b.faces, b.patches, b.patch_instances];
+        let placed: [Resource<'_>; 5] =
+            [b.views.into(), b.face_instances.into(), b.faces.into(), b.patches.into(), b.patch_instances.into()];
         let tiles: [Resource<'_>; 3] = [b.leaf_centres.into(), b.tile_starts.into(), b.tile_leaves.into()];
         let fragments: [Resource<'_>; 3] = [starts.into(), counts.into(), fragments.into()];
         let sun = b.sun.filter(|_| self.sun);
@@ -200,7 +201,7 @@ impl SolidLayers {
             .chain(tiles)
             .chain(fragments)
             .chain([b.counters.into(), b.behind.into()])
-            .chain(placed.into_iter().map(Into::into))
+            .chain(placed)
             .chain([b.points.into(), b.instances.into()])
             .chain(boundary_operands.into_iter().map(Into::into))
             .chain(sun.into_iter().flat_map(|s| s.into_iter().take(SUN_OWN)))
