@@ -165,6 +165,7 @@ mod tests {
             first.for_picture(counts, size, both(RANGE)).unwrap().antialiasing.followed
         };
         assert_eq!([of(false, (4096, 4096)), of(true, (64, 64)), of(true, (4096, 4096))], [0, 1 << 15, 1 << 20]);
+        assert_eq!(of(true, (600, 800)), 64_000);
         assert_eq!(of(true, (1 << 15, 1 << 15)), RANGE / 12);
         let counts = Counts { follows_borders: true, ..Default::default() };
         let c = Counters { followed_points: 100_000, failed: 2048, ..Default::default() };
@@ -184,19 +185,21 @@ mod tests {
             (gaps.candidates, antialiasing.followed)
         };
         // a band of the larger picture has 660 rows, and room for one candidate in eight pixels
-        assert_eq!((of((640, 480)), of((16384, 16384))), ((38_400, 1 << 15), (660 * 2048, RANGE / 12)));
+        assert_eq!((of((640, 480)), of((16384, 16384))), ((38_400, 51_200), (660 * 2048, RANGE / 12)));
     }
 
-    /// A straight piece is one chord; a curved one has more in a larger picture.
+    /// A straight piece is one chord; a curved one has more in a larger picture, and fewer among many.
     #[test]
     fn chords_have_room_by_the_picture() {
-        let counts = Counts { piece_instances: 3000, curved_piece_instances: 600, ..Default::default() };
+        let counts = Counts { piece_instances: 3000, curved_piece_instances: 625, ..Default::default() };
         let of = |counts, size| {
             let had = Capacities::first(counts, u32::MAX).for_picture(counts, size, both(RANGE)).unwrap();
             had.edges.chords
         };
-        // the root of the diagonal is 8 and 16
-        assert_eq!([of(counts, (64, 0)), of(counts, (0, 256))], [3000 + 3000, 3000 + 6000]);
+        // seven of 125 times the root of the diagonal, 8 and 16
+        assert_eq!([of(counts, (64, 0)), of(counts, (0, 256))], [3000 + 7000, 3000 + 14_000]);
+        let one = Counts { piece_instances: 1, curved_piece_instances: 1, ..counts };
+        assert_eq!(of(one, (64, 0)), 1 + 7 * 8);
         assert_eq!(of(Counts::default(), (256, 256)), 0);
         let many = Counts { piece_instances: 1 << 24, ..counts };
         assert_eq!(of(many, (256, 256)), RANGE / size_of::<crate::abi::Chord>() as u32);

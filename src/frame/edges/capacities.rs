@@ -6,13 +6,18 @@ use crate::frame::capacities::grown;
 use crate::frame::common::line_items::item_bytes;
 use crate::frame::counts::{Counts, SMALLER, TooMany};
 
-/// Chords of a curved piece over the root of the picture's diagonal in pixels. Those of a part in full view, nist_pmi_2.stp,
-/// have 0.57 at 410 x 378 and 0.54 at 3840 x 2160.
-const CHORDS: f64 = 5.0 / 8.0;
+/// Chords of `n` curved pieces over the root of the picture's diagonal in pixels and over n to the power of 3/4: pieces of
+/// a part in full view have lengths like n to the power of -1/2, and a curve has chords like the root of its length.
+/// framework_printable_case_full.stp has 6.25 at 820 x 756 and 6.2 at 1920 x 1080, the bearing of zoo_ball_bearing.step 5.1
+/// and 4.8.
+const CHORDS: f64 = 7.0;
 
-/// As many pixels as one that a line covers, as one beside which a fold is looked for from an edge, and as one around that
-/// sees a face which may fold. Full of small faces, nist_pmi_2.stp at 820 x 756 has one in 3, one in 2 and one in 6.
-const PIXELS_OF_ONE: [u64; 3] = [8, 8, 16];
+/// Pixels that lines cover, those beside which a fold is looked for from an edge, and those around that see a face which may
+/// fold, over the picture's diagonal in pixels: lines are long, not wide. Three parts in full view have the most, at 820 x
+/// 756: framework_printable_case_full.stp 152, nist_pmi_2.stp 156, occt_linkrods.step 68.
+const OF_DIAGONAL: [f64; 3] = [256.0, 192.0, 80.0];
+/// In a small picture, as many pixels as one of those.
+const PIXELS_OF_ONE: u64 = 3;
 /// Bytes of an entry of these lists, and what it is.
 const LISTS: [(&str, usize); 3] = [
     ("pixels of lines", item_bytes(false)),
@@ -52,12 +57,13 @@ impl Capacities {
     /// holds them.
     pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), range: u32) -> Self {
         let diagonal = f64::from(size.0).hypot(size.1.into());
-        let of_curved = f64::from(counts.curved_piece_instances) * CHORDS * diagonal.sqrt();
+        let root = f64::from(counts.curved_piece_instances).sqrt();
+        let of_curved = CHORDS * root * root.sqrt() * diagonal.sqrt();
         let some = counts.piece_instances.saturating_add(of_curved as u32);
         let pixels = u64::from(size.0) * u64::from(size.1);
         let of_lists = |list: usize, had: u32| {
-            let some = if counts.lines { pixels / PIXELS_OF_ONE[list] } else { 0 };
-            had.max(some as u32).min(most_of(list, range))
+            let some = ((OF_DIAGONAL[list] * diagonal) as u64).min(pixels / PIXELS_OF_ONE);
+            had.max(if counts.lines { some as u32 } else { 0 }).min(most_of(list, range))
         };
         Self {
             chords: self.chords.max(some).min(most(range)),
@@ -106,11 +112,12 @@ mod tests {
             let counts = Counts { lines, ..Default::default() };
             lists(Capacities::first(counts).for_picture(counts, size, range))
         };
-        assert_eq!(of(true, (640, 480), RANGE), [38_400, 38_400, 19_200]);
-        assert_eq!(of(false, (640, 480), RANGE), [0; 3]);
+        assert_eq!(of(true, (3000, 4000), RANGE), [1_280_000, 960_000, 400_000]);
+        assert_eq!(of(true, (30, 40), RANGE), [400; 3]);
+        assert_eq!(of(false, (3000, 4000), RANGE), [0; 3]);
         // eight bytes an entry, and 36 a fold
         let most = [RANGE / 8 - 4, (RANGE - 32) / 44, (RANGE - 32) / 44];
-        assert_eq!(of(true, (1 << 15, 1 << 15), RANGE), most);
+        assert_eq!(of(true, (1 << 16, 1 << 16), RANGE), most);
         assert_eq!(of(true, (640, 480), 16), [0; 3]);
     }
 
