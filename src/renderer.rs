@@ -47,7 +47,7 @@ use crate::gpu::{
     Attachment, Buffer, Commands, Device, GpuError, HostDevice, Load, MemoryReport, Staging, TexelBuffer, Uploads,
 };
 use crate::model::{Camera, Model};
-use crate::picture::{FrameSettings, PoolBytes};
+use crate::picture::{Effects, FrameSettings, PoolBytes};
 use crate::scene::{Array, Cut, Joinable, Picking, Scene, SceneData, Write};
 pub use crate::scene::{EditError, Hit, InstanceError, UndrawnEdges, UndrawnSolid, trim_way};
 use ash::vk;
@@ -246,7 +246,7 @@ impl Renderer {
         let tolerance = input.settings.tolerance_px;
         self.reload()?;
         self.prepare(input.camera)?;
-        self.make_room(input.slot, input.camera)?;
+        self.make_room(input.slot, input.camera, input.settings.without)?;
         self.make_viewport(&input.targets, input.camera.size)?;
         let (device, most) = (self.device.clone(), self.most_staging());
         // SAFETY: the caller's promise.
@@ -379,7 +379,7 @@ impl Renderer {
 
     /// Frees what the slot's last frame used, and makes the buffers large enough for the counts that this frame
     /// reported, or that a first one is expected to report, and for the picture's size.
-    fn make_room(&mut self, slot: usize, camera: &Camera) -> Result<(), RenderError> {
+    fn make_room(&mut self, slot: usize, camera: &Camera, without: Effects) -> Result<(), RenderError> {
         let size = camera.size;
         let finished = &mut self.slots[slot];
         let (had, drawn) = (finished.capacities.take(), finished.size);
@@ -400,7 +400,7 @@ impl Renderer {
                 Err(_) if drawn != size => loaded.capacities,
                 Err(too_many) if too_many.is_of_table() && loaded.may_be_exact => {
                     self.load_exact()?;
-                    return self.make_room(slot, camera);
+                    return self.make_room(slot, camera, without);
                 }
                 Err(too_many) => return Err(too_many.into()),
             },
@@ -421,6 +421,10 @@ impl Renderer {
         loaded.capacities = capacities;
         if let Some(old) = made.and_then(|made| loaded.stages.replace(made)) {
             self.retire(Retired::Stages(Box::new(old)));
+        }
+        if let Some(loaded) = self.loaded.as_mut().filter(|_| !without.lines) {
+            let (stages, passes) = (&mut loaded.stages, &loaded.passes);
+            stages.as_mut().map_or(Ok(()), |stages| stages.make_lines(&self.device, passes))?;
         }
         Ok(())
     }

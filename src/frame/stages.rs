@@ -115,6 +115,7 @@ pub(crate) struct Stages {
     pub(super) contact: Option<Contact>,
     pub(super) smooth_trims: Option<SmoothTrims>,
     pub(super) smooth_borders: Option<SmoothBorders>,
+    /// Once a frame draws lines.
     pub(super) edges: Option<EdgeStage>,
 }
 
@@ -151,8 +152,17 @@ impl Stages {
             contact: p.contact.as_ref().map(|p| Contact::new(room, p)).transpose()?,
             smooth_trims: p.smooth_trims.as_ref().map(SmoothTrims::new),
             smooth_borders: p.smooth_borders.as_ref().map(|p| SmoothBorders::new(room, p)).transpose()?,
-            edges: p.edges.as_ref().map(|p| EdgeStage::new(room, p)).transpose()?,
+            edges: None,
         })
+    }
+
+    /// Makes the stage of lines, where the scene has one, for the first frame that draws them.
+    pub(crate) fn make_lines(&mut self, device: &Device, passes: &Passes) -> Result<(), GpuError> {
+        let room = Room { device, counts: self.counts, capacities: self.capacities, size: self.size };
+        if let (Some(passes), None) = (&passes.edges, &self.edges) {
+            self.edges = Some(EdgeStage::new(&room, passes)?);
+        }
+        Ok(())
     }
 
     /// They suffice for a scene with so much, and for a picture of this size.

@@ -4,6 +4,7 @@ pub(crate) mod border_list;
 pub(crate) mod draw;
 pub(crate) mod gate;
 pub(crate) mod kernel;
+pub(crate) mod later;
 pub(crate) mod layer_faces;
 pub(crate) mod line_items;
 pub(crate) mod reset;

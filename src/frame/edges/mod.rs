@@ -23,6 +23,7 @@ mod solid_lines;
 
 pub(crate) use capacities::Capacities;
 
+use super::common::later::Later;
 use super::common::line_items::LineItems;
 use super::common::room::{COUNTED, Room};
 use super::shading::numbers::NUMBER_FORMAT;
@@ -35,7 +36,9 @@ use crate::picture::EdgeSettings;
 use crate::scene::{SceneData, SolidData};
 use crate::shaders::{TrimTest, constant};
 use ash::vk;
+use std::panic::resume_unwind;
 use std::sync::Arc;
+use std::thread;
 
 /// The passes of scenes with lines.
 pub(crate) struct Passes {
@@ -43,15 +46,21 @@ pub(crate) struct Passes {
     /// The host wants their numbers.
     has_edge_image: bool,
     divide: divide::Divide,
-    /// Where outlines of curved faces are wanted.
-    seeds: Option<list::SeedsOfChords>,
     list: list::OfChords,
-    line: line::Line,
-    /// Where outlines of curved faces are wanted, and there are patches.
-    fold: Option<(list::OfPixels, fold::Fold)>,
+    /// The largest pipelines of all.
+    follow: Later<FollowPasses>,
     /// Where there are Boolean solids.
     solids: Option<solid_lines::Passes>,
     show: show::Show,
+}
+
+/// Those that follow surfaces.
+struct FollowPasses {
+    /// Where outlines of curved faces are wanted.
+    seeds: Option<list::SeedsOfChords>,
+    line: line::Line,
+    /// Where outlines of curved faces are wanted, and there are patches.
+    fold: Option<(list::OfPixels, fold::Fold)>,
 }
 
 impl Passes {
@@ -63,25 +72,41 @@ impl Passes {
         test: Option<&TrimTest>,
     ) -> Result<Option<Self>, GpuError> {
         let Some(edges) = data.edges.as_ref().filter(|_| data.has_lines()) else { return Ok(None) };
-        let constants = constants(data);
-        let kinds = line::Kinds { test, volume: data.volume.as_ref().and_then(SolidData::kinds) };
         let folds = edges.settings.silhouettes;
-        let of_faces = || {
-            let list = list::OfPixels::new(device, &constants)?;
-            Ok::<_, GpuError>((list, fold::Fold::new(device, &constants, test)?))
-        };
         let numbers = formats.numbers[0].then_some(NUMBER_FORMAT);
         Ok(Some(Self {
             settings: edges.settings,
             has_edge_image: formats.numbers[0],
             divide: divide::Divide::new(device)?,
-            seeds: folds.then(|| list::SeedsOfChords::new(device, &constants)).transpose()?,
             list: list::OfChords::new(device, folds)?,
-            line: line::Line::new(device, &constants, &kinds, folds)?,
-            fold: (folds && (data.has_patches || data.has_operands)).then(of_faces).transpose()?,
+            follow: FollowPasses::later(device, data, test.copied(), folds),
             solids: solid_lines::Passes::new(device, data, &edges.settings)?,
             show: show::Show::new(device, data, (formats.colour, numbers))?,
         }))
+    }
+}
+
+impl FollowPasses {
+    /// `test`: how faces are trimmed; `None` where none is. `folds`: outlines of curved faces are wanted.
+    fn later(device: &Device, data: &SceneData, test: Option<TrimTest>, folds: bool) -> Later<Self> {
+        let (device, constants) = (device.clone(), constants(data));
+        let volume = data.volume.as_ref().and_then(SolidData::kinds);
+        let has_folds = folds && (data.has_patches || data.has_operands);
+        Later::begin(move || {
+            let (device, constants, test) = (&device, &constants, test.as_ref());
+            let of_faces = || {
+                let list = list::OfPixels::new(device, constants)?;
+                Ok::<_, GpuError>((list, fold::Fold::new(device, constants, test)?))
+            };
+            // threads of their own: those of a pool may all wait for this one
+            thread::scope(|scope| {
+                let fold = has_folds.then(|| scope.spawn(of_faces));
+                let seeds = folds.then(|| list::SeedsOfChords::new(device, constants)).transpose();
+                let line = line::Line::new(device, constants, &line::Kinds { test, volume }, folds);
+                let fold = fold.map(|fold| fold.join().unwrap_or_else(|panic| resume_unwind(panic))).transpose();
+                Ok(Self { seeds: seeds?, line: line?, fold: fold? })
+            })
+        })
     }
 }
 
@@ -101,6 +126,7 @@ fn constants(data: &SceneData) -> [(u32, u32); 6] {
 /// The stage.
 pub(crate) struct EdgeStage {
     passes: Arc<Passes>,
+    follow: Arc<FollowPasses>,
     /// How wide lines are, half of it: full ones, thin ones and bold ones.
     half_px: [f32; 3],
     counts: Buffer,
@@ -144,6 +170,7 @@ impl EdgeStage {
         let settings = passes.settings;
         Ok(Self {
             passes: Arc::clone(passes),
+            follow: passes.follow.get()?,
             half_px: [settings.width, settings.thin_width, settings.section_width].map(|width| (half * width) as f32),
             counts: room.words("edge chord counts", piece_instances)?,
             starts: room.words("edge chord starts", piece_instances + 1)?,
@@ -182,7 +209,7 @@ impl EdgeStage {
         frame.stages.common.scan(cmd, &self.counts, &self.starts, frame.counts.piece_instances);
         cmd.after(w, r | w);
         divide.emit(cmd, &bindings, params, frame.capacities.edges.chords);
-        if let Some(seeds) = &self.passes.seeds {
+        if let Some(seeds) = &self.follow.seeds {
             cmd.after(w, r);
             let (chords, draw, chord_seeds) = (&self.chords, &self.draw, &self.chord_seeds);
             let placed = frame.scene.placed(frame.views);
@@ -221,7 +248,7 @@ impl EdgeStage {
             };
             passes.list.record(cmd, &bindings, v.image.size(), self.half_px);
         }
-        if let Some((list, _)) = &passes.fold {
+        if let Some((list, _)) = &self.follow.fold {
             // the image of best lines stands in for that of operands
             barrier::images(cmd, &[(&self.best, (Access::FRAGMENT_READ | r).discarded(), r)]);
             let placed = s.placed(frame.views);
@@ -274,9 +301,9 @@ impl EdgeStage {
                 solids,
             };
             let params = line::Params { half_px: self.half_px, hidden: u32::from(passes.settings.hidden) };
-            passes.line.record(cmd, &bindings, params, || found(&self.seeds));
+            self.follow.line.record(cmd, &bindings, params, || found(&self.seeds));
         }
-        if let Some((_, fold)) = &passes.fold {
+        if let Some((_, fold)) = &self.follow.fold {
             let bindings = fold::Bindings {
                 frame: frame.constants,
                 placed: s.placed(frame.views),
